@@ -12,7 +12,7 @@ mod words;
 use barrelstack_report::{Block, Document, Tone, Verdict};
 
 pub(crate) use drawing::ground_histories;
-pub use drawing::scene;
+pub use drawing::{legend, scene};
 
 use crate::assemble::{AssembleError, Assembly, assemble};
 use crate::outcome::Outcome;
@@ -21,7 +21,6 @@ use crate::summary::Summary;
 use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 use crate::verify::Verification;
 
-pub(crate) use drawing::legend;
 pub use glossary::WORDS;
 pub(crate) use inputs::{setting_row, shown};
 pub(crate) use sections::traces;

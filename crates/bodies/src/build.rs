@@ -139,7 +139,7 @@ fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
 /// What of a solid touches others; a half-space is only touched.
 fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
     let hull = match &placed.surface {
-        Surface::HalfSpace => return None,
+        Surface::HalfSpace | Surface::Dish(_) => return None,
         Surface::Ball(ball) => {
             let (center, radius) = (placed.offset, ball.radius);
             return Some(Nodes::Rolling { center, radius, tributary_length: 1.0 });

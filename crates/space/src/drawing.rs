@@ -4,20 +4,23 @@
 //! What is seen of a solid body changes only with the direction in the body from which it is looked at, so a body
 //! becomes one drawing for every direction that occurs, in steps of a few degrees, of which each frame shows one.
 
+mod seen;
+
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario;
+use barrelstack::watch::ElementFate;
 use barrelstack_dynamics::{
-    Body, Linear as _, Link, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
+    Body, Element, Linear as _, Link, Placed, Quaternion, Rotation3, Solid, Spatial, Vec3,
 };
 use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie,
 };
 
+use self::seen::Seen;
 use crate::fate::Heading;
 use crate::run::Run;
 use crate::stack::Stack;
@@ -73,9 +76,6 @@ impl Sight {
 /// Most frames per second of a picture.
 const RATE: f64 = 20.0;
 
-/// How many steps of direction there are to a right angle.
-const STEPS: f64 = 10.0;
-
 /// The scene of a run from a direction.
 pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let [right, up] = sight.page();
@@ -87,7 +87,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let depth = |body: usize| run.fates[body].rest.dot(toward);
     order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
     let slope = slope(run);
-    let mut drawn = vec![ground(sight, slope), yard(run, sight)];
+    let mut drawn = vec![ground(run, sight, slope), yard(run, sight)];
     let mut poses: Vec<Vec<[f64; 3]>> = frames
         .iter()
         .map(|frame| {
@@ -108,7 +108,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
             let page = [right, up].map(|axis| rotation.unapply(axis));
             let seen = Seen::of(kind, page);
             let slot = *known.entry(seen.key()).or_insert_with(|| {
-                drawn.push(seen.draw(&part.name, &bodies[body]));
+                drawn.push(seen.draw(part, &bodies[body]));
                 drawn.len() - 1
             });
             let row = &mut poses[at];
@@ -116,7 +116,7 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
             row[slot] = [place.dot(right), place.dot(up), seen.angle];
         }
     }
-    let ties = ties(run, sight, drawn.len());
+    let ties = bands(run, sight, drawn.len());
     for (row, frame) in poses.iter_mut().zip(&frames) {
         row.resize(drawn.len(), [f64::NAN; 3]);
         row.extend(ties.iter().flat_map(|tie| tie.ends(run, *frame, [right, up])));
@@ -137,14 +137,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     })
 }
 
-/// A strap, between two bodies that are its ends and show nothing: what is seen of a solid body changes with how it
-/// is turned, and a point in it has no place of its own in such a drawing.
-struct Strap<'a> {
+/// A strap or a tie, between two bodies that are its ends and show nothing: what is seen of a solid body changes with
+/// how it is turned, and a point in it has no place of its own in such a drawing.
+struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,
 }
 
-impl Strap<'_> {
+impl Band<'_> {
     /// Where its ends are on the page.
     fn ends(&self, run: &Run, frame: usize, page: [Vec3; 2]) -> [[f64; 3]; 2] {
         [0, 1].map(|end| {
@@ -155,17 +155,28 @@ impl Strap<'_> {
     }
 }
 
-/// The straps, whose ends follow so many drawings; from above they are seen end on.
-fn ties(run: &Run, sight: Sight, drawings: usize) -> Vec<Strap<'_>> {
-    if sight == Sight::Above {
-        return Vec::new();
+/// How far apart (m) the ends of what is seen end on are, at the most.
+const END_ON: f64 = 0.01;
+
+/// The straps and ties, whose ends follow so many drawings; without those that are seen end on.
+fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
+    let straps = run.devices().filter_map(|((element, _), fate)| match element {
+        Element::Strap(strap) => Some((&strap.link, fate)),
+        Element::Rod(_) | Element::Guide(_) => None,
+    });
+    let band = |(link, fate): (_, &ElementFate)| Band {
+        link,
+        drawn: Tie { bodies: [0; 2], points: [[0.0; 2]; 2], torn_at: fate.broken_at },
+    };
+    let seen = |band: &Band<'_>| {
+        let [a, b] = band.ends(run, 0, sight.page());
+        (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > END_ON
+    };
+    let mut bands: Vec<_> = straps.map(band).filter(seen).collect();
+    for (band, end) in bands.iter_mut().zip((drawings..).step_by(2)) {
+        band.drawn.bodies = [end, end + 1];
     }
-    let all = run.straps().zip((drawings..).step_by(2));
-    all.map(|(((element, _), fate), end)| Strap {
-        link: element.link(),
-        drawn: Tie { bodies: [end, end + 1], points: [[0.0; 2]; 2], torn_at: fate.broken_at },
-    })
-    .collect()
+    bands
 }
 
 /// Whether a body is a barrel and nothing else, with its center of mass on its axis.
@@ -201,11 +212,16 @@ fn slope(run: &Run) -> f64 {
     }
 }
 
-/// The floor: a line longer than any picture is wide; nothing from above, and from the side where it slopes.
-fn ground(sight: Sight, slope: f64) -> SceneBody {
+/// The floor: a line longer than any picture is wide; nothing from above, and from the side where it slopes. And the
+/// walls, ceilings and dishes of devices.
+fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
     let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
-    let outlines = if shown { vec![line] } else { Vec::new() };
+    let mut outlines = if shown { vec![line] } else { Vec::new() };
+    let [right, up] = sight.page();
+    let flat = |point: &Vec3| [point.dot(right), point.dot(up)];
+    let lines = &run.stack.parts[Stack::GROUND].lines;
+    outlines.extend(lines.iter().map(|line| Polyline::open(line.iter().map(flat).collect())));
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
@@ -239,179 +255,6 @@ fn ways(run: &Run, sight: Sight) -> [Point; 2] {
     [lower, upper]
 }
 
-/// How a body is seen.
-struct Seen {
-    /// What in the body is right and up on its drawing.
-    axes: [Vec3; 2],
-    /// How the drawing is turned on the page (rad).
-    angle: f64,
-    kind: PartKind,
-}
-
-impl Seen {
-    /// Of what in the body is right and up on the page.
-    fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
-        let toward = page[0].cross(page[1]);
-        let axis = Vec3::new(1.0, 0.0, 0.0);
-        let stepped = |value: f64| (value * STEPS).round() / STEPS;
-        let (from, mut right) = if kind == PartKind::Barrel {
-            // A body of revolution looks alike whatever it has turned about its axis.
-            let tilt =
-                stepped(math::asin(toward.dot(axis).clamp(-1.0, 1.0)) / (0.25 * TAU)) * 0.25 * TAU;
-            let side = toward - axis * toward.dot(axis);
-            let around = side.unit_or(Vec3::new(0.0, 0.0, 1.0));
-            let (sin, cos) = math::sin_cos(tilt);
-            let from = axis * sin + around * cos;
-            // Seen at its head, what shows is how far it has rolled.
-            let head = sin.abs() > 0.999;
-            let from = if head { axis * tilt.signum() } else { from };
-            (from, if head { Vec3::new(0.0, 1.0, 0.0) } else { axis })
-        } else {
-            let from = Vec3::new(stepped(toward.x), stepped(toward.y), stepped(toward.z));
-            let from = from.unit_or(Vec3::new(0.0, 0.0, 1.0));
-            let right = if from.x.abs() < 0.9 { axis } else { Vec3::new(0.0, 1.0, 0.0) };
-            (from, right)
-        };
-        right = (right - from * right.dot(from)).unit_or(axis);
-        let up = from.cross(right);
-        let angle = math::atan2(right.dot(page[1]), right.dot(page[0]));
-        Self { axes: [right, up], angle, kind }
-    }
-
-    /// What tells two drawings of one body apart.
-    #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
-    fn key(&self) -> [i32; 3] {
-        let from = self.axes[0].cross(self.axes[1]);
-        let fine = |value: f64| (1e3 * value).round() as i32;
-        if self.kind == PartKind::Barrel {
-            [fine(from.x), 0, 0]
-        } else {
-            [fine(from.x), fine(from.y), fine(from.z)]
-        }
-    }
-
-    /// The body as it is seen so.
-    fn draw(&self, name: &str, body: &Body<Spatial>) -> SceneBody {
-        let [right, up] = self.axes;
-        let from = right.cross(up);
-        let flat = |point: Vec3| [point.dot(right), point.dot(up)];
-        let mut outlines = Vec::new();
-        let mut marks = Vec::new();
-        for placed in &body.surfaces {
-            let place = |point: Vec3| placed.offset + placed.rotation.apply(point);
-            match &placed.surface {
-                Solid::Capsule(tube) => {
-                    let ends = [-tube.half_length, tube.half_length]
-                        .map(|x| flat(place(Vec3::new(x, 0.0, 0.0))));
-                    let rim = (0..8).map(|at| TAU * f64::from(at) / 8.0);
-                    let points = rim.flat_map(|angle| {
-                        ends.map(|[x, z]| {
-                            [x + tube.radius * math::cos(angle), z + tube.radius * math::sin(angle)]
-                        })
-                    });
-                    outlines.push(Polyline::closed(hull(points.collect())));
-                }
-                Solid::Barrel(barrel) => {
-                    let half = barrel.half_length + barrel.rounding;
-                    let arc = barrel.stave_radius + barrel.rounding;
-                    let radius = |x: f64| (arc * arc - x * x).sqrt() - barrel.stave_offset;
-                    let ring = |x: f64| {
-                        (0..24).map(move |at| {
-                            let angle = TAU * f64::from(at) / 24.0;
-                            let (y, z) =
-                                (radius(x) * math::cos(angle), radius(x) * math::sin(angle));
-                            Vec3::new(x, y, z)
-                        })
-                    };
-                    let rings = (-6..=6).map(|at| half * f64::from(at) / 6.0);
-                    outlines.push(Polyline::closed(hull(
-                        rings.flat_map(ring).map(|p| flat(place(p))).collect(),
-                    )));
-                    if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
-                        // As the plane draws it.
-                        marks = SceneBody::barrel(name, radius(0.0)).marks;
-                    } else if self.kind == PartKind::Barrel {
-                        // Hoops, as far as they are on this side.
-                        for x in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94].map(|share| share * half) {
-                            let near = |point: &Vec3| point.y * from.y + point.z * from.z >= -1e-9;
-                            let mut hoop: Vec<Point> =
-                                ring(x).filter(near).map(|p| flat(place(p))).collect();
-                            hoop.sort_by(|a, b| a[1].total_cmp(&b[1]));
-                            marks.push(Polyline::open(hoop));
-                        }
-                    }
-                }
-                Solid::Ball(ball) => {
-                    let [x, z] = flat(place(Vec3::default()));
-                    let around = |at: u32| TAU * f64::from(at) / 32.0;
-                    let rim = (0..32).map(around).map(|angle| {
-                        [x + ball.radius * math::cos(angle), z + ball.radius * math::sin(angle)]
-                    });
-                    outlines.push(Polyline::closed(rim.collect()));
-                    // Great circles, as far as they are on this side, show how it turns.
-                    for [one, other] in [[0, 1], [1, 2], [2, 0]] {
-                        let axes = [
-                            Vec3::new(1.0, 0.0, 0.0),
-                            Vec3::new(0.0, 1.0, 0.0),
-                            Vec3::new(0.0, 0.0, 1.0),
-                        ];
-                        let on = |at: u32| {
-                            let (sin, cos) = math::sin_cos(around(at));
-                            (axes[one] * cos + axes[other] * sin) * ball.radius
-                        };
-                        let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
-                        // The half in sight is one stretch: it starts where the one before is hidden.
-                        let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
-                        let start = start.unwrap_or(0);
-                        let seen = (0..=32).map(|at| (start + at) % 32).take_while(near);
-                        marks.push(Polyline::open(seen.map(|at| flat(place(on(at)))).collect()));
-                    }
-                }
-                Solid::Block(block) => {
-                    let half =
-                        block.half + Vec3::new(block.rounding, block.rounding, block.rounding);
-                    let corner = |at: u32| {
-                        let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
-                        flat(place(half.times(Vec3::new(side(1), side(2), side(4)))))
-                    };
-                    outlines.push(Polyline::closed(hull((0..8).map(corner).collect())));
-                }
-                Solid::HalfSpace => {}
-            }
-        }
-        let role = match self.kind {
-            PartKind::Barrel => Role::Barrel,
-            PartKind::Body => Role::Block,
-            PartKind::Ground | PartKind::Rack | PartKind::Device | PartKind::Wine => Role::Rack,
-        };
-        SceneBody { name: name.to_owned(), role, outlines, marks }
-    }
-}
-
-/// The convex outline of points, against the clock.
-fn hull(mut points: Vec<Point>) -> Vec<Point> {
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let left = |a: Point, b: Point, c: Point| {
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 1e-12
-    };
-    let chain = |points: &mut dyn Iterator<Item = Point>| {
-        let mut chain: Vec<Point> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain[..]
-                && !left(a, b, point)
-            {
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut whole = chain(&mut points.iter().copied());
-    whole.extend(chain(&mut points.iter().rev().copied()));
-    whole
-}
-
 fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
     let mut events = Vec::new();
     for (body, (part, fate)) in run.stack.parts.iter().zip(&run.fates).enumerate() {
@@ -431,7 +274,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
         }
     }
     if sight != Sight::Above {
-        for ((element, words), fate) in run.straps() {
+        for ((element, words), fate) in run.devices() {
             if let Some(time) = fate.broken_at {
                 let link = element.link();
                 let text = format!("the {} {} {}", words.one, link.name, words.breaks);

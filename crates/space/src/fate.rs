@@ -192,6 +192,10 @@ impl<'a> Fates<'a> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
         let slip = mean(slips);
+        // What protects a stack has no seat to lose.
+        if part.kind == PartKind::Device {
+            return None;
+        }
         if part.kind == PartKind::Barrel {
             let most = self.thresholds.seat_loss_ratio * part.size;
             if slip.dot(slip) > most * most {

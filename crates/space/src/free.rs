@@ -39,6 +39,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
         bilge_radius: 0.0,
         reach: [0.0; 2],
         loose: Vec::new(),
+        devices: Vec::new(),
     })
 }
 

@@ -1,7 +1,6 @@
 //! What of a stack is known in space, and what is refused at its field.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
-use barrelstack::device::Straps;
 use barrelstack::scenario::{Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
@@ -9,16 +8,6 @@ use barrelstack_dynamics::solid::Barrel;
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;
-    if let Some(words) = spec.devices.present().iter().find(|words| **words != Straps::WORDS) {
-        return refuse(
-            "stack",
-            format!(
-                "{} are known in a plane, not yet in space, where only straps are: leave them out, or set stack.view to \
-                 \"both\"",
-                words.many
-            ),
-        );
-    }
     if rack.kind != RackKind::OnBarrels || rack.foot_height > 0.0 {
         return refuse(
             "stack.rack",

@@ -14,8 +14,10 @@
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod builder;
 mod check;
 pub mod columns;
+mod device;
 pub mod drawing;
 pub mod export;
 pub mod fate;
@@ -30,7 +32,6 @@ mod rest;
 pub mod run;
 pub mod stack;
 mod step;
-mod straps;
 pub mod summary;
 pub mod variants;
 pub mod words;

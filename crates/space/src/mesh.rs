@@ -61,6 +61,8 @@ fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
             Solid::HalfSpace => square(floor),
+            // Lies in the ground.
+            Solid::Dish(_) => Mesh::default(),
             Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius, FINE), FINE),
             Solid::Capsule(tube) => {
                 revolved(&rounded(tube.half_length, tube.radius, COARSE), COARSE)

@@ -27,6 +27,8 @@ pub struct Part {
     pub size: f64,
     /// Of a rack which of its tubes lie on which of what is below, and carry which of its barrels, by their numbers.
     pub(crate) seats: Seats,
+    /// Lines (m) in the frame of the body that show what of a device is fixed to it.
+    pub(crate) lines: Vec<Vec<Vec3>>,
 }
 
 /// Which tubes of a rack bear what.
@@ -51,6 +53,7 @@ impl Part {
             supports: Vec::new(),
             size: 0.0,
             seats: Seats::default(),
+            lines: Vec::new(),
         }
     }
 }

@@ -13,6 +13,7 @@
 //! What joins the beams is an assumption: two tubes on top of their ends, so that the beams alone lie on what is below.
 
 use barrelstack::assemble::{BAR_RADIUS, TUBE_CORNER};
+use barrelstack::device::Chocks;
 use barrelstack::scenario::{Cradle, Rack};
 use barrelstack_dynamics::solid::{Barrel, Bulk, Capsule, Hull, Part};
 use barrelstack_dynamics::{Quaternion, Rotation3, Vec3, math};
@@ -22,7 +23,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Which tubes of a rack bear what.
 #[derive(Clone, Debug)]
 pub(crate) struct Tubes {
-    /// The tubes, with masses (kg) that make that of the rack.
+    /// The tubes, with masses (kg) that make that of the rack; chocks, which are last, have none.
     pub(crate) parts: Vec<Part>,
     /// The numbers of the beams, which lie on what is below, by the place along the rack of the barrels that they
     /// carry and lie on.
@@ -56,18 +57,31 @@ impl Heights {
     }
 }
 
-/// The tubes of a rack whose barrels lie `apart` (m) one behind the other; none where its cradle is no pair of
-/// supports.
-pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
+/// The tubes of a rack whose barrels lie `apart` (m) one behind the other, last its chocks; none where its cradle is
+/// no pair of supports.
+pub(crate) fn tubes(
+    rack: &Rack,
+    barrel: &Barrel,
+    apart: f64,
+    chocks: Option<Chocks>,
+) -> Option<Tubes> {
     let Cradle::Supports { angle } = rack.cradle else { return None };
     let beam = 0.5 * rack.beam_height;
     // The line on which a beam bears ends where the corner of its plane begins.
     let half = 0.5 * rack.width - TUBE_CORNER;
     let heights = Heights::of(rack, barrel);
     let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
-    let (mut beams, mut posts, mut list) = (Vec::new(), Vec::new(), Vec::new());
-    let (sin, cos) = math::sin_cos(angle);
-    let away = around(barrel, BAR_RADIUS, rack.rail_half_spacing);
+    let (mut beams, mut posts) = (Vec::new(), Vec::new());
+    let (mut list, mut horns) = (Vec::new(), Vec::new());
+    // What stands on a beam beside a barrel and ends at an angle and a distance from it.
+    let beside = |[place, y]: [f64; 2], side: f64, angle: f64, gap: f64| {
+        let (sin, cos) = math::sin_cos(angle);
+        let away = around(barrel, BAR_RADIUS + gap, rack.rail_half_spacing);
+        let top = heights.axis - cos * away;
+        let foot = rack.beam_height.min(top);
+        let center = Vec3::new(place + side * sin * away, y, 0.5 * (top + foot));
+        Tube::upright(0.5 * (top - foot), BAR_RADIUS, center)
+    };
     for deep in 0..rack.barrels_deep {
         for side in [-1.0, 1.0] {
             let y = middle(deep, rack.barrels_deep) * apart + side * rack.rail_half_spacing;
@@ -76,11 +90,10 @@ pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
             for column in 0..rack.barrels {
                 let place = middle(column, rack.barrels) * rack.pitch;
                 for support in [-1.0, 1.0] {
-                    let top = heights.axis - cos * away;
-                    let foot = rack.beam_height.min(top);
                     posts.push(((column, deep), list.len()));
-                    let at = Vec3::new(place + support * sin * away, y, 0.5 * (top + foot));
-                    list.push(Tube::upright(0.5 * (top - foot), BAR_RADIUS, at));
+                    list.push(beside([place, y], support, angle, 0.0));
+                    let horn = |chock: Chocks| beside([place, y], support, chock.angle, chock.gap);
+                    horns.extend(chocks.map(horn));
                 }
             }
         }
@@ -93,7 +106,9 @@ pub(crate) fn tubes(rack: &Rack, barrel: &Barrel, apart: f64) -> Option<Tubes> {
     // Tubes of one wall: mass goes with length and girth.
     let weight = |tube: &Tube| (2.0 * tube.half_length + tube.radius) * tube.radius;
     let whole: f64 = list.iter().map(weight).sum();
-    let parts = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole)).collect();
+    let weighs = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole));
+    // What a rack weighs, it weighs without chocks.
+    let parts = weighs.chain(horns.iter().map(|horn| horn.part(0.0))).collect();
     Some(Tubes { parts, beams, posts })
 }
 

@@ -1,7 +1,7 @@
 //! The page of a run in space: its verdict, three views that move together, moments, numbers.
 
 use barrelstack::outcome::Outcome;
-use barrelstack::report::{WORDS, device_table};
+use barrelstack::report::{WORDS, device_table, legend};
 use barrelstack::variants::Range;
 use barrelstack_report::{
     Block, Cell, Document, Figure, FigureKind, Pane, Players, Strip, Table, Verdict, capital,
@@ -36,11 +36,7 @@ pub fn document(answer: &Answer) -> Document {
         caption: format!(
             "One run from three sides, on one clock and to one scale. What is nearer covers what is behind it as they \
              stood at rest.{}",
-            if run.elements.is_empty() {
-                ""
-            } else {
-                " Bands with a buckle are straps; one that tears is gone. From above they are not drawn."
-            }
+            legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
         overlay: None,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use barrelstack::assemble::{AssembleError, PartKind};
-use barrelstack::device::{Straps, Words};
+use barrelstack::device::Words;
 use barrelstack::outcome::{Outcome, collapse};
 use barrelstack::overlap::ALLOWED;
 use barrelstack::run::{
@@ -64,7 +64,7 @@ pub struct Run {
     pub fates: Vec<Fate>,
     /// When (s) the first barrel had fallen.
     pub first_fall: Option<f64>,
-    /// What became of every strap, in the order of the model.
+    /// What became of every element of the devices, in the order of the model.
     pub elements: Vec<ElementFate>,
     /// Where all bodies were.
     pub frames: Frames,
@@ -117,7 +117,7 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
         settled = Some(rest(&stack, &mut state, &mut scratch)?);
     }
     let strained = stack.fasten(&mut state).map_err(AssembleError::from)?;
-    // Straps that bear something from the start press the stack together.
+    // What bears something from the start presses the stack together.
     if let Some(before) = settled.filter(|_| strained) {
         let found = rest(&stack, &mut state, &mut scratch)?;
         settled = Some(Settled { steps: before.steps + found.steps, ..found });
@@ -237,12 +237,12 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Every strap with its words and what became of it.
-    pub(crate) fn straps(
+    /// Every element of a device with its words and what became of it.
+    pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
         let elements = self.stack.model.elements().iter();
-        elements.map(|element| (element, Straps::WORDS)).zip(&self.elements)
+        elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
     /// Barrels that fell, in order.

@@ -1,24 +1,17 @@
-//! From a scenario to a stack that can move in space: racks of tubes, barrels of revolution, and which of them meet
-//! by which law.
+//! From a scenario to a stack that can move in space.
 
 use barrelstack::RunFailure;
-use barrelstack::assemble::{AssembleError, PartKind, Similitude, assemble, laws_in_space};
+use barrelstack::assemble::{AssembleError, PartKind, assemble};
+use barrelstack::device::Words;
 use barrelstack::run::time_step;
-use barrelstack::scenario::{BodyOverride, Scenario, Scene, StackBody, StackPair, StackSpec, View};
-use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
-use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Model, Motion, Nodes, Placed, Pose, Rotation3, Spatial,
-    Substepping, Twist, Vec3,
-};
+use barrelstack::scenario::{Scenario, Scene, StackBody, StackSpec, View};
+use barrelstack_dynamics::{BodyId, Model, Spatial, Substepping, Vec3};
 
+use crate::builder::Builder;
+use crate::device::{self, Loose};
 use crate::known::known;
 pub use crate::part::Part;
-use crate::part::{Seats, ground};
-use crate::rack::{Heights, Tubes, along_barrels, tubes};
-use crate::straps::{Loose, straps};
-
-/// Length (m) of boundary that a contact stands for, where constants are stated for a meter of it; as in the plane.
-const TRIBUTARY: f64 = 0.01;
+use crate::rack::Heights;
 
 /// A stack in space, or the bodies of a free scene there.
 #[derive(Clone, Debug)]
@@ -38,8 +31,10 @@ pub struct Stack {
     /// How far (m) a rack may move on the barrels below, across and along them, before nothing holds it there, as in
     /// the plane of each.
     pub reach: [f64; 2],
-    /// Straps that are not tightened yet: that is done on the stack at rest.
+    /// Elements of devices that are not fit yet: that is done on the stack at rest.
     pub(crate) loose: Vec<Loose>,
+    /// What is said of the device of every element of the model.
+    pub(crate) devices: Vec<&'static Words>,
 }
 
 impl Stack {
@@ -80,19 +75,21 @@ impl Stack {
         let Pace { step, substepping, reach } = Pace::of(scenario, spec)?;
         let mut builder = Builder::new(spec, barrel);
         builder.build()?;
+        device::place(&mut builder)?;
         let pairs = builder.pairs();
-        let Builder { bodies, parts, .. } = builder;
-        let loose = straps(spec, &parts, &bodies)?;
-        let laws = laws_in_space(spec, Similitude::new(1.0));
+        let Builder { bodies, parts, laws, loose, held, raised, .. } = builder;
         let gravity = Vec3::new(0.0, 0.0, -scenario.run.gravity);
-        let mut model = Model::new(bodies, laws, pairs, gravity).map_err(AssembleError::from)?;
+        let mut model =
+            Model::new(bodies, laws.all, pairs, gravity).map_err(AssembleError::from)?;
         model.set_substepping(substepping);
+        let (elements, devices) = held.into_iter().unzip();
+        model.fasten(elements).map_err(AssembleError::from)?;
         let heights = Heights::of(&spec.rack, &barrel);
         let pitch = heights.axis + heights.underside;
         let bilge_radius = barrel.stave_radius + barrel.rounding - barrel.stave_offset;
-        let height = f64::from(spec.levels - 1) * pitch + heights.axis + bilge_radius;
+        let height = f64::from(spec.levels - 1) * pitch + heights.axis + bilge_radius + raised;
         let levels = spec.levels;
-        Ok(Self { model, parts, step, height, levels, bilge_radius, reach, loose })
+        Ok(Self { model, parts, step, height, levels, bilge_radius, reach, loose, devices })
     }
 }
 
@@ -188,253 +185,4 @@ fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
         plane
     };
     (1..=if differ { count } else { 1 }).map(cut).collect()
-}
-
-/// A stack while it is built up.
-struct Builder<'a> {
-    spec: &'a StackSpec,
-    barrel: Barrel,
-    bodies: Vec<Body<Spatial>>,
-    parts: Vec<Part>,
-}
-
-impl<'a> Builder<'a> {
-    fn new(spec: &'a StackSpec, barrel: Barrel) -> Self {
-        let part = Part::alone("ground", PartKind::Ground);
-        Self { spec, barrel, bodies: vec![ground()], parts: vec![part] }
-    }
-
-    /// All levels, racks and their barrels from below.
-    fn build(&mut self) -> Result<(), AssembleError> {
-        let Self { spec, barrel, .. } = *self;
-        let (racks, rows) = (spec.racks_per_level(), spec.racks_along());
-        let apart = spec.barrel.length + spec.gap;
-        let heights = Heights::of(&spec.rack, &barrel);
-        let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
-        let mut below: Vec<Vec<BodyId>> = vec![Vec::new(); (racks * rows) as usize];
-        for level in 1..=spec.levels {
-            let underside = f64::from(level - 1) * (heights.axis + heights.underside);
-            for row in 0..rows {
-                for column in 0..racks {
-                    let slot = (row * racks + column) as usize;
-                    let supports = std::mem::take(&mut below[slot]);
-                    let place = Vec3::new(
-                        middle(column, racks) * (spec.rack.width + spec.gap),
-                        middle(row, rows) * f64::from(spec.rack.barrels_deep) * apart,
-                        underside,
-                    );
-                    below[slot] = self.add_rack((level, column + 1, row + 1), place, supports)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// One rack with its barrels, whose underside has its middle at a place (m); returns the ids of the barrels.
-    fn add_rack(
-        &mut self,
-        (level, column, row): (u32, u32, u32),
-        place: Vec3,
-        supports: Vec<BodyId>,
-    ) -> Result<Vec<BodyId>, AssembleError> {
-        let spec = self.spec;
-        let mut rack = spec.rack.clone();
-        let mut place = place;
-        for change in changes_of(spec, StackBody::Rack, (level, column, row)) {
-            rack.mass = change.mass.unwrap_or(rack.mass);
-            place += Vec3::new(change.offset_x, change.offset_y, 0.0);
-        }
-        let apart = spec.barrel.length + spec.gap;
-        let Some(Tubes { parts: list, beams, posts }) = tubes(&rack, &self.barrel, apart) else {
-            return Err(AssembleError::NotInSpace {
-                field: "stack.rack.cradle",
-                reason: "in space cradles are pairs of supports: set stack.rack.cradle.type to \"supports\", or \
-                         stack.view to \"both\""
-                    .into(),
-            });
-        };
-        let many = (spec.racks_per_level() > 1, spec.racks_along() > 1);
-        let name = match many {
-            (false, false) => format!("R{level}"),
-            (true, false) => format!("R{level}.{column}"),
-            (_, true) => format!("R{level}.{column}.{row}"),
-        };
-        let mut body = compound(&name, &list, TRIBUTARY);
-        body.pose.position += self.mirrored(place);
-        let id = self.bodies.len();
-        let count = list.len();
-        let mut seats = Seats { carries: vec![None; count], lies_on: vec![None; count] };
-        // Barrels below are in the order of places along the rack, then columns.
-        let columns = rack.barrels;
-        for (deep, tube) in beams {
-            let of_beam = supports
-                .iter()
-                .enumerate()
-                .filter(|(at, _)| *at / columns as usize == deep as usize)
-                .map(|(_, id)| *id);
-            seats.lies_on[tube] = Some(of_beam.collect());
-        }
-        for ((column, deep), tube) in posts {
-            // A rack is its own mirror image, so its tubes stay; the barrels change sides.
-            let column = if spec.mirror { columns - 1 - column } else { column };
-            seats.carries[tube] = Some(id + 1 + (deep * columns + column) as usize);
-        }
-        self.bodies.push(body);
-        self.parts.push(Part {
-            name,
-            kind: PartKind::Rack,
-            level,
-            column,
-            row,
-            carrier: None,
-            supports,
-            size: 0.5 * rack.width,
-            seats,
-        });
-        let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
-        let heights = Heights::of(&rack, &self.barrel);
-        let mut barrels = Vec::new();
-        for deep in 0..rack.barrels_deep {
-            for at in 0..columns {
-                let own = Vec3::new(
-                    middle(at, columns) * rack.pitch,
-                    middle(deep, rack.barrels_deep) * apart,
-                    heights.axis,
-                );
-                let column = (column - 1) * columns + at + 1;
-                let row = (row - 1) * rack.barrels_deep + deep + 1;
-                barrels.push(self.add_barrel(id, (level, column, row), place + own));
-            }
-        }
-        Ok(barrels)
-    }
-
-    fn add_barrel(
-        &mut self,
-        carrier: BodyId,
-        (level, column, row): (u32, u32, u32),
-        place: Vec3,
-    ) -> BodyId {
-        let spec = self.spec;
-        let mut contents = spec.barrel.clone();
-        let mut place = place;
-        for change in changes_of(spec, StackBody::Barrel, (level, column, row)) {
-            contents = contents.altered(change.mass, change.fill);
-            place += Vec3::new(change.offset_x, change.offset_y, 0.0);
-        }
-        let rows = spec.space.map_or(1, |space| space.columns_along);
-        let name = if rows > 1 {
-            format!("B{level}.{column}.{row}")
-        } else {
-            format!("B{level}.{column}")
-        };
-        let [axial, across] =
-            [View::Transverse, View::Longitudinal].map(|view| contents.inertia(view));
-        let hull = Hull::Barrel(self.barrel);
-        let centered = Rounded { tributary_length: TRIBUTARY, ..Rounded::centered(hull) };
-        self.bodies.push(Body {
-            name: name.clone(),
-            motion: Motion::Free,
-            mass: contents.mass,
-            inertia: Vec3::new(axial, across, across),
-            damping: None,
-            pose: Pose { position: self.mirrored(place), orientation: along_barrels() },
-            twist: Twist::default(),
-            surfaces: vec![Placed {
-                surface: hull.surface(),
-                offset: Vec3::default(),
-                rotation: Rotation3::identity(),
-            }],
-            nodes: vec![Nodes::Whole(centered)],
-            faces: Vec::new(),
-        });
-        self.parts.push(Part {
-            name,
-            kind: PartKind::Barrel,
-            level,
-            column,
-            row,
-            carrier: Some(carrier),
-            supports: Vec::new(),
-            size: 0.5 * spec.barrel.section_diameter,
-            seats: Seats::default(),
-        });
-        self.bodies.len() - 1
-    }
-
-    /// A place (m), on the other side where the stack is mirrored.
-    fn mirrored(&self, place: Vec3) -> Vec3 {
-        let side = if self.spec.mirror { -1.0 } else { 1.0 };
-        Vec3::new(side * place.x, place.y, place.z)
-    }
-
-    /// All boundaries that can ever meet, each with its law: two bodies that the stack joins meet at seats, everything
-    /// else about them, and any other two bodies, meets in impacts only.
-    fn pairs(&self) -> Vec<ContactPair> {
-        let mut list = Vec::new();
-        let count = self.bodies.len();
-        for a in 1..count {
-            self.meet(&mut list, (a, Stack::GROUND), |tube| self.on_ground(a, tube));
-            for b in a + 1..count {
-                match (self.parts[a].kind, self.parts[b].kind) {
-                    (PartKind::Rack, PartKind::Barrel) => {
-                        self.meet(&mut list, (a, b), |tube| self.seat(a, tube, b));
-                    }
-                    (PartKind::Barrel, PartKind::Rack) => {
-                        self.meet(&mut list, (b, a), |tube| self.seat(b, tube, a));
-                    }
-                    (PartKind::Rack, _) => {
-                        self.meet(&mut list, (a, b), |_| StackPair::FallenRackRack);
-                    }
-                    _ => self.meet(&mut list, (a, b), |_| StackPair::BarrelBarrel),
-                }
-            }
-        }
-        list
-    }
-
-    /// All solids of a body with all of another, each by the law of the first one's.
-    fn meet(
-        &self,
-        list: &mut Vec<ContactPair>,
-        (contactor, target): (BodyId, BodyId),
-        law: impl Fn(usize) -> StackPair,
-    ) {
-        for nodes in 0..self.bodies[contactor].nodes.len() {
-            let interface = law(nodes) as usize;
-            for surface in 0..self.bodies[target].surfaces.len() {
-                let counts = Counts::Everywhere;
-                list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
-            }
-        }
-    }
-
-    fn on_ground(&self, body: BodyId, tube: usize) -> StackPair {
-        let part = &self.parts[body];
-        let stands = part.supports.is_empty();
-        match part.seats.lies_on.get(tube) {
-            None => StackPair::BarrelGround,
-            Some(Some(_)) if stands => StackPair::RackGround,
-            Some(_) => StackPair::FallenRackGround,
-        }
-    }
-
-    fn seat(&self, rack: BodyId, tube: usize, barrel: BodyId) -> StackPair {
-        let seats = &self.parts[rack].seats;
-        let lies = seats.lies_on[tube].as_ref().is_some_and(|on| on.contains(&barrel));
-        if lies || seats.carries[tube] == Some(barrel) {
-            StackPair::BarrelRack
-        } else {
-            StackPair::FallenBarrelRack
-        }
-    }
-}
-
-/// What differs at one place, later entries last.
-fn changes_of(
-    spec: &StackSpec,
-    body: StackBody,
-    (level, column, row): (u32, u32, u32),
-) -> impl Iterator<Item = &BodyOverride> {
-    spec.changes_of(body, level, column).filter(move |change| change.row.is_none_or(|r| r == row))
 }

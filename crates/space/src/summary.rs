@@ -36,7 +36,7 @@ described! {
         pub bodies: Vec<BodyInSpace>,
         /// Demands on the stack, those that space knows.
         pub demands: Demands,
-        /// What every strap bore, where there are any; other devices are not known in space yet.
+        /// What every element of the devices bore, where there are any.
         #[serde(flatten)]
         pub devices: Devices,
         /// The energy books; null where numbers were lost.
@@ -107,7 +107,7 @@ described! {
         /// Its name.
         pub name: String,
         /// What it is.
-        pub kind: &'static str ["barrel", "rack", "body"],
+        pub kind: &'static str ["barrel", "rack", "device", "body"],
         /// Level, 1 at the bottom; 0 in a free scene.
         pub level: u32,
         /// Column, 1 at the left; 0 in a free scene.
@@ -216,7 +216,7 @@ impl Summary {
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound { bodies(run) } else { Vec::new() },
             demands: if sound { demands(run) } else { Demands::default() },
-            devices: Devices::borne(&run.straps()),
+            devices: Devices::borne(&run.devices()),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: motion(first),
             other_component: run.ground.second.as_ref().and_then(motion),

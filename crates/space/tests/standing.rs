@@ -156,7 +156,6 @@ fn a_stack_that_is_shaken_keeps_its_books() {
 #[test]
 fn what_is_not_known_in_space_is_refused_with_its_field() {
     for (change, field) in [
-        ("stack.lid.levels=1", "stack"),
         ("stack.rack=candia-2008", "stack.rack"),
         ("stack.rack=rack-on-rack", "stack.rack"),
         ("stack.rack=single-bar", "stack.rack.contact"),

@@ -87,7 +87,7 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
 }
 
 /// What of a scene a caption has to explain: straps, devices, wine, and the ghosts of variants.
-pub(crate) fn legend(scene: &Scene) -> String {
+pub fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
         legend += " Bands with a buckle are straps and ties, in a free scene all force elements; one that breaks is gone.";

@@ -40,10 +40,12 @@ pub struct Guide<S: Space> {
     pub strength: S::Real,
     /// Distance (m) from its axis beyond which it has let go, for good; infinite if it never does.
     pub reach: S::Real,
+    /// Unit vector in the frame of the first body, along which the point may be any way from the axis; zero for none.
+    pub free: S::Vector,
 }
 
 lanewise!(struct Guide<Planar<R>> {
-    link, axis, place, stiffness, damping, gap, stop_stiffness, stop_damping, strength, reach
+    link, axis, place, stiffness, damping, gap, stop_stiffness, stop_damping, strength, reach, free
 });
 
 impl<S: Space> Guide<S> {
@@ -61,7 +63,17 @@ impl<S: Space> Guide<S> {
             stop_damping: none,
             strength: never,
             reach: never,
+            free: S::Vector::default(),
         }
+    }
+
+    /// The guide, fit, of a first body that turns about the axis: of where its point is only the way along the axis
+    /// counts, and it holds the point while that is no further than `reach` beyond where it is now.
+    #[must_use]
+    pub fn about_axis(self) -> Self {
+        let along = self.axis * self.axis.dot(self.place);
+        let away = self.place - along;
+        Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
     /// Stops count where the point can reach them.
@@ -132,6 +144,7 @@ impl<S: Space> Guide<S> {
         let damped = counted(damped);
         let force = elastic + damped;
         let aside = way - self.axis * e;
+        let aside = aside - self.free * self.free.dot(aside);
         let breaks = self.strength.lt(force.abs()) | (self.reach * self.reach).lt(aside.dot(aside));
         let load = Load { force, energy: counted(energy), elastic, breaks, ..Load::default() };
         Action { load, wrenches: line.pull(along, force, damped) }

@@ -1,6 +1,6 @@
-//! Boundaries in space: ball, half-space, capsule, block, barrel of revolution.
+//! Boundaries in space: ball, half-space, capsule, block, barrel of revolution, and the dish.
 //!
-//! All are convex cores grown by a radius, so that at the depths of contact the cores are apart, and
+//! All but the dish are convex cores grown by a radius, so that at the depths of contact the cores are apart, and
 //! what is asked is the distance of convex bodies that do not meet.
 //! A target answers how far a point is from it ([`Surface::gap`]); a capsule, a block or a barrel touches as
 //! a whole ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and
@@ -38,6 +38,21 @@ impl<R: Real> Ball<R> {
     fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
         Gap { distance: point.length() - self.radius, normal: point.unit_or(up) }
+    }
+}
+
+/// A hollow ball about the origin, with matter all around it: a dish, touched by points only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dish<R = f64> {
+    /// Radius (m).
+    pub radius: R,
+}
+
+impl<R: Real> Dish<R> {
+    #[inline(always)]
+    fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
+        let down = Vec3::new(R::zero(), R::zero(), R::splat(-1.0));
+        Gap { distance: self.radius - point.length(), normal: -point.unit_or(down) }
     }
 }
 
@@ -98,6 +113,8 @@ pub enum Solid<R = f64> {
     Barrel(Barrel<R>),
     /// A block.
     Block(Block<R>),
+    /// A dish.
+    Dish(Dish<R>),
 }
 
 impl<R: Real> Surface<Spatial<R>> for Solid<R> {
@@ -112,6 +129,7 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
             Self::Capsule(capsule) => capsule.gap(point),
             Self::Barrel(barrel) => barrel.gap(point),
             Self::Block(block) => block.gap(point),
+            Self::Dish(dish) => dish.gap(point),
         }
     }
 
@@ -120,7 +138,9 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
         let none = R::Mask::default();
         let flat = match self {
             Self::HalfSpace => !none,
-            Self::Ball(_) | Self::Capsule(_) | Self::Barrel(_) | Self::Block(_) => none,
+            Self::Ball(_) | Self::Capsule(_) | Self::Barrel(_) | Self::Block(_) | Self::Dish(_) => {
+                none
+            }
         };
         Nearest::endless(self.gap(point), !flat)
     }
@@ -132,6 +152,7 @@ impl<R: Real> Surface<Spatial<R>> for Solid<R> {
             Self::Capsule(capsule) => (capsule.half_length + capsule.radius).largest_lane(),
             Self::Barrel(barrel) => barrel.reach().largest_lane(),
             Self::Block(block) => block.reach().largest_lane(),
+            Self::Dish(dish) => dish.radius.largest_lane(),
         }
     }
 }

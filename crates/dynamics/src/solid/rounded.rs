@@ -76,6 +76,8 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
                     visit(Patch { first, deepest, spread: None });
                 }
             }
+            // What is concave is touched by points only.
+            (_, Solid::Dish(_)) => {}
             (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
                 let mut patch = meeting(hull, surface, origin, frame);
                 if let Some(Spread { slopes, .. }) = &mut patch.spread {
@@ -270,10 +272,10 @@ impl Hull {
     }
 }
 
-/// A bounded surface in one lane, a ball as a capsule without length; none for the half-space.
+/// A bounded convex surface in one lane, a ball as a capsule without length; none for others.
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     match surface {
-        Solid::HalfSpace => None,
+        Solid::HalfSpace | Solid::Dish(_) => None,
         Solid::Ball(ball) => {
             Some(Hull::Capsule(Capsule { half_length: 0.0, radius: ball.radius.lane(lane) }))
         }

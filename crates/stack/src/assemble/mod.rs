@@ -13,11 +13,13 @@ mod stack;
 mod transverse;
 
 use barrelstack_dynamics::{
-    BodyId, Element, Interface, Model, ModelError, Placed, Planar, Spatial, Vec2,
+    BodyId, Element, Interface, InterfaceId, Model, ModelError, Placed, Planar, Spatial, Vec2,
 };
 
-use crate::device::{Loose, Words};
-use crate::scenario::{FreeInterface, Scenario, Scene, SpatialScene, StackSpec, View};
+use crate::device::{Isolators, Loose, Words};
+use crate::scenario::{
+    self, FreeInterface, Scenario, Scene, SpatialScene, StackPair, StackSpec, View,
+};
 use crate::step::TimeStepping;
 
 pub(crate) use builder::{Builder, Draft};
@@ -235,10 +237,33 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     Ok(assembly)
 }
 
-/// The laws of contact of a stack in space, at the places of [`StackPair::ALL`](crate::scenario::StackPair::ALL): those of the plane, of which every
-/// element is a contact of its own.
-pub fn laws_in_space(spec: &StackSpec, scale: Similitude) -> Vec<Interface<Spatial>> {
-    stack::laws(spec, 1.0, scale)
+/// The laws of contact of a stack in space.
+#[derive(Clone, Debug)]
+pub struct SpatialLaws {
+    /// At the places of [`StackPair::ALL`], then those of devices in their order: those of the plane, of which every
+    /// element is a contact of its own.
+    pub all: Vec<Interface<Spatial>>,
+    /// The number of that of barrels in their cradles.
+    pub cradle: InterfaceId,
+    /// The number of that of the bearings of platforms, where there are some: one at each corner.
+    pub bearing: Option<InterfaceId>,
+}
+
+impl SpatialLaws {
+    /// Those of a stack.
+    pub fn of(spec: &StackSpec, scale: Similitude) -> Self {
+        let mut all = stack::laws(spec, 1.0, scale);
+        let mut add = |name: &str, law: &scenario::Interface| {
+            all.push(interfaces::interface(name, law, 1.0, scale));
+            all.len() - 1
+        };
+        let pad = spec.devices.pad.law();
+        let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", &law));
+        // Two corners make an end.
+        let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
+        let bearing = isolator.map(|isolator| add("isolator-ground", &isolator.law(0.5)));
+        Self { all, cradle, bearing }
+    }
 }
 
 /// The laws of contact of a free scene in space, in the order of its interfaces.

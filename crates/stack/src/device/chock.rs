@@ -54,12 +54,13 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Chocks, InputError
 }
 
 impl Chocks {
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 
     /// Whether a level of a number of them has chocks, which are solids of its racks.
-    pub(crate) fn at(&self, level: u32, levels: u32) -> bool {
+    pub fn at(&self, level: u32, levels: u32) -> bool {
         level + self.levels > levels
     }
 

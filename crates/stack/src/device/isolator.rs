@@ -8,7 +8,7 @@
 use barrelstack_dynamics::shape::{Cradle, Polygon};
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
-    BodyId, ContactPair, Counts, Guide, Link, Node, Nodes, Placed, Shape, Vec2, math,
+    BodyId, ContactPair, Counts, Guide, Link, Node, Nodes, Placed, Shape, Space, Vec2, math,
 };
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Named, Range, names};
@@ -16,7 +16,7 @@ use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
 use super::{Cost, Each, Loose, Setting, Words};
-use crate::assemble::{Assembly, Builder, Draft, Outline, PartKind, Seat, Solid};
+use crate::assemble::{Assembly, Builder, Draft, Outline, PartKind, Seat, Similitude, Solid};
 use crate::scenario::{Basis, Damping, Friction, Interface, NormalLaw};
 
 pub(super) static WORDS: Words = Words {
@@ -125,30 +125,26 @@ const STEEPEST: f64 = 0.5;
 /// Half of the angle (rad) that a dish spans.
 const DISH: f64 = 1.2;
 
-/// Height (m) of the bearings, and thickness of the platform on them: an assumption.
-const BEARING: f64 = 0.03;
-const PLATE: f64 = 0.04;
-
-/// How far (m) a platform reaches beyond the rack: an assumption; and its bearings lie inside of its end.
-const MARGIN: f64 = 0.05;
-
 /// Damping of bearings over their stiffness (s), on approach only: an assumption.
 const BEARING_DAMPING: f64 = 5e-4;
 
 impl Isolators {
-    pub(super) fn is_on(&self) -> bool {
+    /// Height (m) of the bearings of a platform: an assumption.
+    pub const BEARING: f64 = 0.03;
+    /// Thickness (m) of a platform: an assumption.
+    pub const PLATE: f64 = 0.04;
+    /// How far (m) a platform reaches beyond the rack, an assumption; its bearings lie as far inside of its end.
+    pub const MARGIN: f64 = 0.05;
+
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.path != Path::None
     }
 
-    /// Lifts the stack and puts a platform under every bottom rack.
-    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
-        if !self.is_on() {
-            return Ok(());
-        }
-        let (scale, share) = (builder.scale, 1.0 / builder.side_by_side());
-        builder.raise((BEARING + PLATE) * scale.length);
+    /// The law of a bearing, one of those under an end of a platform or of a share of it.
+    pub(crate) fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
-        let law = Interface {
+        Interface {
             basis: Basis::Node,
             normal: NormalLaw::SpeedGap {
                 stiffness,
@@ -160,19 +156,45 @@ impl Isolators {
                 tangential_stiffness_ratio: 1.0,
                 tangential_damping_ratio: 1.0,
             },
-        };
-        let law = builder.add_law("isolator-ground", &law, 1.0);
+        }
+    }
+
+    /// A share of the springs and stops of a platform, along an axis of the ground.
+    pub fn guide<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        axis: S::Vector,
+        share: f64,
+        scale: Similitude,
+    ) -> Guide<S> {
+        let stiff = scale.stiffness(1.0, false);
+        Guide {
+            gap: self.stroke * scale.length,
+            stop_stiffness: self.stop_stiffness * share * stiff,
+            stop_damping: self.stop_damping * share * scale.damping(false),
+            ..Guide::spring(link, axis, self.recentring * share * stiff, 0.0)
+        }
+    }
+
+    /// Lifts the stack and puts a platform under every bottom rack.
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        if !self.is_on() {
+            return Ok(());
+        }
+        let (scale, share) = (builder.scale, 1.0 / builder.side_by_side());
+        builder.raise((Self::BEARING + Self::PLATE) * scale.length);
+        let law = builder.add_law("isolator-ground", &self.law(share), 1.0);
         let bottom = |(id, part): (BodyId, &crate::assemble::Part)| {
             (part.kind == PartKind::Rack && part.supports.is_empty()).then_some(id)
         };
         let racks: Vec<BodyId> = builder.parts.iter().enumerate().filter_map(bottom).collect();
         for rack in racks {
             let (name, size) = (builder.parts[rack].name.clone(), builder.parts[rack].size);
-            let half = size / scale.length + MARGIN;
+            let half = size / scale.length + Self::MARGIN;
             let x = builder.bodies[rack].pose.position.x / scale.length;
-            let plate = Polygon::rectangle(2.0 * half, PLATE, 0.25 * PLATE)
+            let plate = Polygon::rectangle(2.0 * half, Self::PLATE, 0.25 * Self::PLATE)
                 .map_err(|problem| format!("the platform under {name}: {problem}"))?;
-            let center = BEARING + 0.5 * PLATE;
+            let center = Self::BEARING + 0.5 * Self::PLATE;
             let platform = builder.add(Draft {
                 name: format!("platform of {name}"),
                 kind: PartKind::Device,
@@ -196,19 +218,11 @@ impl Isolators {
                 ends.reverse();
             }
             for end in ends {
-                self.bear(builder, platform, law, (x, end * (half - MARGIN)), center);
+                self.bear(builder, platform, law, (x, end * (half - Self::MARGIN)), center);
             }
             let link =
                 Link { name, bodies: [Assembly::GROUND, platform], points: [Vec2::default(); 2] };
-            let spring = Guide::spring(link, Vec2::new(1.0, 0.0), self.recentring * share, 0.0);
-            let stiff = scale.stiffness(1.0, false);
-            let guide = Guide {
-                stiffness: spring.stiffness * stiff,
-                gap: self.stroke * scale.length,
-                stop_stiffness: self.stop_stiffness * share * stiff,
-                stop_damping: self.stop_damping * share * scale.damping(false),
-                ..spring
-            };
+            let guide = self.guide(link, Vec2::new(1.0, 0.0), share, scale);
             builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
         }
         Ok(())

@@ -4,14 +4,14 @@
 //! A barrel that rolls out of its cradle has to rise first, which a lid does not let it; one that is out from under its
 //! lid is held by it no more.
 
-use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
-use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
-use crate::assemble::{Builder, Outline, PartKind};
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
+use crate::assemble::{Builder, Outline, PartKind, Similitude};
 
 pub(super) static WORDS: Words = Words {
     one: "lid",
@@ -66,15 +66,41 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Lids, InputError> 
 }
 
 impl Lids {
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.levels > 0
+    }
+
+    /// The lid on a rack, the first body of the link, over its barrel, the second, of a radius (m); `up` is up in the
+    /// frame of the rack.
+    pub fn guide<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        up: S::Vector,
+        radius: f64,
+        scale: Similitude,
+    ) -> Guide<S> {
+        Guide {
+            gap: self.gap * scale.length,
+            stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
+            stop_damping: self.damping * scale.damping(false),
+            strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
+            reach: HALF_WIDTH * radius,
+            ..Guide::spring(link, up, 0.0, 0.0)
+        }
+    }
+
+    /// How far (m) a lid reaches to either side of the middle of its barrel, of a radius (m), and how far (m) it is
+    /// above the center of it.
+    pub fn drawn(&self, radius: f64, scale: Similitude) -> [f64; 2] {
+        [HALF_WIDTH * radius, radius + self.gap * scale.length]
     }
 
     /// Puts a lid on every barrel of its levels.
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
-        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        let lowest = lowest(self.levels, spec.levels);
         for barrel in 0..builder.parts.len() {
             let part = &builder.parts[barrel];
             let Some(rack) = part.carrier.filter(|_| part.kind == PartKind::Barrel) else {
@@ -84,19 +110,12 @@ impl Lids {
                 continue;
             }
             let (name, size) = (part.name.clone(), part.size);
-            let (gap, half_width) = (self.gap * scale.length, HALF_WIDTH * size);
             let link = Link { name, bodies: [rack, barrel], points: [Vec2::default(); 2] };
-            let guide = Guide {
-                gap,
-                stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
-                stop_damping: self.damping * scale.damping(false),
-                strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
-                reach: half_width,
-                ..Guide::spring(link, Vec2::new(0.0, 1.0), 0.0, 0.0)
-            };
+            let guide = self.guide(link, Vec2::new(0.0, 1.0), size, scale);
             builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
+            let [half_width, rise] = self.drawn(size, scale);
             let top = builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position
-                + Vec2::new(0.0, size + gap);
+                + Vec2::new(0.0, rise);
             let half = Vec2::new(half_width, 0.0);
             let points = vec![top - half, top + half];
             builder.parts[rack].outlines.push(Outline { points, closed: false });

@@ -51,6 +51,11 @@ macro_rules! devices {
             $help.trim_ascii(),
         )),*];
 
+        $(impl $type {
+            /// What is said of them.
+            pub const WORDS: &'static Words = &$name::WORDS;
+        })*
+
         impl Devices {
             /// Reads the devices of a stack of a number of levels.
             pub(crate) fn read(stack: &Reader<'_>, levels: u32) -> Result<Self, InputError> {
@@ -210,6 +215,11 @@ impl Words {
 
 /// A number of the highest levels; 0 for none.
 const LEVELS: Kind = Kind::Integer(0, 12);
+
+/// The lowest level that has a device, which is on so many of the highest of a number of levels.
+pub fn lowest(highest: u32, levels: u32) -> u32 {
+    levels.saturating_sub(highest) + 1
+}
 
 /// Refuses a device on more levels than a stack has.
 fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), InputError> {

@@ -64,15 +64,14 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Pads, InputError>
 }
 
 impl Pads {
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.stiffness.is_some()
     }
 
-    /// Gives the cradles their law.
-    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
-    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
-        let Some(stiffness) = self.stiffness else { return Ok(()) };
-        let law = Interface {
+    /// The law of one contact element on pads, where there are some.
+    pub(crate) fn law(&self) -> Option<Interface> {
+        self.stiffness.map(|stiffness| Interface {
             basis: Basis::Node,
             normal: NormalLaw::KelvinVoigt {
                 stiffness,
@@ -84,8 +83,15 @@ impl Pads {
                 tangential_stiffness_ratio: 1.0,
                 tangential_damping_ratio: 1.0,
             },
-        };
-        builder.cradle_law = builder.add_seat("pad", &law);
+        })
+    }
+
+    /// Gives the cradles their law.
+    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
+        if let Some(law) = self.law() {
+            builder.cradle_law = builder.add_seat("pad", &law);
+        }
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use barrelstack_input::field::{Default, Kind, Named, Range, names};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
-use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
 use crate::assemble::{Builder, PartKind, Similitude};
 use crate::scenario::View;
 
@@ -132,14 +132,6 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// What is said of straps.
-    pub const WORDS: &'static Words = &WORDS;
-
-    /// The lowest level that is strapped, of a stack of so many.
-    pub fn lowest(&self, levels: u32) -> u32 {
-        levels.saturating_sub(self.levels) + 1
-    }
-
     /// One strap over a way (m) that is plumb on the stack as drawn, and how much longer (m) than its way it will be
     /// once it is tightened on the stack at rest; negative under pretension.
     ///
@@ -180,7 +172,7 @@ impl Straps {
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let Builder { spec, parts, bodies, scale, .. } = builder;
         let (scale, view) = (*scale, spec.view);
-        let lowest = self.lowest(spec.levels);
+        let lowest = lowest(self.levels, spec.levels);
         // Every strap is plumb on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
             let apart = bodies[upper].pose.position - bodies[lower].pose.position;
@@ -230,7 +222,8 @@ impl Straps {
         Ok(())
     }
 
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 }

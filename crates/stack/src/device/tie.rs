@@ -2,14 +2,14 @@
 //!
 //! Walls and ceilings move as the ground does; a real one moves more.
 
-use barrelstack_dynamics::{Link, Strap, Vec2};
+use barrelstack_dynamics::{Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Named, Range, names};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
-use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
-use crate::assemble::{Assembly, Builder, Outline, PartKind};
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
+use crate::assemble::{Assembly, Builder, Outline, PartKind, Similitude};
 
 pub(super) static WORDS: Words = Words {
     one: "tie",
@@ -124,8 +124,28 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<AnchorTies, InputE
 }
 
 impl AnchorTies {
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.levels > 0
+    }
+
+    /// A share of one tie, before its slack.
+    pub fn tie<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        share: f64,
+        scale: Similitude,
+    ) -> Strap<S> {
+        let force =
+            |given: Option<f64>| given.map_or(f64::INFINITY, |it| it * scale.force() * share);
+        Strap {
+            link,
+            length: self.distance * scale.length,
+            stiffness: self.stiffness * scale.stiffness(1.0, false) * share,
+            damping: self.damping * scale.damping(false) * share,
+            yields_at: force(self.yields_at),
+            strength: force(self.strength),
+        }
     }
 
     /// Ties the racks, from the ground up.
@@ -145,7 +165,7 @@ impl AnchorTies {
                 spec.view.words()
             ));
         }
-        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        let lowest = lowest(self.levels, spec.levels);
         let far = self.distance * scale.length;
         // In the mirror left and right change places, in the order of sums, too.
         let mut sides = [("left", -1.0, Side::Left), ("right", 1.0, Side::Right)];
@@ -197,22 +217,12 @@ impl AnchorTies {
                         .outlines
                         .push(Outline { points, closed: false });
                 }
-                let share = 1.0 / builder.side_by_side();
-                let force = |given: Option<f64>| {
-                    given.map_or(f64::INFINITY, |it| it * scale.force() * share)
+                let link = Link {
+                    name: format!("{}-{name}", builder.parts[rack].name),
+                    bodies: [rack, other],
+                    points: [end, point],
                 };
-                let tie = Strap {
-                    link: Link {
-                        name: format!("{}-{name}", builder.parts[rack].name),
-                        bodies: [rack, other],
-                        points: [end, point],
-                    },
-                    length: far,
-                    stiffness: self.stiffness * scale.stiffness(1.0, false) * share,
-                    damping: self.damping * scale.damping(false) * share,
-                    yields_at: force(self.yields_at),
-                    strength: force(self.strength),
-                };
+                let tie = self.tie(link, 1.0 / builder.side_by_side(), scale);
                 let give = self.slack * scale.length;
                 builder.loose.push(Loose { element: tie.into(), give, words: &WORDS });
             }

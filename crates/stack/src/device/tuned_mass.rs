@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
 use super::{Cost, Each, LEVELS, Setting, Words};
-use crate::assemble::{Builder, Draft, Outline, PartKind};
+use crate::assemble::{Builder, Draft, Outline, PartKind, Similitude};
 
 pub(super) static WORDS: Words = Words {
     one: "tuned mass",
@@ -108,21 +108,65 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
 /// Frequency (Hz) of what holds it up: far above that of any stack, and no stiffer than seats.
 const HOLDING: f64 = 15.0;
 
-/// Half of its width and height as drawn (m).
-const HALF: [f64; 2] = [0.15, 0.03];
-
 impl TunedMass {
-    pub(super) fn is_on(&self) -> bool {
+    /// Half of its width and height (m) as drawn.
+    pub const HALF: [f64; 2] = [0.15, 0.03];
+    /// Of what holds a mass up, which is not told of.
+    pub const SUPPORT: &'static Words = &SUPPORT;
+
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.mass > 0.0
+    }
+
+    /// The level whose racks carry masses, of a stack of so many.
+    pub fn level_of(&self, levels: u32) -> u32 {
+        if self.level == 0 { levels } else { self.level }
+    }
+
+    /// On what a share of a mass swings along an axis of the first body of a link.
+    pub fn swing<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        axis: S::Vector,
+        share: f64,
+        scale: Similitude,
+    ) -> Guide<S> {
+        let (rate, mass) = (TAU / self.period, self.mass * share);
+        let (stiff, damped) = (scale.stiffness(1.0, false), scale.damping(false));
+        Guide {
+            gap: self.stroke * scale.length,
+            stop_stiffness: self.stop_stiffness * share * stiff,
+            ..Guide::spring(
+                link,
+                axis,
+                mass * rate * rate * stiff,
+                2.0 * self.damping_ratio * mass * rate * damped,
+            )
+        }
+    }
+
+    /// What holds a share of a mass up, along an axis of the first body of a link.
+    pub fn hold<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        axis: S::Vector,
+        share: f64,
+        scale: Similitude,
+    ) -> Guide<S> {
+        let (fast, mass) = (TAU * HOLDING, self.mass * share);
+        let stiff = mass * fast * fast * scale.stiffness(1.0, false);
+        Guide::spring(link, axis, stiff, 0.1 * mass * fast * scale.damping(false))
     }
 
     /// Puts a mass on every rack of its level, at the center of mass of the rack.
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
-        let level = if self.level == 0 { spec.levels } else { self.level };
+        let level = self.level_of(spec.levels);
         let racks = if self.is_on() { builder.parts.len() } else { 0 };
-        let mass = self.mass / builder.side_by_side();
+        let share = 1.0 / builder.side_by_side();
+        let mass = self.mass * share;
         for rack in 0..racks {
             let part = &builder.parts[rack];
             if part.kind != PartKind::Rack || part.level != Some(level) {
@@ -136,41 +180,26 @@ impl TunedMass {
                 column,
                 mass,
                 // Every force goes through its center, so it never turns.
-                inertia: Some(mass * HALF[0] * HALF[0]),
+                inertia: Some(mass * Self::HALF[0] * Self::HALF[0]),
                 position: builder.bodies[rack].pose.position * (1.0 / scale.length),
-                size: HALF[0],
+                size: Self::HALF[0],
                 solids: Vec::new(),
                 carrier: Some(rack),
                 supports: Vec::new(),
             });
-            let corner = |x: f64, z: f64| Vec2::new(x * HALF[0], z * HALF[1]) * scale.length;
+            let corner =
+                |x: f64, z: f64| Vec2::new(x * Self::HALF[0], z * Self::HALF[1]) * scale.length;
             let points =
                 vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
             builder.parts[body].outlines = vec![Outline { points, closed: true }];
 
-            let rate = TAU / self.period;
-            let (stiff, damped) = (scale.stiffness(1.0, false), scale.damping(false));
             let link = Link { name, bodies: [rack, body], points: [Vec2::default(); 2] };
-            let spring = Guide::spring(
-                link.clone(),
-                Vec2::new(1.0, 0.0),
-                mass * rate * rate * stiff,
-                2.0 * self.damping_ratio * mass * rate * damped,
-            );
-            let swing = Guide {
-                gap: self.stroke * scale.length,
-                stop_stiffness: self.stop_stiffness / builder.side_by_side() * stiff,
-                ..spring
-            };
+            let swing = self.swing(link.clone(), Vec2::new(1.0, 0.0), share, scale);
             builder.hold(swing, &WORDS);
-            let fast = TAU * HOLDING;
-            let hold = mass * fast * fast * stiff;
-            let damp = 0.1 * mass * fast * damped;
-            builder.hold(Guide::spring(link, Vec2::new(0.0, 1.0), hold, damp), &SUPPORT);
+            builder.hold(self.hold(link, Vec2::new(0.0, 1.0), share, scale), Self::SUPPORT);
         }
         Ok(())
     }
 }
 
-/// What holds a mass up is not told of.
 static SUPPORT: Words = Words::silent("support");

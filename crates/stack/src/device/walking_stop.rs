@@ -2,14 +2,14 @@
 //!
 //! A rack that has been lifted above its lips is off them for good.
 
-use barrelstack_dynamics::{Guide, Link, Vec2};
+use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Named, Range, names};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::{Dimension, InputError, section};
 
-use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels};
-use crate::assemble::{Builder, Outline, PartKind};
+use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
+use crate::assemble::{Builder, Outline, PartKind, Similitude};
 use crate::scenario::{RackKind, View};
 
 pub(super) static WORDS: Words = Words {
@@ -97,8 +97,26 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<WalkingStops, Inpu
 }
 
 impl WalkingStops {
-    pub(super) fn is_on(&self) -> bool {
+    /// Whether the stack has them.
+    pub fn is_on(&self) -> bool {
         self.levels > 0
+    }
+
+    /// Stops between the bodies of a link, along an axis of the first one, which let go above their lip.
+    pub fn guide<S: Space<Real = f64>>(
+        &self,
+        link: Link<S>,
+        axis: S::Vector,
+        scale: Similitude,
+    ) -> Guide<S> {
+        Guide {
+            gap: self.gap * scale.length,
+            stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
+            stop_damping: self.damping * scale.damping(false),
+            strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
+            reach: self.lip * scale.length,
+            ..Guide::spring(link, axis, 0.0, 0.0)
+        }
     }
 
     /// Puts stops between racks and each of the barrels below.
@@ -121,7 +139,7 @@ impl WalkingStops {
             View::Transverse => self.holds != Holds::Along,
             View::Longitudinal => self.holds != Holds::Across,
         };
-        let lowest = spec.levels.saturating_sub(self.levels) + 1;
+        let lowest = lowest(self.levels, spec.levels);
         let scale = builder.scale;
         for rack in 0..builder.parts.len() {
             let part = &builder.parts[rack];
@@ -144,14 +162,7 @@ impl WalkingStops {
                     bodies: [rack, barrel],
                     points: [Vec2::default(), point],
                 };
-                let guide = Guide {
-                    gap,
-                    stop_stiffness: self.stiffness * scale.stiffness(1.0, false),
-                    stop_damping: self.damping * scale.damping(false),
-                    strength: self.strength.map_or(f64::INFINITY, |force| force * scale.force()),
-                    reach: lip,
-                    ..Guide::spring(link, Vec2::new(1.0, 0.0), 0.0, 0.0)
-                };
+                let guide = self.guide(link, Vec2::new(1.0, 0.0), scale);
                 builder.loose.push(Loose { element: guide.into(), give: 0.0, words: &WORDS });
                 let apart =
                     builder.bodies[barrel].pose.position - builder.bodies[rack].pose.position;

@@ -1,0 +1,326 @@
+//! A stack in space while it is built up: racks of tubes, barrels of revolution, and which of them meet by which law.
+
+use barrelstack::assemble::{AssembleError, PartKind, SpatialLaws};
+use barrelstack::device::Words;
+use barrelstack::scenario::{BodyOverride, StackBody, StackPair, StackSpec, View};
+use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
+use barrelstack_dynamics::{
+    Body, BodyId, ContactPair, Counts, Element, InterfaceId, Motion, Nodes, Placed, Pose,
+    Rotation3, Spatial, Twist, Vec3,
+};
+
+use crate::device::{FULL, Loose};
+use crate::part::{Part, Seats, ground};
+use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
+use crate::stack::Stack;
+
+/// Length (m) of boundary that a contact stands for, where constants are stated for a meter of it; as in the plane.
+pub(crate) const TRIBUTARY: f64 = 0.01;
+
+/// A stack while it is built up.
+pub(crate) struct Builder<'a> {
+    pub(crate) spec: &'a StackSpec,
+    pub(crate) barrel: Barrel,
+    pub(crate) bodies: Vec<Body<Spatial>>,
+    /// One part for every body, in the same order.
+    pub(crate) parts: Vec<Part>,
+    pub(crate) laws: SpatialLaws,
+    /// Elements that are fit to the stack at rest.
+    pub(crate) loose: Vec<Loose>,
+    /// Elements without which the stack does not stand, and what is said of them.
+    pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
+    /// The bearings of platforms on the ground.
+    pub(crate) bearings: Vec<ContactPair>,
+    /// How far (m) all that stands on the ground was lifted.
+    pub(crate) raised: f64,
+}
+
+impl<'a> Builder<'a> {
+    pub(crate) fn new(spec: &'a StackSpec, barrel: Barrel) -> Self {
+        Self {
+            spec,
+            barrel,
+            bodies: vec![ground()],
+            parts: vec![Part::alone("ground", PartKind::Ground)],
+            laws: SpatialLaws::of(spec, FULL()),
+            loose: Vec::new(),
+            held: Vec::new(),
+            bearings: Vec::new(),
+            raised: 0.0,
+        }
+    }
+
+    /// How far (m) the outermost beams of a rack lie from its middle, along the barrels.
+    pub(crate) fn reach_along(&self) -> f64 {
+        reach_along(&self.spec.rack, self.spec.barrel.length + self.spec.gap)
+    }
+
+    /// Adds a body; returns its id.
+    pub(crate) fn add(&mut self, body: Body<Spatial>, part: Part) -> BodyId {
+        self.bodies.push(body);
+        self.parts.push(part);
+        self.bodies.len() - 1
+    }
+
+    /// Lifts all that stands on the ground by a height (m).
+    pub(crate) fn raise(&mut self, height: f64) {
+        for body in &mut self.bodies[1..] {
+            body.pose.position.z += height;
+        }
+        self.raised = height;
+    }
+
+    /// All levels, racks and their barrels from below.
+    pub(crate) fn build(&mut self) -> Result<(), AssembleError> {
+        let Self { spec, barrel, .. } = *self;
+        let (racks, rows) = (spec.racks_per_level(), spec.racks_along());
+        let apart = spec.barrel.length + spec.gap;
+        let heights = Heights::of(&spec.rack, &barrel);
+        let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
+        let mut below: Vec<Vec<BodyId>> = vec![Vec::new(); (racks * rows) as usize];
+        for level in 1..=spec.levels {
+            let underside = f64::from(level - 1) * (heights.axis + heights.underside);
+            for row in 0..rows {
+                for column in 0..racks {
+                    let slot = (row * racks + column) as usize;
+                    let supports = std::mem::take(&mut below[slot]);
+                    let place = Vec3::new(
+                        middle(column, racks) * (spec.rack.width + spec.gap),
+                        middle(row, rows) * f64::from(spec.rack.barrels_deep) * apart,
+                        underside,
+                    );
+                    below[slot] = self.add_rack((level, column + 1, row + 1), place, supports)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One rack with its barrels, whose underside has its middle at a place (m); returns the ids of the barrels.
+    fn add_rack(
+        &mut self,
+        (level, column, row): (u32, u32, u32),
+        place: Vec3,
+        supports: Vec<BodyId>,
+    ) -> Result<Vec<BodyId>, AssembleError> {
+        let spec = self.spec;
+        let mut rack = spec.rack.clone();
+        let mut place = place;
+        for change in changes_of(spec, StackBody::Rack, (level, column, row)) {
+            rack.mass = change.mass.unwrap_or(rack.mass);
+            place += Vec3::new(change.offset_x, change.offset_y, 0.0);
+        }
+        let apart = spec.barrel.length + spec.gap;
+        let chocks = Some(spec.devices.chock).filter(|chock| chock.at(level, spec.levels));
+        let Some(Tubes { parts: list, beams, posts }) = tubes(&rack, &self.barrel, apart, chocks)
+        else {
+            return Err(AssembleError::NotInSpace {
+                field: "stack.rack.cradle",
+                reason: "in space cradles are pairs of supports: set stack.rack.cradle.type to \"supports\", or \
+                         stack.view to \"both\""
+                    .into(),
+            });
+        };
+        let many = (spec.racks_per_level() > 1, spec.racks_along() > 1);
+        let name = match many {
+            (false, false) => format!("R{level}"),
+            (true, false) => format!("R{level}.{column}"),
+            (_, true) => format!("R{level}.{column}.{row}"),
+        };
+        let mut body = compound(&name, &list, TRIBUTARY);
+        body.pose.position += self.mirrored(place);
+        let id = self.bodies.len();
+        let count = list.len();
+        let mut seats = Seats { carries: vec![None; count], lies_on: vec![None; count] };
+        // Barrels below are in the order of places along the rack, then columns.
+        let columns = rack.barrels;
+        for (deep, tube) in beams {
+            let of_beam = supports
+                .iter()
+                .enumerate()
+                .filter(|(at, _)| *at / columns as usize == deep as usize)
+                .map(|(_, id)| *id);
+            seats.lies_on[tube] = Some(of_beam.collect());
+        }
+        for ((column, deep), tube) in posts {
+            // A rack is its own mirror image, so its tubes stay; the barrels change sides.
+            let column = if spec.mirror { columns - 1 - column } else { column };
+            seats.carries[tube] = Some(id + 1 + (deep * columns + column) as usize);
+        }
+        let part = Part {
+            level,
+            column,
+            row,
+            supports,
+            size: 0.5 * rack.width,
+            seats,
+            ..Part::alone(&name, PartKind::Rack)
+        };
+        self.add(body, part);
+        let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
+        let heights = Heights::of(&rack, &self.barrel);
+        let mut barrels = Vec::new();
+        for deep in 0..rack.barrels_deep {
+            for at in 0..columns {
+                let own = Vec3::new(
+                    middle(at, columns) * rack.pitch,
+                    middle(deep, rack.barrels_deep) * apart,
+                    heights.axis,
+                );
+                let column = (column - 1) * columns + at + 1;
+                let row = (row - 1) * rack.barrels_deep + deep + 1;
+                barrels.push(self.add_barrel(id, (level, column, row), place + own));
+            }
+        }
+        Ok(barrels)
+    }
+
+    fn add_barrel(
+        &mut self,
+        carrier: BodyId,
+        (level, column, row): (u32, u32, u32),
+        place: Vec3,
+    ) -> BodyId {
+        let spec = self.spec;
+        let mut contents = spec.barrel.clone();
+        let mut place = place;
+        for change in changes_of(spec, StackBody::Barrel, (level, column, row)) {
+            contents = contents.altered(change.mass, change.fill);
+            place += Vec3::new(change.offset_x, change.offset_y, 0.0);
+        }
+        let rows = spec.space.map_or(1, |space| space.columns_along);
+        let name = if rows > 1 {
+            format!("B{level}.{column}.{row}")
+        } else {
+            format!("B{level}.{column}")
+        };
+        let [axial, across] =
+            [View::Transverse, View::Longitudinal].map(|view| contents.inertia(view));
+        let hull = Hull::Barrel(self.barrel);
+        let centered = Rounded { tributary_length: TRIBUTARY, ..Rounded::centered(hull) };
+        let body = Body {
+            name: name.clone(),
+            motion: Motion::Free,
+            mass: contents.mass,
+            inertia: Vec3::new(axial, across, across),
+            damping: None,
+            pose: Pose { position: self.mirrored(place), orientation: along_barrels() },
+            twist: Twist::default(),
+            surfaces: vec![Placed {
+                surface: hull.surface(),
+                offset: Vec3::default(),
+                rotation: Rotation3::identity(),
+            }],
+            nodes: vec![Nodes::Whole(centered)],
+            faces: Vec::new(),
+        };
+        let part = Part {
+            level,
+            column,
+            row,
+            carrier: Some(carrier),
+            size: 0.5 * spec.barrel.section_diameter,
+            ..Part::alone(&name, PartKind::Barrel)
+        };
+        self.add(body, part)
+    }
+
+    /// A place (m), on the other side where the stack is mirrored.
+    pub(crate) fn mirrored(&self, place: Vec3) -> Vec3 {
+        let side = if self.spec.mirror { -1.0 } else { 1.0 };
+        Vec3::new(side * place.x, place.y, place.z)
+    }
+
+    /// All boundaries that can ever meet, each with its law: two bodies that the stack joins meet at seats, everything
+    /// else about them, and any other two bodies, meets in impacts only.
+    pub(crate) fn pairs(&self) -> Vec<ContactPair> {
+        let mut list = Vec::new();
+        let count = self.bodies.len();
+        for a in 1..count {
+            self.meet(&mut list, (a, Stack::GROUND), |tube| self.on_ground(a, tube) as usize);
+            for b in a + 1..count {
+                match (self.parts[a].kind, self.parts[b].kind) {
+                    (PartKind::Rack, PartKind::Barrel) => {
+                        self.meet(&mut list, (a, b), |tube| self.seat(a, tube, b));
+                    }
+                    (PartKind::Barrel, PartKind::Rack) => {
+                        self.meet(&mut list, (b, a), |tube| self.seat(b, tube, a));
+                    }
+                    (PartKind::Rack, PartKind::Device) => {
+                        self.meet(&mut list, (a, b), |tube| self.on_platform(a, tube, b) as usize);
+                    }
+                    (PartKind::Barrel, PartKind::Device) => {
+                        self.meet(&mut list, (a, b), |_| StackPair::FallenBarrelRack as usize);
+                    }
+                    (PartKind::Rack, _) | (PartKind::Device, PartKind::Device) => {
+                        self.meet(&mut list, (a, b), |_| StackPair::FallenRackRack as usize);
+                    }
+                    _ => self.meet(&mut list, (a, b), |_| StackPair::BarrelBarrel as usize),
+                }
+            }
+        }
+        list.extend(&self.bearings);
+        list
+    }
+
+    /// How many solids a body has: its first surfaces, and as many that touch.
+    fn solids(&self, body: BodyId) -> usize {
+        // Dishes in the ground are for bearings alone.
+        if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
+    }
+
+    /// All solids of a body with all of another, each by the law of the first one's.
+    fn meet(
+        &self,
+        list: &mut Vec<ContactPair>,
+        (contactor, target): (BodyId, BodyId),
+        law: impl Fn(usize) -> InterfaceId,
+    ) {
+        for nodes in 0..self.solids(contactor) {
+            let interface = law(nodes);
+            for surface in 0..self.solids(target) {
+                let counts = Counts::Everywhere;
+                list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
+            }
+        }
+    }
+
+    fn on_ground(&self, body: BodyId, tube: usize) -> StackPair {
+        let part = &self.parts[body];
+        let stands = part.supports.is_empty();
+        match (part.kind, part.seats.lies_on.get(tube)) {
+            (PartKind::Barrel, _) => StackPair::BarrelGround,
+            (_, Some(Some(_))) if stands => StackPair::RackGround,
+            _ => StackPair::FallenRackGround,
+        }
+    }
+
+    /// A rack stands on its platform as on the ground.
+    fn on_platform(&self, rack: BodyId, tube: usize, device: BodyId) -> StackPair {
+        let part = &self.parts[rack];
+        match part.seats.lies_on.get(tube) {
+            Some(Some(_)) if part.carrier == Some(device) => StackPair::RackGround,
+            _ => StackPair::FallenRackRack,
+        }
+    }
+
+    fn seat(&self, rack: BodyId, tube: usize, barrel: BodyId) -> InterfaceId {
+        let seats = &self.parts[rack].seats;
+        if seats.carries[tube] == Some(barrel) {
+            self.laws.cradle
+        } else if seats.lies_on[tube].as_ref().is_some_and(|on| on.contains(&barrel)) {
+            StackPair::BarrelRack as usize
+        } else {
+            StackPair::FallenBarrelRack as usize
+        }
+    }
+}
+
+/// What differs at one place, later entries last.
+fn changes_of(
+    spec: &StackSpec,
+    body: StackBody,
+    (level, column, row): (u32, u32, u32),
+) -> impl Iterator<Item = &BodyOverride> {
+    spec.changes_of(body, level, column).filter(move |change| change.row.is_none_or(|r| r == row))
+}

@@ -1,0 +1,120 @@
+//! Isolators in space: a platform under every bottom rack on a bearing at each of its corners, flat or in a dish.
+//!
+//! Springs and stops act at the middles of its four sides, so that they hold it from turning as well; stops stand on
+//! all four, so a corner of the way is further than its stroke.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::device::{Isolators, Path};
+use barrelstack_dynamics::solid::{Block, Bulk, Dish, Hull, Part as Matter, compound};
+use barrelstack_dynamics::{
+    BodyId, ContactPair, Counts, Link, Node, Nodes, Placed, Rotation3, Solid, Vec3,
+};
+
+use super::{FULL, Loose};
+use crate::builder::{Builder, TRIBUTARY};
+use crate::part::Part;
+use crate::stack::Stack;
+
+/// Lifts the stack and puts the platforms under it.
+pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
+    let Some(law) = builder.laws.bearing else { return };
+    builder.raise(Isolators::BEARING + Isolators::PLATE);
+    for rack in builder.on_levels_from(PartKind::Rack, 1) {
+        if !builder.parts[rack].supports.is_empty() {
+            continue;
+        }
+        let half = Vec3::new(
+            builder.parts[rack].size + Isolators::MARGIN,
+            builder.reach_along() + Isolators::MARGIN,
+            0.5 * Isolators::PLATE,
+        );
+        let place = builder.bodies[rack].pose.position;
+        let center = Vec3::new(place.x, place.y, Isolators::BEARING + half.z);
+        let platform = platform(device, builder, rack, (center, half));
+        let corner = half - Vec3::new(Isolators::MARGIN, Isolators::MARGIN, 0.0);
+        for y in [-1.0, 1.0] {
+            for x in if builder.spec.mirror { [1.0, -1.0] } else { [-1.0, 1.0] } {
+                let below = Vec3::new(center.x + x * corner.x, center.y + y * corner.y, 0.0);
+                bear(device, builder, (platform, law), below);
+            }
+        }
+        for (side, end) in builder.sides(half.x, half.y) {
+            // The ends to the left and right hold along the barrels, those near and far across them.
+            let across = end.x == 0.0;
+            let axis = if across { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
+            let link = Link {
+                name: format!("{} {side}", builder.parts[rack].name),
+                bodies: [Stack::GROUND, platform],
+                points: [Vec3::default(), builder.within(platform, center + end)],
+            };
+            let guide = device.guide(link, axis, 0.5, FULL());
+            builder.loose.push(Loose::new(guide, 0.0, Isolators::WORDS));
+        }
+    }
+}
+
+/// A platform of half sides (m) about its center (m), on which a rack stands.
+fn platform(
+    device: &Isolators,
+    builder: &mut Builder<'_>,
+    rack: BodyId,
+    (center, half): (Vec3, Vec3),
+) -> BodyId {
+    let name = format!("platform of {}", builder.parts[rack].name);
+    let rounding = 0.25 * Isolators::PLATE;
+    let block = Block { half: half - Vec3::new(rounding, rounding, rounding), rounding };
+    let matter = Matter {
+        hull: Hull::Block(block),
+        center,
+        rotation: Rotation3::identity(),
+        bulk: Bulk::of_block(half, device.mass),
+    };
+    let body = compound(&name, &[matter], TRIBUTARY);
+    let part = Part { size: half.x, ..Part::alone(&name, PartKind::Device) };
+    let platform = builder.add(body, part);
+    builder.parts[rack].carrier = Some(platform);
+    platform
+}
+
+/// A bearing of a platform on a place (m) of the ground.
+fn bear(
+    device: &Isolators,
+    builder: &mut Builder<'_>,
+    (platform, interface): (BodyId, usize),
+    below: Vec3,
+) {
+    let surface = match device.path {
+        Path::None | Path::Flat => 0,
+        Path::Dish => {
+            let radius = device.dish_radius;
+            let offset = below + Vec3::new(0.0, 0.0, radius);
+            // Drawn up to the stops.
+            let arc = |across: bool| -> Vec<Vec3> {
+                let at = |share: f64| {
+                    let way = share * device.stroke;
+                    let rise = (radius * radius - way * way).sqrt();
+                    let [x, y] = if across { [way, 0.0] } else { [0.0, way] };
+                    offset + Vec3::new(x, y, -rise)
+                };
+                (-6..=6).map(|step| at(f64::from(step) / 6.0)).collect()
+            };
+            builder.draw(Stack::GROUND, &arc(true));
+            builder.draw(Stack::GROUND, &arc(false));
+            let surfaces = &mut builder.bodies[Stack::GROUND].surfaces;
+            let rotation = Rotation3::identity();
+            surfaces.push(Placed { surface: Solid::Dish(Dish { radius }), offset, rotation });
+            surfaces.len() - 1
+        }
+    };
+    let position = builder.within(platform, below);
+    let nodes = &mut builder.bodies[platform].nodes;
+    nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: TRIBUTARY }]));
+    builder.bearings.push(ContactPair {
+        contactor: platform,
+        nodes: nodes.len() - 1,
+        target: Stack::GROUND,
+        surface,
+        interface,
+        counts: Counts::Everywhere,
+    });
+}

@@ -1,0 +1,29 @@
+//! Lids in space: as in both planes, and round, so that a barrel is let go of when it is out from under its lid to any
+//! side.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::device::{Lids, lowest};
+use barrelstack_dynamics::{Link, Vec3};
+
+use super::{FULL, Loose};
+use crate::builder::Builder;
+
+/// One on every barrel of its levels.
+pub(super) fn place(device: &Lids, builder: &mut Builder<'_>) {
+    for barrel in
+        builder.on_levels_from(PartKind::Barrel, lowest(device.levels, builder.spec.levels))
+    {
+        let part = &builder.parts[barrel];
+        let Some(rack) = part.carrier else { continue };
+        let (name, size) = (part.name.clone(), part.size);
+        let link = Link { name, bodies: [rack, barrel], points: [Vec3::default(); 2] };
+        let up = builder.turned(rack).unapply(Vec3::new(0.0, 0.0, 1.0));
+        let guide = device.guide(link, up, size, FULL());
+        builder.loose.push(Loose::new(guide, 0.0, Lids::WORDS));
+        let [half, rise] = device.drawn(size, FULL());
+        let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, rise);
+        for way in [Vec3::new(half, 0.0, 0.0), Vec3::new(0.0, half, 0.0)] {
+            builder.draw(rack, &[top - way, top + way]);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Devices on a stack in space: where each of them is made fast, a file beside this one.
+//!
+//! What a device is, bears, costs and is called is that of the plane; what acts in both planes acts both ways here.
+//! Chocks come with the racks ([`tubes`](crate::rack::tubes)), pads with the laws of contact.
+
+mod isolator;
+mod lid;
+mod strap;
+mod tie;
+mod tuned_mass;
+mod walking_stop;
+
+use barrelstack::assemble::{AssembleError, PartKind, Similitude};
+use barrelstack::device::{Devices, Words};
+use barrelstack_dynamics::{
+    BodyId, Element, Guide, Memory, ModelError, Rotation3, Spatial, State, Vec3,
+};
+
+use crate::builder::Builder;
+use crate::stack::Stack;
+
+/// Nothing of a stack in space is scaled.
+pub(crate) const FULL: fn() -> Similitude = || Similitude::new(1.0);
+
+/// An element that is not fit yet to the stack at rest.
+#[derive(Clone, Debug)]
+pub(crate) struct Loose {
+    element: Element<Spatial>,
+    /// How much longer (m) it will be than the way between its ends; negative under pretension.
+    give: f64,
+    /// Whether it is a guide on a body that turns about its axis.
+    about_axis: bool,
+    words: &'static Words,
+}
+
+impl Loose {
+    fn new(element: impl Into<Element<Spatial>>, give: f64, words: &'static Words) -> Self {
+        Self { element: element.into(), give, about_axis: false, words }
+    }
+
+    /// As the stack stands.
+    fn tighten(self, state: &State<Spatial>) -> Element<Spatial> {
+        let Self { mut element, give, about_axis, .. } = self;
+        element.fit(state, give);
+        match element {
+            Element::Guide(guide) if about_axis => Guide::about_axis(guide).into(),
+            Element::Strap(_) | Element::Rod(_) | Element::Guide(_) => element,
+        }
+    }
+}
+
+/// Puts all devices on a stack, in their order.
+pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
+    let Devices { strap, walking_stop, chock: _, lid, pad: _, isolator, tie, tuned_mass } =
+        &builder.spec.devices;
+    strap::place(strap, builder)?;
+    walking_stop::place(walking_stop, builder);
+    lid::place(lid, builder);
+    isolator::place(isolator, builder);
+    tie::place(tie, builder)?;
+    tuned_mass::place(tuned_mass, builder);
+    Ok(())
+}
+
+impl Builder<'_> {
+    /// How a body is turned.
+    fn turned(&self, body: BodyId) -> Rotation3 {
+        self.bodies[body].pose.orientation.matrix()
+    }
+
+    /// What lies at a place (m) of the stack, in the frame of a body.
+    fn within(&self, body: BodyId, place: Vec3) -> Vec3 {
+        self.turned(body).unapply(place - self.bodies[body].pose.position)
+    }
+
+    /// Draws a line through places (m) of the stack on a body.
+    fn draw(&mut self, body: BodyId, line: &[Vec3]) {
+        let line = line.iter().map(|place| self.within(body, *place)).collect();
+        self.parts[body].lines.push(line);
+    }
+
+    /// Bodies of a kind from a level on, from the ground up.
+    fn on_levels_from(&self, kind: PartKind, lowest: u32) -> Vec<BodyId> {
+        let on = |id: &BodyId| self.parts[*id].kind == kind && self.parts[*id].level >= lowest;
+        (0..self.parts.len()).filter(on).collect()
+    }
+
+    /// The left and the right end of what reaches `across` (m) from its middle, and the near and the far one of what
+    /// reaches `along`: the names of the sides, and where they are.
+    ///
+    /// In the mirror left and right change places, in the order of sums, too.
+    fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
+        let [left, right] =
+            [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));
+        let [near, away] =
+            [("near", -along), ("away", along)].map(|(side, y)| (side, Vec3::new(0.0, y, 0.0)));
+        if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
+    }
+
+    /// The rack beside one, so many columns and rows further on its level.
+    fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
+        let at = |id: BodyId| {
+            let part = &self.parts[id];
+            [part.level, part.column, part.row].map(i64::from)
+        };
+        let [level, column, row] = at(rack);
+        let next = [level, column + columns, row + rows];
+        (0..self.parts.len()).find(|id| self.parts[*id].kind == PartKind::Rack && at(*id) == next)
+    }
+}
+
+impl Stack {
+    /// Fits the elements to the stack as it stands in `state`; says whether some bear something from the start.
+    pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
+        let loose = std::mem::take(&mut self.loose);
+        if loose.is_empty() {
+            return Ok(false);
+        }
+        self.devices.extend(loose.iter().map(|loose| loose.words));
+        let fit: Vec<_> = loose.into_iter().map(|loose| loose.tighten(state)).collect();
+        let strained = fit.iter().any(|element| element.load(state).force != 0.0);
+        let mut elements = self.model.elements().to_vec();
+        elements.extend(fit);
+        state.memory = vec![Memory::default(); elements.len()];
+        self.model.fasten(elements)?;
+        Ok(strained)
+    }
+}

@@ -1,0 +1,69 @@
+//! Straps in space: those of both planes, each where it is plumb on the stack as drawn.
+//!
+//! A strap over a barrel lies on its round at half its length, as in the plane across the barrels: made fast at the
+//! ends of the horizontal diameter, and from there straight down to the rack.
+//! Where levels are tied together every rack has one strap down each of its four sides, at its middle: those to the
+//! left and right are the ones that the plane across the barrels has, those nearest and farthest the ones along them.
+
+use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::device::{Straps, Ties, lowest};
+use barrelstack_dynamics::{BodyId, Link, Vec3};
+
+use super::{FULL, Loose};
+use crate::builder::Builder;
+
+/// From the ground up, those on the left first.
+pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
+    if !device.is_on() {
+        return Ok(());
+    }
+    let lowest = lowest(device.levels, builder.spec.levels);
+    let along = builder.reach_along();
+    for body in 0..builder.parts.len() {
+        let part = &builder.parts[body];
+        let sides = builder.sides(part.size, along);
+        match part.kind {
+            PartKind::Barrel => {
+                let Some(rack) = part.carrier.filter(|_| part.level >= lowest) else { continue };
+                for side in &sides[..2] {
+                    strap(device, builder, [body, rack], *side)?;
+                }
+            }
+            PartKind::Rack => {
+                // The lowest of the strapped levels is tied to nothing below it.
+                let tied = device.ties == Ties::LevelsTogether && part.level > lowest;
+                let below = builder.parts.iter().position(|other| {
+                    other.kind == PartKind::Rack
+                        && (other.column, other.row) == (part.column, part.row)
+                        && other.level + 1 == part.level
+                });
+                let Some(below) = below.filter(|_| tied) else { continue };
+                for side in sides {
+                    strap(device, builder, [body, below], side)?;
+                }
+            }
+            PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => {}
+        }
+    }
+    Ok(())
+}
+
+/// One from a side of the upper body straight down to the lower one.
+fn strap(
+    device: &Straps,
+    builder: &mut Builder<'_>,
+    [upper, lower]: [BodyId; 2],
+    (side, from): (&str, Vec3),
+) -> Result<(), AssembleError> {
+    let Builder { parts, bodies, .. } = builder;
+    let apart = bodies[upper].pose.position - bodies[lower].pose.position;
+    let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);
+    let over = from + Vec3::new(apart.x, apart.y, 0.0);
+    let points = [builder.turned(upper).unapply(from), builder.turned(lower).unapply(over)];
+    let link = Link { name, bodies: [upper, lower], points };
+    let (strap, give) = device
+        .strap(link, apart.z, FULL())
+        .map_err(|reason| AssembleError::NotInSpace { field: "stack.strap", reason })?;
+    builder.loose.push(Loose::new(strap, give, Straps::WORDS));
+    Ok(())
+}

@@ -1,0 +1,87 @@
+//! Ties in space: from the middles of the four sides of a rack, those to the left and right as in the plane across the
+//! barrels, those at the near and the far side as in the plane along them, whose left is near.
+
+use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
+use barrelstack_dynamics::{BodyId, Link, Vec3};
+
+use super::{FULL, Loose};
+use crate::builder::Builder;
+use crate::stack::Stack;
+
+/// A side of a rack, before mirroring.
+struct End {
+    name: &'static str,
+    on: Side,
+    /// How many columns and rows further the rack beside it is.
+    beside: [i64; 2],
+}
+
+const ENDS: [End; 4] = [
+    End { name: "left", on: Side::Left, beside: [-1, 0] },
+    End { name: "right", on: Side::Right, beside: [1, 0] },
+    End { name: "near", on: Side::Left, beside: [0, -1] },
+    End { name: "away", on: Side::Right, beside: [0, 1] },
+];
+
+/// From the ground up.
+pub(super) fn place(device: &AnchorTies, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
+    if !device.is_on() {
+        return Ok(());
+    }
+    let spec = builder.spec;
+    if device.to == Anchor::Neighbors && spec.racks_per_level() * spec.racks_along() < 2 {
+        return Err(AssembleError::NotInSpace {
+            field: "stack.tie.to",
+            reason: "\"neighbors\" ties racks side by side, but this stack has one rack on a level: set stack.columns \
+                     or stack.columns_along higher, or stack.tie.to = \"wall\""
+                .into(),
+        });
+    }
+    for rack in builder.on_levels_from(PartKind::Rack, lowest(device.levels, spec.levels)) {
+        for end in &ENDS {
+            tie(device, builder, rack, end);
+        }
+    }
+    Ok(())
+}
+
+fn tie(device: &AnchorTies, builder: &mut Builder<'_>, rack: BodyId, end: &End) {
+    let [x, y] = end.beside.map(|steps| steps as f64);
+    let out = builder.mirrored(Vec3::new(x, y, 0.0));
+    let reach = if end.beside[0] == 0 { builder.reach_along() } else { builder.parts[rack].size };
+    let from = builder.bodies[rack].pose.position + out * reach;
+    let (other, to, name) = match (device.to, builder.beside(rack, end.beside)) {
+        // Each neighbor is met once.
+        (Anchor::Neighbors, Some(next)) if end.on == Side::Right => {
+            let to = builder.bodies[next].pose.position - out * reach;
+            (next, to, builder.parts[next].name.clone())
+        }
+        // Between racks there is no wall.
+        (Anchor::Neighbors, _) | (Anchor::Wall, Some(_)) => return,
+        (Anchor::Wall, None) => {
+            (Stack::GROUND, from + out * device.distance, format!("wall {}", end.name))
+        }
+        (Anchor::Ceiling, _) => {
+            let up = Vec3::new(0.0, 0.0, device.distance);
+            (Stack::GROUND, from + up, format!("ceiling {}", end.name))
+        }
+    };
+    if other == Stack::GROUND {
+        if ![end.on, Side::Both].contains(&device.side) {
+            return;
+        }
+        let half = match device.to {
+            Anchor::Ceiling => out * 0.15,
+            Anchor::Wall | Anchor::Neighbors => Vec3::new(0.0, 0.0, 0.3),
+        };
+        builder.draw(other, &[to - half, to + half]);
+    }
+    let link = Link {
+        name: format!("{}-{name}", builder.parts[rack].name),
+        bodies: [rack, other],
+        points: [builder.within(rack, from), builder.within(other, to)],
+    };
+    let tie = device.tie(link, 1.0, FULL());
+    builder.loose.push(Loose::new(tie, device.slack, AnchorTies::WORDS));
+}

@@ -1,0 +1,72 @@
+//! Stops in space that keep racks from walking on the barrels below.
+//!
+//! A hook is met along the axis of its barrel, which turns under it, at the height of the rack: it is off once the rack
+//! is further from that axis, upward or around the barrel, than at rest by its lip.
+//! A saddle is met across the barrel, wherever along it the rack lies, and is off once the rack has risen by its lip.
+
+use barrelstack::assemble::PartKind;
+use barrelstack::device::{Holds, WalkingStops, lowest};
+use barrelstack_dynamics::{BodyId, Guide, Link, Vec3};
+
+use super::{FULL, Loose};
+use crate::builder::Builder;
+use crate::rack::Heights;
+
+/// Between racks and each of the barrels below.
+pub(super) fn place(device: &WalkingStops, builder: &mut Builder<'_>) {
+    if !device.is_on() {
+        return;
+    }
+    for rack in builder.on_levels_from(PartKind::Rack, lowest(device.levels, builder.spec.levels)) {
+        for barrel in builder.parts[rack].supports.clone() {
+            if device.holds != Holds::Across {
+                hook(device, builder, [rack, barrel]);
+            }
+            if device.holds != Holds::Along {
+                saddle(device, builder, [rack, barrel]);
+            }
+        }
+    }
+}
+
+fn link(builder: &Builder<'_>, rack: BodyId, barrel: BodyId, way: &str) -> String {
+    format!("{}-{} {way}", builder.parts[rack].name, builder.parts[barrel].name)
+}
+
+fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyId; 2]) {
+    let axis = builder.turned(barrel).unapply(Vec3::new(0.0, 1.0, 0.0));
+    let center = builder.bodies[barrel].pose.position;
+    let over =
+        center + Vec3::new(0.0, 0.0, Heights::of(&builder.spec.rack, &builder.barrel).underside);
+    let point = builder.within(rack, over);
+    let name = link(builder, rack, barrel, "along");
+    let link = Link { name, bodies: [barrel, rack], points: [Vec3::default(), point] };
+    let guide = device.guide(link, axis, FULL());
+    let hook = Loose { about_axis: true, ..Loose::new(guide, 0.0, WalkingStops::WORDS) };
+    builder.loose.push(hook);
+    // From the rack over both ends of the barrel.
+    for side in [-1.0, 1.0] {
+        let at = |y: f64, z: f64| over + Vec3::new(0.0, side * y, z);
+        let end = 0.5 * builder.spec.barrel.length + device.gap;
+        let rail = builder.spec.rack.rail_half_spacing;
+        builder.draw(rack, &[at(rail, 0.0), at(end, 0.0), at(end, -device.lip.max(0.05))]);
+    }
+}
+
+fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyId; 2]) {
+    let [across, along] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+    let name = link(builder, rack, barrel, "across");
+    let link = Link { name, bodies: [rack, barrel], points: [Vec3::default(); 2] };
+    let turned = builder.turned(rack);
+    let guide =
+        Guide { free: turned.unapply(along), ..device.guide(link, turned.unapply(across), FULL()) };
+    builder.loose.push(Loose::new(guide, 0.0, WalkingStops::WORDS));
+    let size = builder.parts[barrel].size;
+    let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, size);
+    for side in [-1.0, 1.0] {
+        let at = |x: f64, z: f64| top + Vec3::new(side * x, 0.0, z);
+        // On the round, as far aside as a saddle reaches.
+        let foot = 0.7 * size + device.gap;
+        builder.draw(rack, &[at(foot, 0.0), at(foot, -device.lip.max(0.25 * size))]);
+    }
+}
