@@ -6,6 +6,7 @@ mod inputs;
 mod planes;
 mod sections;
 mod spectrum;
+mod tables;
 mod trust;
 mod words;
 
@@ -24,7 +25,8 @@ use crate::verify::Verification;
 pub use glossary::WORDS;
 pub(crate) use inputs::{setting_row, shown};
 pub(crate) use sections::traces;
-pub use sections::{device as device_table, standing_range, stress_figure};
+pub use sections::{standing_range, stress_figure};
+pub use tables::{demand_table, device_table, interface_table};
 pub use words::device as device_sentence;
 pub(crate) use words::{headline, provenance};
 

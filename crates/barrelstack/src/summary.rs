@@ -13,7 +13,7 @@ use crate::run::Run;
 use crate::scenario::View;
 use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
-use crate::watch::StressEnvelope;
+use crate::watch::{Joint, StressEnvelope};
 
 pub use devices::{Device, Devices, ElementSummary};
 
@@ -141,7 +141,7 @@ described! {
         pub peak_vertical: f64 as "N",
         /// When.
         pub peak_vertical_at: f64 as "s",
-        /// Largest horizontal force on the upper body, with its sign, and when.
+        /// Largest horizontal force on the upper body, and when; in a plane with its sign.
         pub peak_horizontal: f64 as "N",
         /// When.
         pub peak_horizontal_at: f64 as "s",
@@ -381,18 +381,23 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
         .collect()
 }
 
-fn joints(run: &Run) -> Vec<JointSummary> {
-    run.recording
-        .joints
-        .iter()
-        .filter(|joint| joint.peak_vertical.0 > 0.0)
-        .map(|joint| JointSummary {
-            name: joint.name.clone(),
+impl JointSummary {
+    /// That of a joint with its name; none where nothing ever leaned on it.
+    pub fn of(name: String, joint: &Joint) -> Option<Self> {
+        let (peak_vertical, peak_vertical_at) = joint.peak_vertical;
+        let (peak_horizontal, peak_horizontal_at) = joint.peak_horizontal;
+        (peak_vertical > 0.0).then_some(Self {
+            name,
             at_rest: joint.at_rest,
-            peak_vertical: joint.peak_vertical.0,
-            peak_vertical_at: joint.peak_vertical.1,
-            peak_horizontal: joint.peak_horizontal.0,
-            peak_horizontal_at: joint.peak_horizontal.1,
+            peak_vertical,
+            peak_vertical_at,
+            peak_horizontal,
+            peak_horizontal_at,
         })
-        .collect()
+    }
+}
+
+fn joints(run: &Run) -> Vec<JointSummary> {
+    let joints = run.recording.forces().joints.iter();
+    joints.filter_map(|joint| JointSummary::of(joint.name(&run.assembly), joint)).collect()
 }

@@ -273,7 +273,8 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
             events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
         }
     }
-    if sight != Sight::Above {
+    // What gives way has no direction, and is told once.
+    if sight == Sight::Across {
         for ((element, words), fate) in run.devices() {
             if let Some(time) = fate.broken_at {
                 let link = element.link();

@@ -2,7 +2,7 @@
 
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
-use barrelstack_dynamics::{BodyId, Linear as _, Rotation3, Spatial, State, Vec3, math};
+use barrelstack_dynamics::{BodyId, Linear as _, Rotation3, Scratch, Spatial, State, Vec3, math};
 use serde::Serialize;
 
 use crate::stack::Stack;
@@ -63,8 +63,14 @@ pub struct Fate {
     pub fell_at: Option<f64>,
     /// Largest drop (m) below its place at rest.
     pub drop: f64,
+    /// Largest force (N) on it since it had fallen.
+    pub fall_force: f64,
     /// Where it is (m), relative to the ground and its place at rest.
     pub moved: Vec3,
+    /// The same at the moment of the collapse; at the end if there was none.
+    pub moved_at_collapse: Vec3,
+    /// Displacement (m) across and along relative to what it stands on, in the mean of all of that, at the end.
+    pub residual_slip: [f64; 2],
     /// Largest horizontal displacement (m) relative to the ground, before the collapse.
     pub peak_displacement: f64,
     /// Largest displacement (m) across and along relative to what it stands on, in the mean of all of that, before
@@ -105,7 +111,10 @@ impl<'a> Fates<'a> {
             left_seat: None,
             fell_at: None,
             drop: 0.0,
+            fall_force: 0.0,
             moved: Vec3::default(),
+            moved_at_collapse: Vec3::default(),
+            residual_slip: [0.0; 2],
             peak_displacement: 0.0,
             peak_slip: [0.0; 2],
             peak_tilt: 0.0,
@@ -140,13 +149,30 @@ impl<'a> Fates<'a> {
         self.first_fall
     }
 
-    /// Looks at an accepted state.
-    pub fn observe(&mut self, state: &State<Spatial>) {
-        let ground = state.poses[Stack::GROUND].position;
-        let standing = self.collapse.is_none();
+    /// The fates of all bodies at the end of a run, in the order of the parts.
+    pub fn at_end(mut self, state: &State<Spatial>) -> Vec<Fate> {
+        self.turn(state);
+        let mut slips = Vec::new();
+        for i in 1..self.all.len() {
+            self.slips(state, i, &mut slips);
+            let Vec3 { x, y, .. } = mean(&slips);
+            self.all[i].residual_slip = [x, y];
+        }
+        self.all
+    }
+
+    /// Looks at how the bodies are turned.
+    fn turn(&mut self, state: &State<Spatial>) {
         for (turned, pose) in self.turned.iter_mut().zip(&state.poses) {
             *turned = pose.orientation.matrix();
         }
+    }
+
+    /// Looks at an accepted state.
+    pub fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
+        let ground = state.poses[Stack::GROUND].position;
+        let standing = self.collapse.is_none();
+        self.turn(state);
         let mut slips = Vec::with_capacity(4);
         for i in 1..self.all.len() {
             let kind = self.stack.parts[i].kind;
@@ -159,6 +185,12 @@ impl<'a> Fates<'a> {
                 if kind == PartKind::Barrel && self.first_fall.is_none() {
                     self.first_fall = Some(state.time);
                 }
+            }
+            if fate.fell_at.is_some() {
+                fate.fall_force = fate.fall_force.max(scratch.wrenches[i].force.length());
+            }
+            if standing {
+                fate.moved_at_collapse = moved;
             }
             if self.all[i].left_seat.is_some() && !standing {
                 continue;

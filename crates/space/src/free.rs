@@ -38,6 +38,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
         levels: 0,
         bilge_radius: 0.0,
         reach: [0.0; 2],
+        stave_capacity: 0.0,
         loose: Vec::new(),
         devices: Vec::new(),
     })

@@ -30,6 +30,7 @@ mod rack;
 pub mod report;
 mod rest;
 pub mod run;
+pub mod seats;
 pub mod stack;
 mod step;
 pub mod summary;

@@ -1,7 +1,7 @@
 //! The page of a run in space: its verdict, three views that move together, moments, numbers.
 
 use barrelstack::outcome::Outcome;
-use barrelstack::report::{WORDS, device_table, legend};
+use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend};
 use barrelstack::variants::Range;
 use barrelstack_report::{
     Block, Cell, Document, Figure, FigureKind, Pane, Players, Strip, Table, Verdict, capital,
@@ -69,6 +69,15 @@ pub fn document(answer: &Answer) -> Document {
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("What became of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
+        if !free {
+            blocks.extend([heading("Demands"), Block::Table(demand_table(&summary.demands))]);
+            let table = interface_table(
+                "Force on the upper body; horizontal forces whatever their direction. All steps of the run count, \
+                 falls too.",
+                &summary.interfaces,
+            );
+            blocks.extend([heading("What the seats bore"), Block::Table(table)]);
+        }
         for device in &summary.devices.0 {
             let table = device_table(device);
             if !table.is_empty() {

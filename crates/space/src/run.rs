@@ -21,6 +21,7 @@ use barrelstack_dynamics::{
 use crate::fate::{Fate, Fates, Heading};
 use crate::ground::Ground;
 use crate::rest::Rest;
+use crate::seats::Seats;
 use crate::stack::Stack;
 
 /// A stack at rest, ready to be shaken.
@@ -66,6 +67,8 @@ pub struct Run {
     pub first_fall: Option<f64>,
     /// What became of every element of the devices, in the order of the model.
     pub elements: Vec<ElementFate>,
+    /// What the seats bore.
+    pub seats: Seats,
     /// Where all bodies were.
     pub frames: Frames,
     /// Where all bodies are at the end, and how they move.
@@ -192,6 +195,7 @@ pub fn run_on(
     let mut watch = Watch {
         fates: Fates::new(&stack, &state, thresholds(scenario)),
         elements: ElementFates::default(),
+        seats: Seats::new(&stack, state.time, &scratch),
         rest: Rest::new(scenario, &stack, &ground),
         frames: Frames::default(),
         every: 1.0 / scenario.record.frame_rate,
@@ -202,7 +206,7 @@ pub fn run_on(
         ending: None,
     };
     let result = simulate(&stack.model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-    let Watch { fates, elements, frames, ending, .. } = watch;
+    let Watch { fates, elements, seats, frames, ending, .. } = watch;
     let ending = ending.unwrap_or(Ending::of_time(scenario));
     let ended = result.map(|totals| Ended::of(&totals));
     let judge = || judge(&stack, &fates);
@@ -210,7 +214,8 @@ pub fn run_on(
         Verdict::of(ended, judge, state.time, ground.end(), ending);
     let warnings = ground.warnings.iter().cloned().chain(told).collect();
     let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
-    let (first_fall, all) = (fates.first_fall(), fates.all().to_vec());
+    let first_fall = fates.first_fall();
+    let all = fates.at_end(&state);
     Ok(Run {
         scenario: scenario.clone(),
         outcome,
@@ -218,6 +223,7 @@ pub fn run_on(
         fates: all,
         first_fall,
         elements: elements.0,
+        seats,
         frames,
         energy,
         settled,
@@ -284,6 +290,7 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
 struct Watch<'a> {
     fates: Fates<'a>,
     elements: ElementFates,
+    seats: Seats,
     rest: Rest<'a>,
     frames: Frames,
     /// Time (s) between two frames.
@@ -304,8 +311,9 @@ impl Observer<Spatial> for Watch<'_> {
         scratch: &Scratch<Spatial>,
         _: &EnergyLedger<Spatial>,
     ) -> ControlFlow<()> {
-        self.fates.observe(state);
+        self.fates.observe(state, scratch);
         self.elements.observe(state, scratch);
+        self.seats.observe(state.time, self.fates.collapse().is_none(), scratch);
         let time = state.time;
         if time >= self.frames.times.len() as f64 * self.every {
             self.frames.times.push(time);

@@ -31,6 +31,8 @@ pub struct Stack {
     /// How far (m) a rack may move on the barrels below, across and along them, before nothing holds it there, as in
     /// the plane of each.
     pub reach: [f64; 2],
+    /// Vertical force (N) that the staves of a barrel bear between its racks; zero for a free scene.
+    pub stave_capacity: f64,
     /// Elements of devices that are not fit yet: that is done on the stack at rest.
     pub(crate) loose: Vec<Loose>,
     /// What is said of the device of every element of the model.
@@ -89,7 +91,19 @@ impl Stack {
         let bilge_radius = barrel.stave_radius + barrel.rounding - barrel.stave_offset;
         let height = f64::from(spec.levels - 1) * pitch + heights.axis + bilge_radius + raised;
         let levels = spec.levels;
-        Ok(Self { model, parts, step, height, levels, bilge_radius, reach, loose, devices })
+        let stave_capacity = spec.barrel.stave_capacity;
+        Ok(Self {
+            model,
+            parts,
+            step,
+            height,
+            levels,
+            bilge_radius,
+            reach,
+            stave_capacity,
+            loose,
+            devices,
+        })
     }
 }
 

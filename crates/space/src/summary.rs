@@ -5,7 +5,7 @@ use barrelstack::demand::Demands;
 use barrelstack::ground::MotionSummary;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
-use barrelstack::summary::{Devices, EnergyBooks, Provenance};
+use barrelstack::summary::{Devices, EnergyBooks, JointSummary, Provenance};
 use barrelstack::variants::Spread;
 use barrelstack::watch::Ending;
 use barrelstack_dynamics::Vec3;
@@ -34,8 +34,10 @@ described! {
         pub outcome: OutcomeInSpace,
         /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodyInSpace>,
-        /// Demands on the stack, those that space knows.
+        /// Demands on the stack.
         pub demands: Demands,
+        /// Forces between bodies that lean on each other; none where the run is invalid.
+        pub interfaces: Vec<JointSummary>,
         /// What every element of the devices bore, where there are any.
         #[serde(flatten)]
         pub devices: Devices,
@@ -122,6 +124,8 @@ described! {
         pub fell_at: Option<f64> as "s",
         /// Largest drop below its place at rest.
         pub drop: f64 as "m",
+        /// Largest force on it since it had fallen.
+        pub fall_force: Option<f64> as "N",
         /// Displacement x, y, z against the ground and its place at rest, at the end.
         pub moved: [f64; 3] as "m",
         /// Its center of mass x, y, z at the end, where the ground was at the start.
@@ -142,6 +146,10 @@ described! {
         pub peak_uplift: f64 as "m",
         /// Largest tilt while the stack stood; racks only.
         pub peak_tilt: Option<f64> as "rad",
+        /// Largest contact force on it while the stack stood over the largest at rest.
+        pub stress_amplification: Option<f64> as "1",
+        /// The same in the mean of what presses at rest.
+        pub mean_stress_amplification: Option<f64> as "1",
     }
 
     /// How it was computed.
@@ -216,6 +224,7 @@ impl Summary {
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound { bodies(run) } else { Vec::new() },
             demands: if sound { demands(run) } else { Demands::default() },
+            interfaces: if sound { interfaces(run) } else { Vec::new() },
             devices: Devices::borne(&run.devices()),
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: motion(first),
@@ -277,12 +286,18 @@ fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
     summary
 }
 
+fn interfaces(run: &Run) -> Vec<JointSummary> {
+    let named = run.seats.named(&run.stack);
+    named.filter_map(|(name, joint)| JointSummary::of(name, joint)).collect()
+}
+
 fn bodies(run: &Run) -> Vec<BodyInSpace> {
     let ends = run.last.poses.iter().zip(&run.last.twists);
     let parts = run.stack.parts.iter().zip(&run.fates).zip(ends).skip(1);
     let three = |v: Vec3| [v.x, v.y, v.z];
     parts
-        .map(|((part, fate), (pose, twist))| BodyInSpace {
+        .enumerate()
+        .map(|(at, ((part, fate), (pose, twist)))| BodyInSpace {
             name: part.name.clone(),
             kind: part.kind.name(),
             level: part.level,
@@ -292,6 +307,7 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             left_seat_to: fate.left_seat.map(|(.., heading)| heading.name()),
             fell_at: fate.fell_at,
             drop: fate.drop,
+            fall_force: fate.fell_at.map(|_| fate.fall_force),
             moved: three(fate.moved),
             position: three(pose.position),
             orientation: {
@@ -305,6 +321,9 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
             peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
+            // The ground, which comes first, is left out.
+            stress_amplification: run.seats.amplification(at + 1),
+            mean_stress_amplification: run.seats.mean_amplification(at + 1),
         })
         .collect()
 }

@@ -10,8 +10,9 @@ use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::variants::{Asked, Plane, Spread, Told, planes};
-use barrelstack::watch::Ending;
+use barrelstack::watch::{Ending, Joint};
 use barrelstack::{RunFailure, Scenario, pool};
+use barrelstack_dynamics::Vec3;
 
 use crate::fate::Heading;
 use crate::ground::Ground;
@@ -22,7 +23,7 @@ use crate::summary::{Directions, Summary};
 /// What became of one variant in space.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What a case of a plane tells, too; without stresses, forces and trails.
+    /// What a case of a plane tells, too; without trails.
     pub result: CaseResult,
     /// In which direction the first body left its seat.
     pub first: Option<Heading>,
@@ -61,7 +62,18 @@ impl Case {
             } else {
                 Vec::new()
             },
+            fall_forces: if sound {
+                run.fallen().map(|body| run.fates[body].fall_force).collect()
+            } else {
+                Vec::new()
+            },
             demands: if sound { demands(run) } else { Demands::default() },
+            joints: if sound {
+                let named = run.seats.named(&run.stack);
+                named.map(|(name, joint)| (name, joint.clone())).collect()
+            } else {
+                Vec::new()
+            },
             residual_displacement: sound.then(|| barrels.iter().map(way).fold(0.0, f64::max)),
             ending: Some(run.ending),
             cut: Some(if run.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
@@ -85,22 +97,37 @@ impl Case {
     }
 }
 
-/// The demands that space knows: displacements are horizontal, whatever their direction.
-pub(crate) fn demands(run: &Run) -> Demands {
-    let of = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> f64| {
-        let bodies = run.stack.of_kind(kind).filter(|body| on(run.stack.parts[*body].level));
-        bodies.map(value).reduce(f64::max)
+/// The demands: displacements are horizontal, whatever their direction.
+pub fn demands(run: &Run) -> Demands {
+    let Run { stack, fates, seats, .. } = run;
+    let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
+        let bodies = stack.of_kind(kind).filter(|body| on(stack.parts[*body].level));
+        bodies.filter_map(value).reduce(f64::max)
     };
-    let slip = |body: usize| {
-        let [x, y] = run.fates[body].peak_slip;
-        (x * x + y * y).sqrt()
+    let (barrel, rack) = (PartKind::Barrel, PartKind::Rack);
+    let (bottom, any) = (|level: u32| level == 1, |_: u32| true);
+    let length = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+    let drift = |body: usize| Some(fates[body].peak_displacement / stack.height);
+    let slip = |body: usize| Some(length(fates[body].peak_slip));
+    let collapsed = |body: usize| {
+        let Vec3 { x, y, .. } = fates[body].moved_at_collapse;
+        Some(length([x, y]))
     };
-    let drift = |body: usize| run.fates[body].peak_displacement / run.stack.height;
+    let load = |body: usize| {
+        let of = |joint: &&Joint| joint.upper == body || joint.lower == body;
+        let loads = seats.joints.joints.iter().filter(of).map(|joint| joint.peak_vertical.0);
+        loads.reduce(f64::max).map(|load| load / stack.stave_capacity)
+    };
     Demands {
-        top_drift_ratio: of(PartKind::Barrel, &|level| level == run.stack.levels, &drift),
-        base_slip_peak: of(PartKind::Rack, &|level| level == 1, &slip),
-        rack_walk_peak: of(PartKind::Rack, &|level| level > 1, &slip),
-        ..Demands::default()
+        top_drift_ratio: most(barrel, &|level| level == stack.levels, &drift),
+        stress_amplification: most(barrel, &bottom, &|body| seats.amplification(body)),
+        mean_stress_amplification: most(barrel, &bottom, &|body| seats.mean_amplification(body)),
+        stave_utilization: most(barrel, &any, &load),
+        base_slip_peak: most(rack, &bottom, &slip),
+        base_slip_at_collapse: most(rack, &bottom, &collapsed),
+        base_slip_residual: most(rack, &bottom, &|body| Some(length(fates[body].residual_slip))),
+        rack_walk_peak: most(rack, &|level| level > 1, &slip),
+        rack_tilt_peak: most(rack, &any, &|body| Some(fates[body].peak_tilt)),
     }
 }
 

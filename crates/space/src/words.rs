@@ -1,5 +1,6 @@
 //! What is said of a stack in space, in sentences: those of a plane, and directions besides.
 
+use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::Outcome;
 use barrelstack::report::device_sentence;
 use barrelstack::scenario::View;
@@ -108,6 +109,15 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 /// Most bodies of a free scene that are told one by one; files tell all.
 const MOST_TOLD: usize = 10;
 
+/// The demands that are told in print; the page tells all.
+const TOLD: [&str; 5] = [
+    "top_drift_ratio",
+    "stress_amplification",
+    "stave_utilization",
+    "base_slip_peak",
+    "rack_walk_peak",
+];
+
 /// The rows of the summary for people: name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
@@ -136,14 +146,11 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
         let speed = (u * u + v * v + w * w).sqrt();
         row(&body.name, format!("moved by ({x:.3}, {y:.3}, {z:.3}) m, ends at {speed:.3} m/s"));
     }
-    if let Some(drift) = summary.demands.top_drift_ratio {
-        row("drift of the top", format!("{:.1} % of the height", 100.0 * drift));
-    }
-    if let Some(slip) = summary.demands.base_slip_peak {
-        row("slip on the ground", format!("{:.1} cm", 100.0 * slip));
-    }
-    if let Some(walk) = summary.demands.rack_walk_peak {
-        row("walk of a rack", format!("{:.1} cm", 100.0 * walk));
+    for demand in TOLD {
+        let told = DEMANDS.iter().find(|one| one.name == demand);
+        if let Some((one, value)) = told.and_then(|one| Some((one, one.shown(&summary.demands)?))) {
+            row(one.label, format!("{value:.*} {}", one.decimals, one.shown_unit));
+        }
     }
     if let Some(energy) = &summary.energy {
         row(

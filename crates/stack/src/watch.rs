@@ -19,7 +19,7 @@ use crate::scenario::Scenario;
 
 pub use elements::{ElementFate, ElementFates};
 pub use fate::{Fate, Fates, Loss, Thresholds};
-pub use joints::{Joint, Joints};
+pub use joints::{Joint, Joints, leans_on};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
 pub(crate) use stress::StressWatch;

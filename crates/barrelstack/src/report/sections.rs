@@ -8,12 +8,12 @@ use barrelstack_report::{
     Series, SeriesStyle, Strip, Table, Trace, capital, significant,
 };
 
+use super::tables::{demand_table, device_table, interface_table};
 use super::{drawing, inputs, planes, spectrum, trust};
 use crate::assemble::PartKind;
-use crate::demand::DEMANDS;
 use crate::ensemble::RATE;
 use crate::run::Run;
-use crate::summary::{Device, Summary};
+use crate::summary::Summary;
 use crate::variants::{Range, Shown, Variants};
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
@@ -59,13 +59,13 @@ fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
     section(&mut blocks, 3, "Displacements", displacements(run, variants));
-    let table = demand_table(summary);
+    let table = demand_table(&summary.demands);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     section(&mut blocks, 3, "Demands", shown);
     section(&mut blocks, 3, "Normal stress on barrels and racks", stresses(run));
     section(&mut blocks, 3, "Forces between bodies", forces(run, summary));
     for one in &summary.devices.0 {
-        section(&mut blocks, 3, &capital(one.words.many), device(one));
+        section(&mut blocks, 3, &capital(one.words.many), device_table(one));
     }
     section(&mut blocks, 3, "Ground motion", motion(run));
     section(&mut blocks, 3, "Energy books", energy(run, summary));
@@ -119,18 +119,13 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
 }
 
 /// A time (s) or a height (m): hundredths can be seen.
-fn hundredths(value: Option<f64>) -> Cell {
+pub(super) fn hundredths(value: Option<f64>) -> Cell {
     value.map_or(Cell::Missing, |value| Cell::Measured(value, 2))
 }
 
 /// A length (m) in centimeters, to the millimeter.
 fn centimeters(value: f64) -> Cell {
     Cell::Measured(100.0 * value, 1)
-}
-
-/// A force (N) in kilonewtons, to the weight of a kilogram.
-fn kilonewtons(value: f64) -> Cell {
-    Cell::Measured(1e-3 * value, 2)
 }
 
 fn fates(summary: &Summary) -> Table {
@@ -155,20 +150,6 @@ fn fates(summary: &Summary) -> Table {
             centimeters(body.peak_slip),
             centimeters(body.residual_displacement),
         ]);
-    }
-    table
-}
-
-fn demand_table(summary: &Summary) -> Table {
-    let mut table = Table::new(
-        "While the stack stood, unless said otherwise.",
-        &[("demand", ""), ("value", ""), ("unit", "")],
-    );
-    for demand in DEMANDS {
-        if let Some(value) = demand.shown(&summary.demands) {
-            let (label, unit) = (Cell::text(demand.label), Cell::text(demand.shown_unit));
-            table.rows.push(vec![label, Cell::Measured(value, demand.decimals), unit]);
-        }
     }
     table
 }
@@ -348,54 +329,15 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     }
 }
 
-/// What the elements of a device bore, as a table; none where it is not there.
-pub fn device(Device { words, elements }: &Device) -> Vec<Block> {
-    let largest = format!("{}, largest", words.force);
-    let mut table = Table::new(
-        format!(
-            "Largest {} of every {} in the whole run. Left and right are those of the picture.",
-            words.force, words.one
-        ),
-        &[(words.one, ""), (&largest, "kN"), ("at", "s"), (words.broken, "s")],
-    );
-    for element in elements {
-        let at = (element.peak != 0.0).then_some(element.peak_at);
-        table.rows.push(vec![
-            Cell::text(&element.name),
-            kilonewtons(element.peak),
-            hundredths(at),
-            hundredths(element.broken_at),
-        ]);
-    }
-    if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }
-}
-
 fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
     if summary.interfaces.is_empty() {
         return Vec::new();
     }
-    let mut table = Table::new(
+    let table = interface_table(
         "Force on the upper body; horizontal forces with their sign, positive to the right. All \
          steps of the run count, falls too.",
-        &[
-            ("interface", ""),
-            ("vertical at rest", "kN"),
-            ("vertical, largest", "kN"),
-            ("at", "s"),
-            ("horizontal, largest", "kN"),
-            ("at", "s"),
-        ],
+        &summary.interfaces,
     );
-    for joint in &summary.interfaces {
-        table.rows.push(vec![
-            Cell::text(&joint.name),
-            kilonewtons(joint.at_rest),
-            kilonewtons(joint.peak_vertical),
-            hundredths(Some(joint.peak_vertical_at)),
-            kilonewtons(joint.peak_horizontal),
-            hundredths(Some(joint.peak_horizontal_at)),
-        ]);
-    }
     let recording = &run.recording;
     let mut blocks = Vec::new();
     if let Some(base) = recording.joints.first() {

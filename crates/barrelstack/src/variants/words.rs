@@ -36,6 +36,15 @@ pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     }
 }
 
+/// A number of variants of which none is left out.
+fn all_of(variants: u32) -> String {
+    match variants {
+        1 => "the one variant".to_owned(),
+        2 => "both variants".to_owned(),
+        more => format!("all {more} variants"),
+    }
+}
+
 /// The verdict of one plane.
 fn alone(spread: &Spread) -> String {
     let Spread { variants, collapsed, interval, .. } = spread;
@@ -46,19 +55,23 @@ fn alone(spread: &Spread) -> String {
     let standing = variants - collapsed;
     // What stands in the middle of a motion has not stood it.
     if let Some(until) = spread.standing_until.filter(|_| share <= STANDS) {
-        let count = if standing == *variants { "all".to_owned() } else { format!("{standing} of") };
+        let share = if standing == *variants {
+            all_of(*variants)
+        } else {
+            format!("{standing} of {variants} variants")
+        };
         return format!(
-            "Until {until:.1} s, where the runs end and the motion does not, this stack stands in {count} \
-             {variants} variants."
+            "Until {until:.1} s, where the runs end and the motion does not, this stack stands in {share}."
         );
     }
     match (*collapsed, share) {
         (0, _) => format!(
-            "This stack stands in all {variants} variants: of stacks like it at most {} fall.",
+            "This stack stands in {}: of stacks like it at most {} fall.",
+            all_of(*variants),
             percent(interval[1])
         ),
         (all, _) if all == *variants => {
-            format!("This stack falls: in all {variants} variants, {course}.")
+            format!("This stack falls: in {}, {course}.", all_of(*variants))
         }
         (_, share) if share >= FALLS => {
             format!("This stack falls: in {collapsed} of {variants} variants, {course}.")
@@ -172,8 +185,8 @@ pub fn fate(spread: &Spread) -> String {
     let variants = spread.variants;
     match (spread.share, spread.collapsed) {
         (None, _) => "has no verdict".to_owned(),
-        (Some(_), 0) => format!("stands in all {variants} variants"),
-        (Some(_), all) if all == variants => format!("falls in all {variants} variants"),
+        (Some(_), 0) => format!("stands in {}", all_of(variants)),
+        (Some(_), all) if all == variants => format!("falls in {}", all_of(variants)),
         (Some(share), _) if share >= 0.5 => format!("falls in {} of variants", percent(share)),
         (Some(share), _) => format!("stands in {} of variants", percent(1.0 - share)),
     }

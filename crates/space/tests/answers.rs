@@ -1,4 +1,4 @@
-//! Devices in space against their closed forms, across the barrels, along them and askew.
+//! Devices and seats in space against their closed forms, across the barrels, along them and askew.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -6,7 +6,9 @@ use std::f64::consts::TAU;
 
 use barrelstack::Scenario;
 use barrelstack_dynamics::{Linear as _, Solid, Vec3};
+use barrelstack_space::Summary;
 use barrelstack_space::run::{Run, run, stand};
+use barrelstack_space::variants::demands;
 
 const GRAVITY: f64 = 9.80665;
 
@@ -360,4 +362,26 @@ fn a_mirrored_stack_with_all_devices_has_the_same_forces_on_the_other_side() {
     let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("{apart:e} N apart");
     assert!(apart < 1e-6, "{apart}"); // measured 1.4e-9
+}
+
+#[test]
+fn seats_bear_weight_and_push_whatever_the_direction() {
+    let aboard = RACK + 2.0 * BARREL;
+    let still = run(&stack(&[], &pulse(1e-9, 0.01), 0.1, 0.0)).unwrap();
+    let pushed = run(&stack(&[], &growing(0.2), 8.0, 37.0)).unwrap();
+    let summary = Summary::of(&pushed, &pushed.scenario);
+    for seat in &summary.interfaces {
+        let mass = if seat.name == "R1 on ground" { aboard } else { BARREL };
+        // Measured 1.8e-10, 2.1e-6 and 1.5e-5 off.
+        near(&seat.name, seat.at_rest, mass * GRAVITY, 1e-8);
+        near(&seat.name, seat.peak_horizontal, mass * 0.2 * GRAVITY, 1e-4);
+        near(&seat.name, seat.peak_vertical, mass * GRAVITY, 1e-3);
+    }
+    assert_eq!(summary.interfaces.len(), 3);
+    let load = summary.demands.stave_utilization.unwrap();
+    near("staves", load, BARREL * GRAVITY / pushed.stack.stave_capacity, 1e-3);
+    near("still", demands(&still).stress_amplification.unwrap(), 1.0, 1e-6);
+    near("still", demands(&still).mean_stress_amplification.unwrap(), 1.0, 1e-6);
+    // A barrel that is pushed to a side leans on its supports there.
+    assert!(summary.demands.stress_amplification.unwrap() > 1.1);
 }

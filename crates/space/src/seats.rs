@@ -1,0 +1,119 @@
+//! What seats bear in space, and how hard their contacts press: at rest, and at their largest.
+
+use barrelstack::watch::{Joint, Joints, leans_on};
+use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
+
+use crate::stack::Stack;
+
+/// How hard one contact element has pressed.
+#[derive(Clone, Copy, Debug, Default)]
+struct Press {
+    /// At rest (N).
+    at_rest: f64,
+    /// At its largest while the stack stood (N).
+    peak: f64,
+}
+
+/// Follows both through a run; sees every step.
+#[derive(Clone, Debug)]
+pub struct Seats {
+    /// Every barrel on its rack, every rack on what is below it; horizontal forces are without direction.
+    pub joints: Joints,
+    /// The forces (N) on the upper bodies of the joints in the step at hand.
+    forces: Vec<Vec3>,
+    /// One for every contact element of every pair, pair after pair.
+    presses: Vec<Press>,
+    /// In the order of the model; none in a free scene.
+    pairs: Vec<Pair>,
+}
+
+/// What is known of a contact pair.
+#[derive(Clone, Debug)]
+struct Pair {
+    bodies: [BodyId; 2],
+    /// The number of its first contact element.
+    first: usize,
+    /// The number of its joint, and whether the contactor is the upper body.
+    joint: Option<(usize, bool)>,
+}
+
+impl Seats {
+    /// Starts with the forces at rest.
+    pub fn new(stack: &Stack, time: f64, scratch: &Scratch<Spatial>) -> Self {
+        let below = stack.parts.iter();
+        let joints =
+            Joints::between(below.map(|part| leans_on(part.kind, part.carrier, &part.supports)));
+        let (mut pairs, mut count) = (Vec::new(), 0);
+        // Nothing in a free scene has a seat, and its pairs may be more than can be listed.
+        for pair in stack.model.pairs().take_while(|_| !stack.is_free()) {
+            let joint = joints.of(pair.contactor, pair.target);
+            pairs.push(Pair { bodies: [pair.contactor, pair.target], first: count, joint });
+            count += stack.model.bodies()[pair.contactor].nodes[pair.nodes].count();
+        }
+        let forces = vec![Vec3::default(); joints.joints.len()];
+        let mut seats = Self { joints, forces, presses: vec![Press::default(); count], pairs };
+        seats.observe(time, true, scratch);
+        for joint in &mut seats.joints.joints {
+            joint.at_rest = joint.force.z;
+        }
+        for press in &mut seats.presses {
+            press.at_rest = press.peak;
+        }
+        seats
+    }
+
+    /// Looks at an accepted step at a time (s), of a stack that stands or does not.
+    pub fn observe(&mut self, time: f64, stands: bool, scratch: &Scratch<Spatial>) {
+        if self.pairs.is_empty() {
+            return;
+        }
+        self.forces.fill(Vec3::default());
+        for pair in &scratch.pair_forces {
+            if let Some((at, upper)) = self.pairs[pair.pair].joint {
+                self.forces[at] += if upper { pair.force } else { -pair.force };
+            }
+        }
+        for (joint, force) in self.joints.joints.iter_mut().zip(&self.forces) {
+            joint.force = Vec2::new((force.x * force.x + force.y * force.y).sqrt(), force.z);
+            joint.raise(time);
+        }
+        if stands {
+            for pressed in &scratch.pressed {
+                let first = self.pairs[pressed.pair].first;
+                let press = &mut self.presses[first + pressed.node as usize];
+                press.peak = press.peak.max(pressed.normal_force);
+            }
+        }
+    }
+
+    /// The joints of a stack with their names, such as "R1 on ground".
+    pub fn named(&self, stack: &Stack) -> impl Iterator<Item = (String, &Joint)> {
+        let name = |body: BodyId| stack.parts[body].name.clone();
+        let named = move |joint: &Joint| format!("{} on {}", name(joint.upper), name(joint.lower));
+        self.joints.joints.iter().map(move |joint| (named(joint), joint))
+    }
+
+    /// The contact elements of a body.
+    fn of(&self, body: BodyId) -> impl Iterator<Item = &Press> {
+        let ends = self.pairs.iter().skip(1).map(|pair| pair.first).chain([self.presses.len()]);
+        let own = self.pairs.iter().zip(ends).filter(move |(pair, _)| pair.bodies.contains(&body));
+        own.flat_map(|(pair, end)| &self.presses[pair.first..end])
+    }
+
+    /// Largest contact force on a body while the stack stood over the largest at rest: as every element stands for the
+    /// same length of boundary, that of stresses; none where nothing pressed.
+    pub fn amplification(&self, body: BodyId) -> Option<f64> {
+        let most = |of: fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
+        let at_rest = most(|press| press.at_rest);
+        (at_rest > 0.0).then(|| most(|press| press.peak) / at_rest)
+    }
+
+    /// The same of the sums over the elements that press at rest.
+    pub fn mean_amplification(&self, body: BodyId) -> Option<f64> {
+        let sum = |of: fn(&Press) -> f64| {
+            self.of(body).filter(|press| press.at_rest > 0.0).map(of).sum::<f64>()
+        };
+        let at_rest = sum(|press| press.at_rest);
+        (at_rest > 0.0).then(|| sum(|press| press.peak) / at_rest)
+    }
+}
