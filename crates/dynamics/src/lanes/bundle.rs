@@ -71,7 +71,24 @@ impl<U: Unit> Real for Bundle<U> {
     }
     #[inline(always)]
     fn scope<T>(work: impl FnOnce() -> T) -> T {
-        U::TOKEN.vectorize(work)
+        U::TOKEN.vectorize(
+            #[inline(always)]
+            || {
+                // A bundle that is known to lie in memory: the compiler lays out the memory of a function for bundles
+                // only where it sees one before it chooses registers, and those that it moves out of registers later
+                // would lie across the lines of the cache.
+                std::hint::black_box(&Self::splat(0.0));
+                work()
+            },
+        )
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(SimdBase::min(self.0, other.0))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(SimdBase::max(self.0, other.0))
     }
 }
 
@@ -191,5 +208,34 @@ impl<U: Unit> Not for BundleMask<U> {
     #[inline(always)]
     fn not(self) -> Self {
         Self(!self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::lanes::{Task, Width};
+    use crate::real::Real;
+
+    /// The smaller and the larger of two numbers as they are found, by their bits.
+    struct Extremes(f64, f64);
+
+    impl Task for Extremes {
+        type Output = [u64; 2];
+
+        fn run<R: Real>(self) -> [u64; 2] {
+            let (a, b) = (R::splat(self.0), R::splat(self.1));
+            [a.min(b), a.max(b)].map(|number| number.lane(0).to_bits())
+        }
+    }
+
+    #[test]
+    fn the_smaller_and_the_larger_are_those_of_a_single_number() {
+        let numbers = [0.0, -0.0, 1.0, -2.5, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        for width in Width::ALL.into_iter().filter(|width| width.is_here()) {
+            for (a, b) in numbers.into_iter().flat_map(|a| numbers.map(|b| (a, b))) {
+                let alone = Extremes(a, b).run::<f64>();
+                assert_eq!(width.run(Extremes(a, b)), Some(alone), "{a} and {b}, {}", width.name());
+            }
+        }
     }
 }
