@@ -6,10 +6,10 @@
 //! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
 //! in the same order, with the same bits.
 
-use crate::body::{Body, Motion, Nodes, Round};
+use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::Stick;
 use crate::lanes::Lanewise;
-use crate::model::{ContactPair, Counts, Model};
+use crate::model::{ContactPair, Counts, InterfaceId, Model};
 use crate::pair_frame::PairFrame;
 use crate::real::{Mask, Real};
 use crate::shape::{Surface, Whole};
@@ -34,6 +34,10 @@ const MOST_ALLOWANCE: f64 = 0.15;
 pub(crate) struct Group {
     /// Index of the pair in its model.
     pub(crate) pair: usize,
+    /// Its bodies.
+    bodies: [BodyId; 2],
+    /// Its interface.
+    pub(crate) interface: InterfaceId,
     /// Its first element.
     pub(crate) first: usize,
     /// One past its last element.
@@ -101,8 +105,9 @@ impl<S: Space> ContactElements<S> {
     /// Whether nothing of a group comes within a gap (m) in the step under way, in any lane: testing its
     /// elements would find nothing.
     #[inline(always)]
-    pub(crate) fn sleeps(&self, group: usize, pair: &ContactPair, gap: f64) -> bool {
-        let way = self.ways[pair.contactor] + self.ways[pair.target];
+    pub(crate) fn sleeps(&self, group: usize, gap: f64) -> bool {
+        let [a, b] = self.groups[group].bodies;
+        let way = self.ways[a] + self.ways[b];
         (way + S::Real::splat(gap + ASLEEP_SLACK)).lt(self.apart[group]).all()
     }
 
@@ -223,7 +228,9 @@ impl<S: Space> ContactElements<S> {
             let end = self.nodes.len();
             if end > first {
                 self.apart.push(apart);
-                self.groups.push(Group { pair: index, first, end });
+                let bodies = [pair.contactor, pair.target];
+                let interface = pair.interface;
+                self.groups.push(Group { pair: index, bodies, interface, first, end });
                 for element in first..end {
                     let origin = remembered.origin(index, self.nodes[element]);
                     self.sticks.push(origin.map_or_else(Stick::default, |o| old.sticks[o]));

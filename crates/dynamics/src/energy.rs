@@ -143,6 +143,10 @@ impl<S: Space> EnergyLedger<S> {
             if body.motion == Motion::Prescribed {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
             }
+            // What the next entry starts from, while it is at hand.
+            self.poses[i] = state.poses[i];
+            self.losses[i] = *new;
+            self.wrenches[i] = scratch.wrenches[i];
         }
         let elements = self.memory.iter_mut().zip(&mut self.springs);
         for (((before, spring), now), load) in elements.zip(&state.memory).zip(&scratch.loads) {
@@ -156,10 +160,7 @@ impl<S: Space> EnergyLedger<S> {
         self.works.viscous += step.viscous;
         self.works.ground += step.ground;
         self.ground_flow += step.ground.abs();
-        self.poses.copy_from_slice(&state.poses);
-        self.losses.copy_from_slice(&scratch.losses);
         self.viscous.copy_from_slice(&scratch.viscous);
-        self.wrenches.copy_from_slice(&scratch.wrenches);
         self.stored = stored(model, state, scratch);
         self.deepest = self.deepest.min(self.stored.potential);
     }

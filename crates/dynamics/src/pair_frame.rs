@@ -40,6 +40,13 @@ impl<S: Space> AtFace<S> {
         if self.of_nodes { !self.before.any() } else { (self.before & self.widest.lt(all)).all() }
     }
 
+    /// Whether every contact counts.
+    #[inline(always)]
+    pub(crate) fn always(&self) -> bool {
+        let all = S::Real::splat(-1.0);
+        if self.of_nodes { (self.before & self.widest.lt(all)).all() } else { !self.before.any() }
+    }
+
     /// Where a contact with this normal counts.
     #[inline(always)]
     pub(crate) fn counts(&self, normal: S::Vector) -> <S::Real as Real>::Mask {

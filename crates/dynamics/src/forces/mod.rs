@@ -7,7 +7,7 @@ use crate::contact::{FrictionLaw, Stick};
 use crate::contact_elements::ContactElements;
 use crate::element::{self, Load};
 use crate::model::{ContactPair, Model};
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::shape::Whole;
 use crate::space::{Space, Twist, Wrench};
 use crate::state::State;
@@ -126,12 +126,14 @@ pub struct Scratch<S: Space> {
     /// What of the contacts their sticks must know once the step is accepted, and how hard they press; in
     /// the order of their elements.
     pub pressed: Vec<Pressed<S>>,
+    /// The groups of contact elements that do not sleep in the evaluation at hand.
+    awake: Vec<usize>,
 }
 
 /// An element that touches in at least one lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<S: Space> {
-    element: usize,
+    pub(crate) element: usize,
     /// Which pair of the model.
     pub pair: usize,
     /// Which node of the contactor's node set.
@@ -171,6 +173,7 @@ impl<S: Space> Scratch<S> {
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
             pressed: Vec::new(),
+            awake: Vec::new(),
         }
     }
 }
@@ -215,9 +218,13 @@ pub(crate) fn evaluate_within<S: Space>(
 ) {
     S::Real::scope(
         #[inline(always)]
-        || clear(state, scratch),
+        || {
+            clear(state, scratch);
+            wake(model, &state.contact_elements, &mut scratch.awake);
+        },
     );
-    for group in 0..state.contact_elements.groups.len() {
+    for at in 0..scratch.awake.len() {
+        let group = scratch.awake[at];
         S::Real::scope(
             #[inline(always)]
             || touch(model, state, step, group, scratch),
@@ -230,6 +237,24 @@ pub(crate) fn evaluate_within<S: Space>(
             accelerate(model, state, scratch);
         },
     );
+}
+
+/// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
+const LOOKAHEAD_GAP: f64 = 0.01;
+
+/// Finds the groups of elements that may touch in the step under way, or of which impacts are to be foreseen.
+///
+/// Most sleep, so they are asked all together and not each where its forces would be.
+#[inline(always)]
+fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut Vec<usize>) {
+    awake.clear();
+    for (number, group) in elements.groups.iter().enumerate() {
+        let impacts = model.substepping.whole_step_depth[group.interface];
+        let foreseen = impacts.lt(S::Real::splat(f64::INFINITY)).any();
+        if !elements.sleeps(number, if foreseen { LOOKAHEAD_GAP } else { 0.0 }) {
+            awake.push(number);
+        }
+    }
 }
 
 /// The force elements.
@@ -260,7 +285,7 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();
-    scratch.slip_rates.clear();
+    scratch.slip_rates.fill(S::Tangent::default());
     scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
 }
@@ -316,17 +341,28 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
                 tangential_stiffness,
                 tangential_damping,
             } => {
-                let law = FrictionLaw::Coulomb {
-                    static_coefficient,
-                    kinetic_coefficient,
-                    tangential_stiffness,
-                    tangential_damping,
-                };
-                commit_pair(law, pressed, &scratch.slip_rates, sticks, &mut next);
+                commit_pair(
+                    #[inline(always)]
+                    || FrictionLaw::Coulomb {
+                        static_coefficient,
+                        kinetic_coefficient,
+                        tangential_stiffness,
+                        tangential_damping,
+                    },
+                    pressed,
+                    &scratch.slip_rates,
+                    sticks,
+                    &mut next,
+                );
             }
-            law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => {
-                commit_pair(law, pressed, &scratch.slip_rates, sticks, &mut next);
-            }
+            law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => commit_pair(
+                #[inline(always)]
+                || law,
+                pressed,
+                &scratch.slip_rates,
+                sticks,
+                &mut next,
+            ),
         }
     }
     sticks[next..].fill(Stick::default());
@@ -336,7 +372,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
 /// reached yet, forget.
 #[inline(always)]
 fn commit_pair<S: Space>(
-    law: FrictionLaw<S::Real>,
+    law: impl Fn() -> FrictionLaw<S::Real>,
     pressed: &[Pressed<S>],
     slip_rates: &[S::Tangent],
     sticks: &mut [Stick<S>],
@@ -352,7 +388,7 @@ fn commit_pair<S: Space>(
 
         let stick = &mut sticks[element];
         let carried = stick.carried(contact.tangent_plane);
-        *stick = carried.commit(&law, slip_rates[element], contact.normal_force, contact.weight);
+        *stick = carried.commit(&law(), slip_rates[element], contact.normal_force, contact.weight);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;
         stick.slipping = stick.slipping & contact.touching;

@@ -1,5 +1,6 @@
 //! The contacts of one pair: from gaps to forces on both bodies.
 
+mod meeting;
 mod patch;
 
 use crate::body::{Nodes, Round};
@@ -9,10 +10,12 @@ use crate::model::Model;
 use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface, Whole};
-use crate::space::{Linear, Space, Twist, Wrench};
+use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-use super::{Contact, ContactTotals, PairForce, Pressed, Scratch};
+use super::{Contact, ContactTotals, LOOKAHEAD_GAP, PairForce, Pressed, Scratch};
+
+use meeting::Meeting;
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
@@ -25,15 +28,8 @@ pub(super) fn touch<S: Space>(
     group: usize,
     scratch: &mut Scratch<S>,
 ) {
-    let elements = &state.contact_elements;
-    let (number, group) = (group, &elements.groups[group]);
+    let group = &state.contact_elements.groups[group];
     let pair = model.pair(group.pair);
-    let impacts = model.substepping.whole_step_depth[pair.interface];
-    let foreseen =
-        if impacts.lt(S::Real::splat(f64::INFINITY)).any() { LOOKAHEAD_GAP } else { 0.0 };
-    if elements.sleeps(number, &pair, foreseen) {
-        return;
-    }
     scratch.contact_evaluations += (group.end - group.first) as u64;
     let interface = &model.interfaces[pair.interface];
     match (interface.normal, interface.friction) {
@@ -46,24 +42,47 @@ pub(super) fn touch<S: Space>(
                 tangential_damping,
             },
         ) => {
-            let normal = NormalLaw::SpeedGap { stiffness, damping };
-            let friction = FrictionLaw::Coulomb {
-                static_coefficient,
-                kinetic_coefficient,
-                tangential_stiffness,
-                tangential_damping,
-            };
-            touch_by(normal, friction, model, state, step, group, scratch);
+            touch_by(
+                #[inline(always)]
+                || Laws {
+                    normal: NormalLaw::SpeedGap { stiffness, damping },
+                    friction: FrictionLaw::Coulomb {
+                        static_coefficient,
+                        kinetic_coefficient,
+                        tangential_stiffness,
+                        tangential_damping,
+                    },
+                },
+                model,
+                state,
+                step,
+                group,
+                scratch,
+            );
         }
-        (normal, friction) => touch_by(normal, friction, model, state, step, group, scratch),
+        (normal, friction) => touch_by(
+            #[inline(always)]
+            || Laws { normal, friction },
+            model,
+            state,
+            step,
+            group,
+            scratch,
+        ),
     }
+}
+
+/// The laws of a pair.
+#[derive(Clone, Copy)]
+struct Laws<R> {
+    normal: NormalLaw<R>,
+    friction: FrictionLaw<R>,
 }
 
 /// The contacts of one pair by its laws.
 #[inline(always)]
 fn touch_by<S: Space>(
-    normal: NormalLaw<S::Real>,
-    friction: FrictionLaw<S::Real>,
+    laws: impl Fn() -> Laws<S::Real>,
     model: &Model<S>,
     state: &State<S>,
     step: S::Real,
@@ -77,6 +96,7 @@ fn touch_by<S: Space>(
     if counted.is_some_and(|face| face.never()) {
         return;
     }
+    let counted = counted.filter(|face| !face.always());
     let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
     let others = scratch.pressed.len();
     let mut press = Press {
@@ -89,12 +109,10 @@ fn touch_by<S: Space>(
         rolling: model.interfaces[pair.interface].rolling,
         stop: model.interfaces[pair.interface].stop,
         counted,
-        normal,
-        friction,
+        laws,
         step,
         frame: &frame,
-        twists: (state.twists[pair.contactor], state.twists[pair.target]),
-        meeting: None,
+        meeting: Meeting::new(&frame, state.twists[pair.contactor], state.twists[pair.target]),
         pair: group.pair,
         elements: &state.contact_elements,
         sum: PairWrench::default(),
@@ -140,7 +158,9 @@ fn touch_by<S: Space>(
     let Press { meeting, sum, totals, needs_substeps, pressed, .. } = press;
     let touches = pressed.len() > others;
     scratch.needs_substeps = needs_substeps;
-    let Some(meeting) = meeting.filter(|_| touches) else { return };
+    if !touches {
+        return;
+    }
     scratch.totals = totals;
     let damped = meeting.on_bodies(sum.damped);
     let friction = meeting.on_bodies(sum.friction);
@@ -158,7 +178,7 @@ fn touch_by<S: Space>(
 }
 
 /// Nodes of a pair that press into a surface, one after the other.
-struct Press<'a, S: Space> {
+struct Press<'a, S: Space, L> {
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; none where it is infinite.
     whole_step_depth: Option<S::Real>,
     /// [`Scratch::lookahead`].
@@ -170,15 +190,13 @@ struct Press<'a, S: Space> {
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<AtFace<S>>,
-    normal: NormalLaw<S::Real>,
-    friction: FrictionLaw<S::Real>,
+    /// Told anew for every contact, so that it is known there which laws they are where that is known here.
+    laws: L,
     /// The step (s) that the forces stand for.
     step: S::Real,
     frame: &'a PairFrame<S>,
-    /// Twists of contactor and target.
-    twists: (Twist<S>, Twist<S>),
-    /// How the bodies meet; asked for by the first node that presses.
-    meeting: Option<Meeting<'a, S>>,
+    /// How the bodies meet: known before the first node, since whether it is would be asked at every node.
+    meeting: Meeting<'a, S>,
     pair: usize,
     elements: &'a ContactElements<S>,
     sum: PairWrench<S>,
@@ -195,13 +213,10 @@ const SLACK: f64 = 1e-9;
 /// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
 
-/// Substepping are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
-const LOOKAHEAD_GAP: f64 = 0.01;
-
 /// How far past the limits of a round piece a normal may point, on the way to another round piece.
 const LIMIT: f64 = 2e-7;
 
-impl<'a, S: Space> Press<'a, S> {
+impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// The round pieces of a convex boundary, each with its deepest point.
     ///
     /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
@@ -279,23 +294,10 @@ impl<'a, S: Space> Press<'a, S> {
         if let Some(face) = self.counted {
             near = near & face.counts(gap.normal);
         }
-        let approach = -self.meeting().velocity(node).dot(gap.normal);
+        let approach = -self.meeting.velocity(node).dot(gap.normal);
         let ahead = self.lookahead * approach.max(S::Real::zero());
         self.needs_substeps =
             self.needs_substeps | (near & whole_step_depth.lt(ahead - gap.distance));
-    }
-
-    /// How the bodies meet, asked for by the first node that is near.
-    #[inline(always)]
-    fn meeting(&mut self) -> Meeting<'a, S> {
-        let (contactor, target) = self.twists;
-        let meeting = match self.meeting {
-            Some(meeting) => meeting,
-            // Not in a closure, which would be compiled outside of the scope of the vector unit.
-            None => Meeting::new(self.frame, contactor, target),
-        };
-        self.meeting = Some(meeting);
-        meeting
     }
 
     /// The share with which a corner counts on a side, near whose end the corner of the other body may
@@ -335,7 +337,7 @@ impl<'a, S: Space> Press<'a, S> {
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = self.rolling else { return };
-        let spin = self.meeting().spin;
+        let spin = self.meeting.spin;
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
         let resisted = normal_force * rolling.lever / scale;
         self.sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
@@ -355,7 +357,7 @@ impl<'a, S: Space> Press<'a, S> {
             gap.distance =
                 S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
         }
-        let meeting = self.meeting();
+        let meeting = self.meeting;
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
         let whole = self.elements.weights[element] * share;
@@ -365,7 +367,8 @@ impl<'a, S: Space> Press<'a, S> {
         let normal_force = normal.total * weight;
         let tangent_plane = S::tangent_plane(contact.normal);
         let stick = self.elements.sticks[element].carried(tangent_plane);
-        let friction = self.friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
+        let friction =
+            (self.laws)().friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
         self.totals.elastic += normal.energy * weight;
         self.totals.stick += friction.energy;
 
@@ -413,82 +416,4 @@ struct PairWrench<S: Space> {
     /// The part of the normal forces that dampers make.
     damped: Wrench<S>,
     friction: Wrench<S>,
-}
-
-/// Two bodies at their contact, seen from the target's surface.
-#[derive(Clone, Copy)]
-struct Meeting<'a, S: Space> {
-    frame: &'a PairFrame<S>,
-    /// Center of mass of the contactor from that of the target (m).
-    apart: S::Vector,
-    /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
-    linear: S::Vector,
-    /// Spin (rad/s) of the contactor relative to the target.
-    spin: S::Spin,
-}
-
-impl<'a, S: Space> Meeting<'a, S> {
-    #[inline(always)]
-    fn new(frame: &'a PairFrame<S>, contactor: Twist<S>, target: Twist<S>) -> Self {
-        let apart = frame.contactor - frame.target;
-        let target_spin = S::unrotate_spin(frame.rotation, target.angular);
-        Self {
-            frame,
-            apart,
-            linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
-                - S::velocity_at(target_spin, apart),
-            spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
-        }
-    }
-
-    /// Velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
-    #[inline(always)]
-    fn velocity(&self, point: S::Vector) -> S::Vector {
-        self.linear + S::velocity_at(self.spin, point - self.frame.contactor)
-    }
-
-    /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
-    ///
-    /// Both bodies feel the force at the companion point, and both velocities are taken there:
-    /// so the pair conserves momentum, and force times relative velocity is the power it loses.
-    #[inline(always)]
-    fn contact(
-        &self,
-        pair: usize,
-        elements: &ContactElements<S>,
-        element: usize,
-        node: S::Vector,
-        gap: Gap<S>,
-    ) -> Contact<S> {
-        let zero = S::Real::zero();
-        let touching = gap.distance.lt(zero);
-        let point = node - gap.normal * gap.distance;
-        let velocity = self.velocity(point);
-        let counted = S::Real::select(touching, S::Real::splat(1.0), zero);
-        Contact {
-            element,
-            pair,
-            node: elements.nodes[element],
-            touching,
-            point,
-            normal: gap.normal,
-            penetration: S::Real::select(touching, -gap.distance, zero),
-            penetration_rate: -velocity.dot(gap.normal),
-            normal_force: zero,
-            slip_rate: S::tangential(velocity, gap.normal) * counted,
-            friction_force: S::Tangent::default(),
-        }
-    }
-
-    /// What a wrench of [`PairWrench`] does to contactor and target, in the inertial frame.
-    #[inline(always)]
-    fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
-        let rotation = self.frame.rotation;
-        let force = S::rotate(rotation, wrench.force);
-        let about_target = wrench.moment + S::moment(self.apart, wrench.force);
-        (
-            Wrench { force, moment: S::rotate_spin(rotation, wrench.moment) },
-            Wrench { force: -force, moment: -S::rotate_spin(rotation, about_target) },
-        )
-    }
 }

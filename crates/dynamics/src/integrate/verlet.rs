@@ -98,16 +98,13 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     correct_sticks(state, scratch, half);
 }
 
-/// Trades a share (s) of the old slip rates for the new ones.
+/// Trades a share (s) of the old slip rates for the new ones, where something touches: all other sticks forget
+/// when the step is accepted.
 #[inline(always)]
 fn correct_sticks<S: Space>(state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
-    for ((stick, new), old) in state
-        .contact_elements
-        .sticks
-        .iter_mut()
-        .zip(&scratch.slip_rates)
-        .zip(&scratch.old_slip_rates)
-    {
-        stick.displacement += (*new - *old) * share;
+    let sticks = &mut state.contact_elements.sticks;
+    for element in scratch.pressed.iter().map(|pressed| pressed.element) {
+        let (new, old) = (scratch.slip_rates[element], scratch.old_slip_rates[element]);
+        sticks[element].displacement += (new - old) * share;
     }
 }

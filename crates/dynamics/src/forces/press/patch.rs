@@ -1,12 +1,12 @@
 //! The forces of a patch: normal ones, which remember nothing, and sticks about the center of pressure.
 
-use super::{Contact, Press, Pressed};
+use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
 use crate::real::{Mask, Real};
 use crate::shape::{Patch, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
-impl<S: Space> Press<'_, S> {
+impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// A patch whose sticks are numbered from `first` in the list of elements.
     #[inline(always)]
     pub(super) fn patch(&mut self, first: usize, patch: &Patch<S>) {
@@ -38,7 +38,7 @@ impl<S: Space> Press<'_, S> {
             let counts = face.counts(deepest.gap.normal);
             deepest.gap.distance = S::Real::select(counts, deepest.gap.distance, one);
         }
-        let meeting = self.meeting();
+        let meeting = self.meeting;
         let seen = |touch: &Touch<S>| {
             let rate = -meeting.velocity(touch.companion()).dot(touch.gap.normal);
             (-touch.gap.distance, rate)
@@ -121,7 +121,7 @@ impl<S: Space> Press<'_, S> {
     /// The normal force of a spring, with the stop that it may have.
     #[inline(always)]
     pub(super) fn law(&self, depth: S::Real, rate: S::Real) -> NormalForce<S::Real> {
-        let normal = self.normal.force_of_step(depth, rate, self.step);
+        let normal = (self.laws)().normal.force_of_step(depth, rate, self.step);
         match self.stop {
             Some(stop) => stop.add(normal, depth, rate, self.step),
             None => normal,
@@ -131,14 +131,14 @@ impl<S: Space> Press<'_, S> {
     /// A share of the friction of a patch, `aside` (m) of its center of pressure.
     #[inline(always)]
     fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
-        let meeting = self.meeting();
+        let meeting = self.meeting;
         let point = at.center + aside;
         let counted = S::Real::select(at.touching, S::Real::splat(1.0), S::Real::zero());
         let slip_rate = S::tangential(meeting.velocity(point), at.normal) * counted;
         let (normal_force, weight) = (at.normal_force * share, at.stiffness * share);
         let tangent_plane = S::tangent_plane(at.normal);
         let stick = self.elements.sticks[element].carried(tangent_plane);
-        let friction = self.friction.force::<S>(stick, slip_rate, normal_force, weight);
+        let friction = (self.laws)().friction.force::<S>(stick, slip_rate, normal_force, weight);
         self.totals.stick += friction.energy;
         let force = -S::along(friction.force, at.normal);
         let moment = S::moment(point - self.frame.contactor, force);
