@@ -239,6 +239,14 @@ pub(crate) fn evaluate_within<S: Space>(
     );
 }
 
+/// What `fill` does, but within the scope of the vector unit.
+#[inline(always)]
+fn wipe<T: Default>(all: &mut [T]) {
+    for one in all {
+        *one = T::default();
+    }
+}
+
 /// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
 const LOOKAHEAD_GAP: f64 = 0.01;
 
@@ -278,14 +286,14 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
         *rotation = S::rotation(pose.orientation);
     }
-    scratch.wrenches.fill(Wrench::default());
-    scratch.losses.fill(Losses::default());
+    wipe(&mut scratch.wrenches);
+    wipe(&mut scratch.losses);
     scratch.totals = ContactTotals::default();
     scratch.needs_substeps = <S::Real as Real>::Mask::default();
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();
-    scratch.slip_rates.fill(S::Tangent::default());
+    wipe(&mut scratch.slip_rates);
     scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;
 }
@@ -318,17 +326,39 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
 /// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
 /// friction can hold, contact elements that do not touch forget, and force elements that cannot hold break.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
+    commit_corrected(
+        model,
+        state,
+        scratch,
+        #[inline(always)]
+        |_, displacement| displacement,
+    );
+}
+
+/// As [`commit`], of displacements that are `corrected` first: from an element and its displacement (m) to the one
+/// that the step accepts.
+pub(crate) fn commit_corrected<S: Space>(
+    model: &Model<S>,
+    state: &mut State<S>,
+    scratch: &Scratch<S>,
+    corrected: impl Fn(usize, S::Tangent) -> S::Tangent,
+) {
     S::Real::scope(
         #[inline(always)]
         || {
-            commit_all(model, &mut state.contact_elements, scratch);
+            commit_all(model, &mut state.contact_elements, scratch, &corrected);
             element::commit(&mut state.memory, &scratch.loads);
         },
     );
 }
 
 #[inline(always)]
-fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scratch: &Scratch<S>) {
+fn commit_all<S: Space>(
+    model: &Model<S>,
+    elements: &mut ContactElements<S>,
+    scratch: &Scratch<S>,
+    corrected: &impl Fn(usize, S::Tangent) -> S::Tangent,
+) {
     let ContactElements { sticks, .. } = elements;
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
@@ -349,6 +379,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
                         tangential_stiffness,
                         tangential_damping,
                     },
+                    corrected,
                     pressed,
                     &scratch.slip_rates,
                     sticks,
@@ -358,6 +389,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
             law @ (FrictionLaw::Frictionless | FrictionLaw::Regularized { .. }) => commit_pair(
                 #[inline(always)]
                 || law,
+                corrected,
                 pressed,
                 &scratch.slip_rates,
                 sticks,
@@ -373,6 +405,7 @@ fn commit_all<S: Space>(model: &Model<S>, elements: &mut ContactElements<S>, scr
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,
+    corrected: &impl Fn(usize, S::Tangent) -> S::Tangent,
     pressed: &[Pressed<S>],
     slip_rates: &[S::Tangent],
     sticks: &mut [Stick<S>],
@@ -387,6 +420,7 @@ fn commit_pair<S: Space>(
         *next = element + 1;
 
         let stick = &mut sticks[element];
+        stick.displacement = corrected(element, stick.displacement);
         let carried = stick.carried(contact.tangent_plane);
         *stick = carried.commit(&law(), slip_rates[element], contact.normal_force, contact.weight);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());

@@ -1,7 +1,7 @@
 //! The one-evaluation methods: symplectic Euler and velocity Verlet.
 
-use super::{Drive, accept, advance_sticks, free, place_prescribed};
-use crate::forces::{Scratch, evaluate, evaluate_within};
+use super::{Drive, advance_sticks, free, place_prescribed};
+use crate::forces::{Scratch, commit_corrected, evaluate, evaluate_within};
 use crate::model::Model;
 use crate::real::Real;
 use crate::space::Space;
@@ -30,8 +30,7 @@ pub(super) fn semi_implicit_euler<S: Space>(
     state.time = until;
     place_prescribed(model, drive, state);
     evaluate(model, state, scratch);
-    correct_sticks(state, scratch, step);
-    accept(model, state, scratch);
+    accept(model, state, scratch, step);
 }
 
 /// Half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces of
@@ -61,7 +60,7 @@ pub(super) fn velocity_verlet<S: Space>(
         #[inline(always)]
         || correct(model, state, scratch, step),
     );
-    accept(model, state, scratch);
+    accept(model, state, scratch, S::Real::splat(0.5) * step);
 }
 
 /// Places at the end of the step, and velocities and sticks as the old forces would have them.
@@ -86,7 +85,7 @@ fn predict<S: Space>(
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
 }
 
-/// Trades half of the old accelerations and slip rates for the new ones.
+/// Trades half of the old accelerations for the new ones.
 #[inline(always)]
 fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, step: S::Real) {
     let half = S::Real::splat(0.5) * step;
@@ -95,16 +94,17 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
         let old = scratch.old_accelerations[i];
         state.twists[i] = state.twists[i].plus(new, half).plus(old, -half);
     }
-    correct_sticks(state, scratch, half);
 }
 
-/// Trades a share (s) of the old slip rates for the new ones, where something touches: all other sticks forget
-/// when the step is accepted.
-#[inline(always)]
-fn correct_sticks<S: Space>(state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
-    let sticks = &mut state.contact_elements.sticks;
-    for element in scratch.pressed.iter().map(|pressed| pressed.element) {
-        let (new, old) = (scratch.slip_rates[element], scratch.old_slip_rates[element]);
-        sticks[element].displacement += (new - old) * share;
-    }
+/// Ends a step: the state that `scratch` was evaluated at is accepted, with a share (s) of the old slip rates traded
+/// for the new ones.
+fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
+    let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
+    commit_corrected(
+        model,
+        state,
+        scratch,
+        #[inline(always)]
+        |element, displacement| displacement + (new[element] - old[element]) * share,
+    );
 }

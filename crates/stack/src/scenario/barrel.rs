@@ -109,12 +109,14 @@ impl Barrel {
 
     /// The first wave of its wine in the plane of a view; none where it is full or empty.
     pub fn wave(&self, view: View) -> Option<Wave> {
-        let length = 2.0 * self.half_room();
-        // The cylinder of the same capacity.
-        let radius = (self.capacity / (PI * length)).sqrt();
-        (self.fill == Fill::Part).then(|| match view {
-            View::Transverse => slosh::across(radius, self.filled),
-            View::Longitudinal => slosh::along(radius, length, self.filled),
+        (self.fill == Fill::Part).then(|| {
+            let length = 2.0 * self.half_room();
+            // The cylinder of the same capacity.
+            let radius = (self.capacity / (PI * length)).sqrt();
+            match view {
+                View::Transverse => slosh::across(radius, self.filled),
+                View::Longitudinal => slosh::along(radius, length, self.filled),
+            }
         })
     }
 
