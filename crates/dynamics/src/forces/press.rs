@@ -98,6 +98,7 @@ fn touch_by<S: Space>(
     }
     let counted = counted.filter(|face| !face.always());
     let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
+    let meeting = Meeting::new(&frame, state.twists[pair.contactor], state.twists[pair.target]);
     let others = scratch.pressed.len();
     let mut press = Press {
         whole_step_depth: whole_step_depth
@@ -106,13 +107,16 @@ fn touch_by<S: Space>(
             .then_some(whole_step_depth),
         lookahead: scratch.lookahead,
         needs_substeps: scratch.needs_substeps,
-        rolling: model.interfaces[pair.interface].rolling,
+        rolling: model.interfaces[pair.interface].rolling.map(
+            #[inline(always)]
+            |rolling| RollingPair::new(rolling, meeting.spin),
+        ),
         stop: model.interfaces[pair.interface].stop,
         counted,
         laws,
         step,
         frame: &frame,
-        meeting: Meeting::new(&frame, state.twists[pair.contactor], state.twists[pair.target]),
+        meeting,
         pair: group.pair,
         elements: &state.contact_elements,
         sum: PairWrench::default(),
@@ -186,7 +190,7 @@ struct Press<'a, S: Space, L> {
     /// [`Scratch::needs_substeps`].
     needs_substeps: <S::Real as Real>::Mask,
     /// How normal forces resist rolling, if they do.
-    rolling: Option<Rolling<S::Real>>,
+    rolling: Option<RollingPair<S::Real>>,
     stop: Option<Stop<S::Real>>,
     /// Where the contacts of the pair count; none if everywhere.
     counted: Option<AtFace<S>>,
@@ -336,11 +340,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// The moment by which a normal force (N) resists rolling.
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
-        let Some(rolling) = self.rolling else { return };
-        let spin = self.meeting.spin;
-        let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
-        let resisted = normal_force * rolling.lever / scale;
-        self.sum.friction += Wrench { force: S::Vector::default(), moment: -(spin * resisted) };
+        let Some(rolling) = &self.rolling else { return };
+        let resisted = normal_force * rolling.lever / rolling.scale;
+        let moment = -(self.meeting.spin * resisted);
+        self.sum.friction += Wrench { force: S::Vector::default(), moment };
     }
 
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
@@ -397,6 +400,23 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
         }
         S::Real::select(touching, normal.energy * self.elements.weights[element], S::Real::zero())
+    }
+}
+
+/// How the contacts of a pair resist the rolling that is under way.
+struct RollingPair<R> {
+    /// [`Rolling::lever`].
+    lever: R,
+    /// By how much (rad/s) a spin is divided to tell how much of the lever resists it.
+    scale: R,
+}
+
+impl<R: Real> RollingPair<R> {
+    /// Of pairs that do not resist rolling no root is asked for.
+    #[inline(always)]
+    fn new(rolling: Rolling<R>, spin: impl Linear<R>) -> Self {
+        let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
+        Self { lever: rolling.lever, scale }
     }
 }
 
