@@ -312,8 +312,7 @@ impl<R: Real> Model<Planar<R>> {
             elements: Lanewise::in_all(&single.elements),
             gravity: Lanewise::in_all(&single.gravity),
             reach: single.reach.clone(),
-            // Those that are alike in one case need not be in another.
-            alike: (0..single.bodies.len()).collect(),
+            alike: single.alike.clone(),
             substepping: Lanewise::in_all(&single.substepping),
         }
     }
@@ -329,6 +328,12 @@ impl<R: Real> Model<Planar<R>> {
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
             // Balls that hold the body of every lane.
             *reach = reach.max(*single);
+        }
+        for (body, (alike, single)) in self.alike.iter_mut().zip(&single.alike).enumerate() {
+            // Those that are alike in one case need not be in another.
+            if alike != single {
+                *alike = body;
+            }
         }
     }
 }
