@@ -6,7 +6,7 @@ mod patch;
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::contact_elements::{ContactElements, Group};
-use crate::model::Model;
+use crate::model::{ContactPair, Model};
 use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface, Whole};
@@ -43,6 +43,7 @@ pub(super) fn touch<S: Space>(
             },
         ) => {
             touch_by(
+                &pair,
                 #[inline(always)]
                 || Laws {
                     normal: NormalLaw::SpeedGap { stiffness, damping },
@@ -61,6 +62,7 @@ pub(super) fn touch<S: Space>(
             );
         }
         (normal, friction) => touch_by(
+            &pair,
             #[inline(always)]
             || Laws { normal, friction },
             model,
@@ -82,6 +84,7 @@ struct Laws<R> {
 /// The contacts of one pair by its laws.
 #[inline(always)]
 fn touch_by<S: Space>(
+    pair: &ContactPair,
     laws: impl Fn() -> Laws<S::Real>,
     model: &Model<S>,
     state: &State<S>,
@@ -89,7 +92,6 @@ fn touch_by<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let pair = &model.pair(group.pair);
     let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
     let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
@@ -140,7 +142,7 @@ fn touch_by<S: Space>(
                 },
             );
         }
-        Nodes::Rounds(rounds) => press.rounds(model, rounds, group, surface),
+        Nodes::Rounds(rounds) => press.rounds(pair, rounds, group, surface),
         Nodes::Rolling { center, radius, .. } => {
             let center = frame.to_surface(*center);
             let mut gap = surface.gap(center);
@@ -171,11 +173,12 @@ fn touch_by<S: Space>(
     let (on_contactor, on_target) = meeting.on_bodies(sum.normal.plus(sum.friction));
     scratch.wrenches[pair.contactor] += on_contactor;
     scratch.wrenches[pair.target] += on_target;
-    let losses = &mut scratch.losses;
-    losses[pair.contactor].damped += damped.0;
-    losses[pair.target].damped += damped.1;
-    losses[pair.contactor].friction += friction.0;
-    losses[pair.target].friction += friction.1;
+    let lost = &mut scratch.losses[pair.contactor];
+    lost.damped += damped.0;
+    lost.friction += friction.0;
+    let lost = &mut scratch.losses[pair.target];
+    lost.damped += damped.1;
+    lost.friction += friction.1;
     let (contactor, target) = (pair.contactor, pair.target);
     let force = on_contactor.force;
     scratch.pair_forces.push(PairForce { pair: group.pair, contactor, target, force });
@@ -229,13 +232,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     #[inline(always)]
     fn rounds(
         &mut self,
-        model: &Model<S>,
+        pair: &ContactPair,
         rounds: &[Round<S>],
         group: &Group,
         surface: &S::Surface,
     ) {
         let zero = S::Real::zero();
-        let pair = &model.pair(self.pair);
         let first = pair.contactor < pair.target;
         let slack = S::Real::splat(if first { SLACK } else { -SLACK });
         for element in group.first..group.end {
