@@ -66,21 +66,19 @@ enum Outline {
 impl Boundaries {
     /// The boundaries of the bodies of a model as they are drawn.
     pub fn new(assembly: &Assembly) -> Self {
+        let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
+        let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
         let outline = |placed: &barrelstack_dynamics::Placed<Planar>| {
             let place = |point: Vec2| placed.offset + placed.rotation.apply(point);
             match &placed.surface {
                 Shape::HalfPlane(_) => {
                     Some(Outline::Below(placed.offset, placed.rotation.apply(Vec2::new(0.0, 1.0))))
                 }
-                Shape::Circle(circle) => Some(Outline::Polygon(
-                    (0..AROUND)
-                        .map(|i| {
-                            let angle = std::f64::consts::TAU * i as f64 / AROUND as f64;
-                            let rotation = Rotation2::new(angle);
-                            place(rotation.apply(Vec2::new(circle.radius, 0.0)))
-                        })
-                        .collect(),
-                )),
+                Shape::Circle(circle) => {
+                    let corner =
+                        |turn: &Rotation2| place(turn.apply(Vec2::new(circle.radius, 0.0)));
+                    Some(Outline::Polygon(around.iter().map(corner).collect()))
+                }
                 // A trough is no solid: nothing is inside of it.
                 Shape::Cradle(_) => None,
                 shape @ (Shape::Polygon(_) | Shape::BarrelProfile(_)) => {

@@ -7,15 +7,19 @@
 //! presses at rest. On a barrel it sits wherever a node presses, so the barrel's
 //! boundary is divided into cells, and a node presses on all the cells of its own length.
 
-use std::f64::consts::{PI, TAU};
+mod places;
+
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use barrelstack_dynamics::forces::tributary_length;
 use barrelstack_dynamics::lanes::{Lanewise, put_truth};
 use barrelstack_dynamics::real::{Mask, Real};
-use barrelstack_dynamics::{BodyId, Nodes, Planar, Scratch, Shape, Vec2, lanewise, math};
+use barrelstack_dynamics::{BodyId, Nodes, Planar, Scratch, Vec2, lanewise, math};
 
 use crate::assemble::{Assembly, PartKind};
+
+use places::{on_nodes, on_surface};
 
 /// Cells around a barrel in transverse section: half a degree each.
 const CELLS: usize = 720;
@@ -183,12 +187,23 @@ impl StressWatch {
     /// Starts with the stresses at rest in `scratch`.
     pub(crate) fn new(assembly: &Assembly, scratch: &Scratch<Planar>) -> Self {
         let model = &assembly.model;
-        let mut envelopes = Vec::new();
+        let mut envelopes: Vec<StressEnvelope> = Vec::new();
         let mut of_body = vec![None; assembly.parts.len()];
         for (i, part) in assembly.parts.iter().enumerate() {
             let body = &model.bodies()[i];
             let made = match part.kind {
-                PartKind::Barrel => body.surfaces.first().and_then(|s| on_surface(i, &s.surface)),
+                PartKind::Barrel => body.surfaces.first().and_then(|placed| {
+                    // Most barrels are alike, and so are the cells along their boundaries.
+                    let alike = |known: &&StressEnvelope| {
+                        let other = model.bodies()[known.body].surfaces.first();
+                        !known.is_on_nodes()
+                            && other.is_some_and(|other| other.surface == placed.surface)
+                    };
+                    match envelopes.iter().rev().find(alike) {
+                        Some(known) => Some(StressEnvelope { body: i, ..known.clone() }),
+                        None => on_surface(i, &placed.surface),
+                    }
+                }),
                 PartKind::Rack => Some(on_nodes(i, &body.nodes)),
                 PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => None,
             };
@@ -416,83 +431,4 @@ fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
 )]
 fn whole(number: f64) -> usize {
     number as usize
-}
-
-fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -> StressEnvelope {
-    let count = points.len();
-    let length = match cells {
-        Cells::Around(radius) => TAU * radius / count as f64,
-        Cells::Along(half_length) => 4.0 * half_length / count as f64,
-        Cells::Nodes => 0.0,
-    };
-    StressEnvelope {
-        body,
-        points,
-        lengths: vec![length; count],
-        closed,
-        at_rest: vec![0.0; count],
-        peak: vec![0.0; count],
-        cells,
-    }
-}
-
-/// Cells along a surface that nodes of other bodies press on.
-fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
-    match shape {
-        Shape::Circle(circle) => {
-            let points = (0..CELLS)
-                .map(|i| {
-                    let angle = TAU * (i as f64 + 0.5) / CELLS as f64;
-                    let (sin, cos) = math::sin_cos(angle);
-                    let normal = Vec2::new(cos, sin);
-                    BoundaryPoint {
-                        position: normal * circle.radius,
-                        normal,
-                        coordinate: if angle > PI { angle - TAU } else { angle },
-                    }
-                })
-                .collect();
-            Some(empty(body, points, true, Cells::Around(circle.radius)))
-        }
-        Shape::BarrelProfile(profile) => {
-            let half = profile.half_length;
-            let cells = CELLS / 2;
-            let mut points = Vec::new();
-            for side in [1.0, -1.0] {
-                for i in 0..cells {
-                    let x = half * (2.0 * (i as f64 + 0.5) / cells as f64 - 1.0);
-                    let z = profile.radius_at(x);
-                    let up = z - profile.bilge_radius + profile.stave_radius;
-                    let normal = Vec2::new(x, side * up) * (1.0 / profile.stave_radius);
-                    points.push(BoundaryPoint {
-                        position: Vec2::new(x, side * z),
-                        normal,
-                        coordinate: x,
-                    });
-                }
-            }
-            Some(empty(body, points, false, Cells::Along(half)))
-        }
-        Shape::HalfPlane(_) | Shape::Polygon(_) | Shape::Cradle(_) => None,
-    }
-}
-
-/// One place for every node of a rack.
-fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
-    let nodes = || {
-        sets.iter().filter_map(|set| match set {
-            Nodes::Fixed(nodes) => Some(nodes),
-            Nodes::Rounds(_) | Nodes::Rolling { .. } | Nodes::Whole(_) => None,
-        })
-    };
-    let points = nodes()
-        .flatten()
-        .map(|node| BoundaryPoint {
-            position: node.position,
-            normal: Vec2::new(0.0, if node.position.z > 0.0 { 1.0 } else { -1.0 }),
-            coordinate: node.position.x,
-        })
-        .collect();
-    let lengths = nodes().flatten().map(|node| node.tributary_length).collect();
-    StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) }
 }
