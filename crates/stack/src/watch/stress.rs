@@ -114,7 +114,6 @@ struct LoadedNode {
 /// forces tells all: most contacts of most steps are done with a few comparisons.
 #[derive(Clone, Copy, Debug)]
 struct Bounds<R: Real = f64> {
-    place: Place,
     /// The first point or direction, and that past the last one.
     from: Vec2<R>,
     to: Vec2<R>,
@@ -135,28 +134,33 @@ enum Place {
     Strip,
 }
 
-lanewise!(same Place);
-lanewise!(struct Bounds<R> { place, from, to, most } masks { above });
+lanewise!(struct Bounds<R> { from, to, most } masks { above });
+
+impl Place {
+    /// Where the nodes press that face a target with such cells.
+    fn on(cells: Option<Cells>) -> Self {
+        match cells {
+            Some(Cells::Around(_)) => Self::Wedge,
+            Some(Cells::Along(_)) => Self::Strip,
+            // The nodes of a rack press on others; what presses on them leaves no stress.
+            Some(Cells::Nodes) | None => Self::Everywhere,
+        }
+    }
+}
 
 impl Bounds {
-    /// Those of a node that has not pressed yet, so that no place but everywhere holds its point.
-    fn new(cells: Option<Cells>) -> Self {
-        let place = match cells {
-            Some(Cells::Around(_)) => Place::Wedge,
-            Some(Cells::Along(_)) => Place::Strip,
-            // The nodes of a rack press on others; what presses on them leaves no stress.
-            Some(Cells::Nodes) | None => Place::Everywhere,
-        };
-        Self { place, from: Vec2::default(), to: Vec2::default(), above: false, most: 0.0 }
+    /// Those of a node that has pressed with a force (N) at most, and of which no place but everywhere holds the point.
+    fn of(most: f64) -> Self {
+        Self { from: Vec2::default(), to: Vec2::default(), above: false, most }
     }
 }
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-    fn holds(&self, point: Vec2<R>) -> R::Mask {
+    fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
-        match self.place {
+        match place {
             Place::Everywhere => !R::Mask::default(),
             Place::Wedge => {
                 (from.z * point.x).le(from.x * point.z) & (point.z * to.x).lt(point.x * to.z)
@@ -179,8 +183,16 @@ pub(crate) struct StressWatch<R: Real = f64> {
     watched: R::Mask,
     /// One for every node of every pair, pair after pair.
     bounds: Vec<Bounds<R>>,
-    /// The first entry of every pair, and its target.
-    pairs: Vec<(usize, BodyId)>,
+    pairs: Vec<Facing>,
+}
+
+/// What all nodes of a pair have in common.
+#[derive(Clone, Copy, Debug)]
+struct Facing {
+    /// The entry of the first of them.
+    first: usize,
+    target: BodyId,
+    place: Place,
 }
 
 impl StressWatch {
@@ -219,8 +231,9 @@ impl StressWatch {
             return Self { lanes, watched: false, bounds, pairs };
         }
         for pair in model.pairs() {
-            pairs.push((presses.len(), pair.target));
             let cells = of_body[pair.target].map(|at: usize| envelopes[at].cells);
+            let (first, target, place) = (presses.len(), pair.target, Place::on(cells));
+            pairs.push(Facing { first, target, place });
             let sets = &model.bodies()[pair.contactor].nodes;
             // The points of a rack are those of its fixed nodes, set after set.
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
@@ -233,11 +246,11 @@ impl StressWatch {
                 cells: 0..0,
                 on_rack: rack.map(|at| (at, before + node)),
             }));
-            bounds.resize(presses.len(), Bounds::new(cells));
+            bounds.resize(presses.len(), Bounds::of(0.0));
         }
         for contact in &scratch.contacts {
             let pair = &model.pair(contact.pair);
-            let press = &mut presses[pairs[contact.pair].0 + contact.node as usize];
+            let press = &mut presses[pairs[contact.pair].first + contact.node as usize];
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let place = placed.offset + placed.rotation.apply(contact.point);
             let normal = placed.rotation.apply(contact.normal);
@@ -300,10 +313,10 @@ impl<R: Real> StressWatch<R> {
 
     /// Raises the envelopes of a lane to what its nodes have pressed where they are.
     fn raise(&mut self, lane: usize) {
-        for (pair, (first, target)) in self.pairs.iter().enumerate() {
-            let end = self.pairs.get(pair + 1).map_or(self.bounds.len(), |(next, _)| *next);
-            for at in *first..end {
-                self.lanes[lane].raise(at, *target, self.bounds[at].most.lane(lane));
+        for (pair, facing) in self.pairs.iter().enumerate() {
+            let end = self.pairs.get(pair + 1).map_or(self.bounds.len(), |next| next.first);
+            for at in facing.first..end {
+                self.lanes[lane].raise(at, facing.target, self.bounds[at].most.lane(lane));
             }
         }
     }
@@ -317,11 +330,11 @@ impl<R: Real> StressWatch<R> {
             return;
         }
         for pressed in &scratch.pressed {
-            let (first, target) = self.pairs[pressed.pair];
+            let Facing { first, target, place } = self.pairs[pressed.pair];
             let at = first + pressed.node as usize;
             let bounds = &mut self.bounds[at];
             let presses = watched & pressed.touching;
-            let here = presses & bounds.holds(pressed.point);
+            let here = presses & bounds.hold(place, pressed.point);
             let more = here & bounds.most.lt(pressed.normal_force);
             if more.any() {
                 bounds.most = R::select(more, pressed.normal_force, bounds.most);
@@ -331,8 +344,7 @@ impl<R: Real> StressWatch<R> {
                 for lane in (0..R::LANES).filter(|lane| leaves.lane(*lane)) {
                     let (stresses, most) = (&mut self.lanes[lane], bounds.most.lane(lane));
                     stresses.raise(at, target, most);
-                    let mut single =
-                        Bounds { most: pressed.normal_force.lane(lane), ..Bounds::new(None) };
+                    let mut single = Bounds::of(pressed.normal_force.lane(lane));
                     stresses.place(at, target, pressed.point.of_lane(lane), &mut single);
                     bounds.put(lane, &single);
                 }
