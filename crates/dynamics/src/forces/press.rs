@@ -19,7 +19,8 @@ use meeting::Meeting;
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// The paper's laws have a loop of their own, in which nothing is asked at every contact.
+/// In lanes the paper's laws have a loop of their own, in which nothing is asked at every contact; a single number gains
+/// nothing from it.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -41,7 +42,7 @@ pub(super) fn touch<S: Space>(
                 tangential_stiffness,
                 tangential_damping,
             },
-        ) => {
+        ) if S::Real::LANES > 1 => {
             touch_by(
                 &pair,
                 #[inline(always)]
