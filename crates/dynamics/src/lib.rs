@@ -59,7 +59,7 @@ pub use element::*;
 pub use energy::{EnergyLedger, EnergySummary};
 pub use forces::{Contact, Scratch, evaluate};
 pub use integrate::{Drive, Method, Still};
-pub use model::{ContactPair, Counts, InterfaceId, Model, ModelError, Substepping};
+pub use model::{ContactPair, Counts, Fast, InterfaceId, Model, ModelError, Substepping};
 pub use settle::{Lack, SettleError, Settled, settle};
 pub use shape::Shape;
 pub use simulate::{Finish, Observer, RunError, Simulation, look, simulate};

@@ -57,6 +57,19 @@ pub struct Substepping<R> {
     /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
     /// they follow any.
     pub whole_step_depth: Vec<R>,
+    /// What of whole bodies that are fast asks for more; none where nothing does.
+    pub fast: Option<Fast<R>>,
+}
+
+/// How contacts of whole bodies are followed that are too fast for what [`Substepping`] says of all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fast<R> {
+    /// The way (m) that a contact may go in a whole step: what goes further meets or leaves its spring and its damper too
+    /// abruptly.
+    pub whole_step_way: R,
+    /// The speed of approach (m/s) from which on an impact is hard: short steps are half as long until it is over, and
+    /// no impact is left.
+    pub hard: R,
 }
 
 /// Tells the pairs of two bodies, the lower id first.
@@ -234,7 +247,8 @@ impl<S: Space> Model<S> {
         let alike = alike(&bodies, &reach);
         let inert = bodies.iter().map(Inert::of).collect();
         let whole_step_depth = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
-        let substepping = Substepping { substeps: S::Real::splat(1.0), whole_step_depth };
+        let substepping =
+            Substepping { substeps: S::Real::splat(1.0), whole_step_depth, fast: None };
         let elements = Vec::new();
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }

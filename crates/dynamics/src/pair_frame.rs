@@ -7,6 +7,7 @@ use crate::space::{Linear, Pose, Space};
 /// Where two bodies are, seen from the frame of the target's surface.
 ///
 /// Contacts of a pair are computed in this frame and their sum is turned back once.
+#[derive(Clone, Debug)]
 pub(crate) struct PairFrame<S: Space> {
     /// From the surface's frame to the inertial frame.
     pub(crate) rotation: S::Rotation,

@@ -6,7 +6,7 @@ use crate::energy::EnergyLedger;
 use crate::forces::Scratch;
 use crate::integrate::{Drive, Integrator, Method};
 use crate::lanewise;
-use crate::model::Model;
+use crate::model::{Model, Substepping};
 use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
@@ -132,7 +132,7 @@ pub fn simulate<S: Space<Real = f64>>(
     let mut integrator = Integrator::new(simulation.method);
     let mut times = StepTimes::new(model, simulation.time_step);
     if simulation.method.is_adaptive() {
-        times.substeps = 1.0;
+        times.undivided();
     }
     scratch.lookahead = times.lookahead();
     Integrator::start(model, drive, state, scratch);
@@ -150,7 +150,7 @@ pub fn simulate<S: Space<Real = f64>>(
         let target = if simulation.method.is_adaptive() {
             state.time + next_step.min(simulation.time_step)
         } else {
-            start + times.next(scratch.needs_substeps)
+            start + times.next(scratch.needs_substeps, scratch.is_hard)
         };
         let until =
             if target < simulation.end_time - sliver { target } else { simulation.end_time };
@@ -167,16 +167,20 @@ pub fn simulate<S: Space<Real = f64>>(
     Ok(RunTotals { finish, steps, energy })
 }
 
-/// The times of the steps of a run: whole numbers of the short steps into which impacts divide a step.
+/// The times of the steps of a run: whole numbers of the shortest steps into which impacts divide a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StepTimes<R> {
-    /// Short steps since the start.
+pub(crate) struct StepTimes<R: Real> {
+    /// Shortest steps since the start.
     count: R,
-    /// Short steps in a step.
-    substeps: R,
-    /// The short step (s).
+    /// Shortest steps in a step, and in a short one.
+    whole: R,
     short: R,
+    /// The shortest step (s).
+    shortest: R,
     time_step: R,
+    /// Whether an impact that is not over was hard: the length of steps changes before an impact and after it, since
+    /// within one that would cost energy.
+    hard: R::Mask,
 }
 
 /// How much longer than a step impacts are foreseen, since velocities change within it.
@@ -185,25 +189,35 @@ const LOOKAHEAD: f64 = 1.25;
 impl<R: Real> StepTimes<R> {
     /// Those of a model, by a time step (s).
     pub(crate) fn new<S: Space<Real = R>>(model: &Model<S>, time_step: R) -> Self {
-        let substeps = model.substepping.substeps;
-        Self { count: R::zero(), substeps, short: time_step / substeps, time_step }
+        let Substepping { substeps, fast, .. } = &model.substepping;
+        let short = R::splat(if fast.is_some() { 2.0 } else { 1.0 });
+        let whole = *substeps * short;
+        let (count, shortest) = (R::zero(), time_step / whole);
+        Self { count, whole, short, shortest, time_step, hard: R::Mask::default() }
+    }
+
+    /// No step is divided.
+    fn undivided(&mut self) {
+        (self.whole, self.short) = (R::splat(1.0), R::splat(1.0));
     }
 
     /// How far (s) impacts are foreseen; zero where no step is divided.
     pub(crate) fn lookahead(&self) -> R {
-        let divided = R::splat(1.0).lt(self.substeps);
+        let divided = self.short.lt(self.whole);
         R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())
     }
 
-    /// The time (s) since the start at which the next step ends.
+    /// The time (s) since the start at which the next step ends, where impacts need short steps and are hard or not.
     #[inline(always)]
-    pub(crate) fn next(&mut self, needs_substeps: R::Mask) -> R {
-        self.count += R::select(needs_substeps, R::splat(1.0), self.substeps);
-        self.count * self.short
+    pub(crate) fn next(&mut self, needs_substeps: R::Mask, is_hard: R::Mask) -> R {
+        self.hard = needs_substeps & (self.hard | is_hard);
+        let short = R::select(self.hard, R::splat(1.0), self.short);
+        self.count += R::select(needs_substeps, short, self.whole);
+        self.count * self.shortest
     }
 }
 
-lanewise!(struct StepTimes<R> { count, substeps, short, time_step });
+lanewise!(struct StepTimes<R> { count, whole, short, shortest, time_step } masks { hard });
 
 /// Names the first body of a lane that is not where a finite number says, or else the one that moves
 /// most: its energy is the first to leave the finite numbers.

@@ -5,7 +5,7 @@ use barrelstack::assemble::{AssembleError, PartKind, assemble};
 use barrelstack::device::Words;
 use barrelstack::run::time_step;
 use barrelstack::scenario::{Scenario, Scene, StackBody, StackSpec, View};
-use barrelstack_dynamics::{BodyId, Model, Spatial, Substepping, Vec3};
+use barrelstack_dynamics::{BodyId, Fast, Model, Spatial, Substepping, Vec3};
 
 use crate::builder::Builder;
 use crate::device::{self, Loose};
@@ -129,6 +129,10 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     plane
 }
 
+/// What is fast in space, where barrels hit the floor on their rims and light racks are thrown about on their own
+/// barrels.
+const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
+
 /// How a stack is stepped, and how far its racks may slide: as in its planes.
 struct Pace {
     /// The time step (s).
@@ -162,7 +166,8 @@ impl Pace {
             }
         }
         let substeps = (step / shortest * (1.0 - 1e-9)).ceil().max(1.0);
-        Ok(Self { step, substepping: Substepping { substeps, whole_step_depth }, reach })
+        let substepping = Substepping { substeps, whole_step_depth, fast: Some(FAST) };
+        Ok(Self { step, substepping, reach })
     }
 }
 

@@ -80,6 +80,7 @@ impl TimeStepping {
         let mut substepping = Substepping {
             substeps,
             whole_step_depth: vec![f64::INFINITY; model.interfaces().len()],
+            fast: None,
         };
         model.each_meeting(&mut |pair, _, _| {
             let stop = model.interfaces()[pair.interface].stop;

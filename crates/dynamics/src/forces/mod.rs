@@ -12,7 +12,7 @@ use crate::shape::Whole;
 use crate::space::{Space, Twist, Wrench};
 use crate::state::State;
 
-use press::touch;
+use press::{Seen, touch};
 
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
@@ -117,8 +117,12 @@ pub struct Scratch<S: Space> {
     /// Where an impact asks for short steps: within [`Scratch::lookahead`] a contact would be deeper than
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at the speed that it has.
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
+    /// Where such an impact is [hard](crate::model::Fast::hard).
+    pub(crate) is_hard: <S::Real as Real>::Mask,
     /// How far (s) impacts are foreseen; zero where steps are never divided.
     pub(crate) lookahead: S::Real,
+    /// The bodies of the pair at hand, seen from the surface at hand, where solids of a body share that.
+    seen: Option<Seen<S>>,
     /// Accelerations of the state a step started from, for methods that correct.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates of that state.
@@ -169,7 +173,9 @@ impl<S: Space> Scratch<S> {
             evaluations: 0,
             contact_evaluations: 0,
             needs_substeps: <S::Real as Real>::Mask::default(),
+            is_hard: <S::Real as Real>::Mask::default(),
             lookahead: S::Real::zero(),
+            seen: None,
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
             pressed: Vec::new(),
@@ -290,9 +296,11 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     wipe(&mut scratch.losses);
     scratch.totals = ContactTotals::default();
     scratch.needs_substeps = <S::Real as Real>::Mask::default();
+    scratch.is_hard = <S::Real as Real>::Mask::default();
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();
+    scratch.seen = None;
     wipe(&mut scratch.slip_rates);
     scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;

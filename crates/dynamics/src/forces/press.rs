@@ -6,7 +6,7 @@ mod patch;
 use crate::body::{Nodes, Round};
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::contact_elements::{ContactElements, Group};
-use crate::model::{ContactPair, Model};
+use crate::model::{ContactPair, Fast, Model};
 use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
 use crate::shape::{Gap, Nearest, Surface, Whole};
@@ -16,6 +16,7 @@ use crate::state::State;
 use super::{Contact, ContactTotals, LOOKAHEAD_GAP, PairForce, Pressed, Scratch};
 
 use meeting::Meeting;
+pub(super) use meeting::Seen;
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
@@ -93,7 +94,19 @@ fn touch_by<S: Space>(
     group: &Group,
     scratch: &mut Scratch<S>,
 ) {
-    let frame = PairFrame::new(model, pair, &state.poses, &scratch.rotations);
+    let own;
+    let seen = if S::SOLIDS_SHARE {
+        let known = matches!(&scratch.seen, Some(seen) if seen.is_of(pair));
+        if !known {
+            scratch.seen = Some(Seen::new(model, pair, state, &scratch.rotations));
+        }
+        let Some(seen) = &scratch.seen else { return };
+        seen
+    } else {
+        own = Seen::new(model, pair, state, &scratch.rotations);
+        &own
+    };
+    let frame = &seen.frame;
     let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
     if counted.is_some_and(|face| face.never()) {
@@ -101,24 +114,26 @@ fn touch_by<S: Space>(
     }
     let counted = counted.filter(|face| !face.always());
     let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
-    let meeting = Meeting::new(&frame, state.twists[pair.contactor], state.twists[pair.target]);
+    let meeting = Meeting::of(seen);
     let others = scratch.pressed.len();
     let mut press = Press {
         whole_step_depth: whole_step_depth
             .lt(S::Real::splat(f64::INFINITY))
             .any()
             .then_some(whole_step_depth),
+        fast: model.substepping.fast,
         lookahead: scratch.lookahead,
         needs_substeps: scratch.needs_substeps,
+        is_hard: scratch.is_hard,
         rolling: model.interfaces[pair.interface].rolling.map(
             #[inline(always)]
-            |rolling| RollingPair::new(rolling, meeting.spin),
+            |rolling| RollingPair::new(rolling, meeting.spin()),
         ),
         stop: model.interfaces[pair.interface].stop,
         counted,
         laws,
         step,
-        frame: &frame,
+        frame,
         meeting,
         pair: group.pair,
         elements: &state.contact_elements,
@@ -162,9 +177,10 @@ fn touch_by<S: Space>(
             |patch| press.patch(group.first + patch.first, &patch),
         ),
     }
-    let Press { meeting, sum, totals, needs_substeps, pressed, .. } = press;
+    let Press { meeting, sum, totals, needs_substeps, is_hard, pressed, .. } = press;
     let touches = pressed.len() > others;
     scratch.needs_substeps = needs_substeps;
+    scratch.is_hard = is_hard;
     if !touches {
         return;
     }
@@ -189,10 +205,14 @@ fn touch_by<S: Space>(
 struct Press<'a, S: Space, L> {
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; none where it is infinite.
     whole_step_depth: Option<S::Real>,
+    /// [`Substepping::fast`](crate::model::Substepping::fast).
+    fast: Option<Fast<S::Real>>,
     /// [`Scratch::lookahead`].
     lookahead: S::Real,
     /// [`Scratch::needs_substeps`].
     needs_substeps: <S::Real as Real>::Mask,
+    /// [`Scratch::is_hard`].
+    is_hard: <S::Real as Real>::Mask,
     /// How normal forces resist rolling, if they do.
     rolling: Option<RollingPair<S::Real>>,
     stop: Option<Stop<S::Real>>,
@@ -345,7 +365,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = &self.rolling else { return };
         let resisted = normal_force * rolling.lever / rolling.scale;
-        let moment = -(self.meeting.spin * resisted);
+        let moment = -(self.meeting.spin() * resisted);
         self.sum.friction += Wrench { force: S::Vector::default(), moment };
     }
 

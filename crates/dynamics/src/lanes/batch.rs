@@ -249,7 +249,8 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
     ) -> R::Mask {
         // As `simulate` counts: whole multiples of the step, the last one cut short.
         let sliver = R::splat(1e-9) * self.time_step;
-        let target = self.start + self.times.next(self.scratch.needs_substeps);
+        let target =
+            self.start + self.times.next(self.scratch.needs_substeps, self.scratch.is_hard);
         let early = target.lt(self.end_time - sliver);
         let until = R::select(early, target, self.end_time);
         let until = R::select(self.busy, until, self.state.time);

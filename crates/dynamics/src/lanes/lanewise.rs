@@ -3,7 +3,7 @@
 use crate::body::{Body, Face, Inert, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
 use crate::forces::Losses;
-use crate::model::{Model, Substepping};
+use crate::model::{Fast, Model, Substepping};
 use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
@@ -299,7 +299,8 @@ lanewise!(struct Body<Planar<R>> {
 });
 
 lanewise!(struct Inert<Planar<R>> { motion, damped, mass, inertia });
-lanewise!(struct Substepping<R> { substeps, whole_step_depth });
+lanewise!(struct Substepping<R> { substeps, whole_step_depth, fast });
+lanewise!(struct Fast<R> { whole_step_way, hard });
 
 impl<R: Real> Model<Planar<R>> {
     /// The model of one case in every lane.

@@ -39,6 +39,9 @@ pub trait Linear<R>:
 
 /// Rigid motion in a number of dimensions.
 pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// Whether bodies have so many solids that one view of two bodies often serves several pairs.
+    const SOLIDS_SHARE: bool;
+
     /// The scalar.
     type Real: Real;
     /// Positions (m), velocities (m/s) and forces (N).

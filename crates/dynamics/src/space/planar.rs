@@ -135,6 +135,8 @@ impl<R: Real> Rotation2<R> {
 pub struct Planar<R = f64>(std::marker::PhantomData<R>);
 
 impl<R: Real> Space for Planar<R> {
+    const SOLIDS_SHARE: bool = false;
+
     type Real = R;
     type Vector = Vec2<R>;
     type Spin = R;

@@ -12,6 +12,8 @@ use crate::solid::{Rounded, Solid};
 pub struct Spatial<R = f64>(std::marker::PhantomData<R>);
 
 impl<R: Real> Space for Spatial<R> {
+    const SOLIDS_SHARE: bool = true;
+
     type Real = R;
     type Vector = Vec3<R>;
     type Spin = Vec3<R>;

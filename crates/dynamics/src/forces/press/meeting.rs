@@ -2,41 +2,84 @@
 
 use crate::contact_elements::ContactElements;
 use crate::forces::Contact;
+use crate::model::{ContactPair, Model};
 use crate::pair_frame::PairFrame;
 use crate::real::Real;
 use crate::shape::Gap;
-use crate::space::{Linear, Space, Twist, Wrench};
+use crate::space::{Linear, Space, Wrench};
+use crate::state::State;
 
-/// Two bodies at their contact, seen from the target's surface.
-#[derive(Clone, Copy)]
-pub(super) struct Meeting<'a, S: Space> {
-    frame: &'a PairFrame<S>,
+/// Two bodies, seen from a surface of one of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Seen<S: Space> {
+    /// The contactor, the target, and which surface of it.
+    of: [usize; 3],
+    pub(super) frame: PairFrame<S>,
+    motion: Motion<S>,
+}
+
+/// How they move against each other.
+#[derive(Clone, Copy, Debug)]
+struct Motion<S: Space> {
     /// Center of mass of the contactor from that of the target (m).
     apart: S::Vector,
     /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
     linear: S::Vector,
     /// Spin (rad/s) of the contactor relative to the target.
-    pub(super) spin: S::Spin,
+    spin: S::Spin,
 }
 
-impl<'a, S: Space> Meeting<'a, S> {
+impl<S: Space> Seen<S> {
     #[inline(always)]
-    pub(super) fn new(frame: &'a PairFrame<S>, contactor: Twist<S>, target: Twist<S>) -> Self {
+    pub(super) fn new(
+        model: &Model<S>,
+        pair: &ContactPair,
+        state: &State<S>,
+        rotations: &[S::Rotation],
+    ) -> Self {
+        let frame = PairFrame::new(model, pair, &state.poses, rotations);
+        let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
         let apart = frame.contactor - frame.target;
         let target_spin = S::unrotate_spin(frame.rotation, target.angular);
-        Self {
-            frame,
+        let motion = Motion {
             apart,
             linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
                 - S::velocity_at(target_spin, apart),
             spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
-        }
+        };
+        Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
+    }
+
+    /// Whether it is what a pair sees.
+    #[inline(always)]
+    pub(super) fn is_of(&self, pair: &ContactPair) -> bool {
+        self.of == [pair.contactor, pair.target, pair.surface]
+    }
+}
+
+/// Two bodies at their contact, seen from the target's surface.
+#[derive(Clone, Copy)]
+pub(super) struct Meeting<'a, S: Space> {
+    frame: &'a PairFrame<S>,
+    motion: Motion<S>,
+}
+
+impl<'a, S: Space> Meeting<'a, S> {
+    #[inline(always)]
+    pub(super) fn of(seen: &'a Seen<S>) -> Self {
+        Self { frame: &seen.frame, motion: seen.motion }
+    }
+
+    /// Spin (rad/s) of the contactor relative to the target.
+    #[inline(always)]
+    pub(super) fn spin(&self) -> S::Spin {
+        self.motion.spin
     }
 
     /// Velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
     #[inline(always)]
     pub(super) fn velocity(&self, point: S::Vector) -> S::Vector {
-        self.linear + S::velocity_at(self.spin, point - self.frame.contactor)
+        self.motion.linear + S::velocity_at(self.motion.spin, point - self.frame.contactor)
     }
 
     /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
@@ -77,7 +120,7 @@ impl<'a, S: Space> Meeting<'a, S> {
     pub(super) fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
         let rotation = self.frame.rotation;
         let force = S::rotate(rotation, wrench.force);
-        let about_target = wrench.moment + S::moment(self.apart, wrench.force);
+        let about_target = wrench.moment + S::moment(self.motion.apart, wrench.force);
         (
             Wrench { force, moment: S::rotate_spin(rotation, wrench.moment) },
             Wrench { force: -force, moment: -S::rotate_spin(rotation, about_target) },

@@ -3,7 +3,7 @@
 use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
 use crate::real::{Mask, Real};
-use crate::shape::{Patch, Spread, Touch};
+use crate::shape::{Gap, Patch, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
@@ -13,6 +13,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
         let Touch { node, gap } = patch.deepest;
         self.look_ahead(node, gap);
+        self.look_at_speed(node, gap);
         if !gap.distance.lt(zero).any() {
             return;
         }
@@ -28,6 +29,17 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                 self.node(first, node, gap, one);
             }
         }
+    }
+
+    /// Notes where springs and dampers set in or end too abruptly for a whole step, and where an impact is hard.
+    #[inline(always)]
+    fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
+        let Some(fast) = self.fast else { return };
+        let approach = -self.meeting.velocity(node).dot(gap.normal);
+        let way = self.lookahead * approach.abs();
+        let near = gap.distance.lt(way);
+        self.needs_substeps = self.needs_substeps | (near & fast.whole_step_way.lt(way));
+        self.is_hard = self.is_hard | (near & fast.hard.lt(approach));
     }
 
     /// A patch of more than one point.
