@@ -88,7 +88,7 @@ pub enum RunError {
     /// A number was lost.
     #[error(
         "the step failed at t = {time:.6} s: body \"{body}\" left the finite numbers; try a step \
-         below {time_step:e} s"
+         below {time_step:.2e} s"
     )]
     NotFinite {
         /// When (s).
