@@ -66,7 +66,7 @@ where
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// The time step (s), which impacts divide where the model says so ([`Substepping`](crate::model::Substepping));
+    /// The time step (s), which impacts divide where the model says so ([`Substepping`]);
     /// for an adaptive method, the first and the longest.
     pub time_step: f64,
     /// When the run ends (s).

@@ -1,15 +1,15 @@
 //! A stack in space while it is built up: racks of tubes, barrels of revolution, and which of them meet by which law.
 
-use barrelstack::assemble::{AssembleError, PartKind, SpatialLaws};
-use barrelstack::device::Words;
+use barrelstack::assemble::{AssembleError, PartKind, law_in_space, laws_in_space};
+use barrelstack::device::{Isolators, Words};
 use barrelstack::scenario::{BodyOverride, StackBody, StackPair, StackSpec, View};
 use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Element, InterfaceId, Motion, Nodes, Placed, Pose,
-    Rotation3, Spatial, Twist, Vec3,
+    Body, BodyId, ContactPair, Counts, Element, Interface, InterfaceId, Motion, Nodes, Placed,
+    Pose, Rotation3, Spatial, Twist, Vec3,
 };
 
-use crate::device::{FULL, Loose};
+use crate::device::Loose;
 use crate::part::{Part, Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
 use crate::stack::Stack;
@@ -24,7 +24,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) bodies: Vec<Body<Spatial>>,
     /// One part for every body, in the same order.
     pub(crate) parts: Vec<Part>,
-    pub(crate) laws: SpatialLaws,
+    pub(crate) laws: Laws,
     /// Elements that are fit to the stack at rest.
     pub(crate) loose: Vec<Loose>,
     /// Elements without which the stack does not stand, and what is said of them.
@@ -35,6 +35,32 @@ pub(crate) struct Builder<'a> {
     pub(crate) raised: f64,
 }
 
+/// The laws of contact, and the numbers of those of devices.
+pub(crate) struct Laws {
+    /// At the places of [`StackPair::ALL`], then those of devices in their order.
+    pub(crate) all: Vec<Interface<Spatial>>,
+    /// That of barrels in their cradles.
+    cradle: InterfaceId,
+    /// That of the bearings of platforms, where there are some: one at each corner.
+    pub(crate) bearing: Option<InterfaceId>,
+}
+
+impl Laws {
+    fn of(spec: &StackSpec) -> Self {
+        let mut all = laws_in_space(spec);
+        let mut add = |name, law| {
+            all.push(law_in_space(name, &law));
+            all.len() - 1
+        };
+        let pad = spec.devices.pad.law();
+        let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", law));
+        // Two corners make an end.
+        let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
+        let bearing = isolator.map(|isolator| add("isolator-ground", isolator.law(0.5)));
+        Self { all, cradle, bearing }
+    }
+}
+
 impl<'a> Builder<'a> {
     pub(crate) fn new(spec: &'a StackSpec, barrel: Barrel) -> Self {
         Self {
@@ -42,7 +68,7 @@ impl<'a> Builder<'a> {
             barrel,
             bodies: vec![ground()],
             parts: vec![Part::alone("ground", PartKind::Ground)],
-            laws: SpatialLaws::of(spec, FULL()),
+            laws: Laws::of(spec),
             loose: Vec::new(),
             held: Vec::new(),
             bearings: Vec::new(),

@@ -96,12 +96,7 @@ fn touch_by<S: Space>(
 ) {
     let own;
     let seen = if S::SOLIDS_SHARE {
-        let known = matches!(&scratch.seen, Some(seen) if seen.is_of(pair));
-        if !known {
-            scratch.seen = Some(Seen::new(model, pair, state, &scratch.rotations));
-        }
-        let Some(seen) = &scratch.seen else { return };
-        seen
+        Seen::shared(&mut scratch.seen, model, pair, state, &scratch.rotations)
     } else {
         own = Seen::new(model, pair, state, &scratch.rotations);
         &own

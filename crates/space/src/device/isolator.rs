@@ -3,14 +3,14 @@
 //! Springs and stops act at the middles of its four sides, so that they hold it from turning as well; stops stand on
 //! all four, so a corner of the way is further than its stroke.
 
-use barrelstack::assemble::PartKind;
+use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Isolators, Path};
 use barrelstack_dynamics::solid::{Block, Bulk, Dish, Hull, Part as Matter, compound};
 use barrelstack_dynamics::{
     BodyId, ContactPair, Counts, Link, Node, Nodes, Placed, Rotation3, Solid, Vec3,
 };
 
-use super::{FULL, Loose};
+use super::Loose;
 use crate::builder::{Builder, TRIBUTARY};
 use crate::part::Part;
 use crate::stack::Stack;
@@ -47,7 +47,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
                 bodies: [Stack::GROUND, platform],
                 points: [Vec3::default(), builder.within(platform, center + end)],
             };
-            let guide = device.guide(link, axis, 0.5, FULL());
+            let guide = device.guide(link, axis, 0.5, Similitude::FULL);
             builder.loose.push(Loose::new(guide, 0.0, Isolators::WORDS));
         }
     }

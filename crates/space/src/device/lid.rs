@@ -1,11 +1,11 @@
 //! Lids in space: as in both planes, and round, so that a barrel is let go of when it is out from under its lid to any
 //! side.
 
-use barrelstack::assemble::PartKind;
+use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Lids, lowest};
 use barrelstack_dynamics::{Link, Vec3};
 
-use super::{FULL, Loose};
+use super::Loose;
 use crate::builder::Builder;
 
 /// One on every barrel of its levels.
@@ -18,9 +18,9 @@ pub(super) fn place(device: &Lids, builder: &mut Builder<'_>) {
         let (name, size) = (part.name.clone(), part.size);
         let link = Link { name, bodies: [rack, barrel], points: [Vec3::default(); 2] };
         let up = builder.turned(rack).unapply(Vec3::new(0.0, 0.0, 1.0));
-        let guide = device.guide(link, up, size, FULL());
+        let guide = device.guide(link, up, size, Similitude::FULL);
         builder.loose.push(Loose::new(guide, 0.0, Lids::WORDS));
-        let [half, rise] = device.drawn(size, FULL());
+        let [half, rise] = device.drawn(size, Similitude::FULL);
         let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, rise);
         for way in [Vec3::new(half, 0.0, 0.0), Vec3::new(0.0, half, 0.0)] {
             builder.draw(rack, &[top - way, top + way]);

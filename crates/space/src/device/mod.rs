@@ -10,7 +10,7 @@ mod tie;
 mod tuned_mass;
 mod walking_stop;
 
-use barrelstack::assemble::{AssembleError, PartKind, Similitude};
+use barrelstack::assemble::{AssembleError, PartKind};
 use barrelstack::device::{Devices, Words};
 use barrelstack_dynamics::{
     BodyId, Element, Guide, Memory, ModelError, Rotation3, Spatial, State, Vec3,
@@ -18,9 +18,6 @@ use barrelstack_dynamics::{
 
 use crate::builder::Builder;
 use crate::stack::Stack;
-
-/// Nothing of a stack in space is scaled.
-pub(crate) const FULL: fn() -> Similitude = || Similitude::new(1.0);
 
 /// An element that is not fit yet to the stack at rest.
 #[derive(Clone, Debug)]

@@ -5,11 +5,11 @@
 //! Where levels are tied together every rack has one strap down each of its four sides, at its middle: those to the
 //! left and right are the ones that the plane across the barrels has, those nearest and farthest the ones along them.
 
-use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Straps, Ties, lowest};
 use barrelstack_dynamics::{BodyId, Link, Vec3};
 
-use super::{FULL, Loose};
+use super::Loose;
 use crate::builder::Builder;
 
 /// From the ground up, those on the left first.
@@ -62,7 +62,7 @@ fn strap(
     let points = [builder.turned(upper).unapply(from), builder.turned(lower).unapply(over)];
     let link = Link { name, bodies: [upper, lower], points };
     let (strap, give) = device
-        .strap(link, apart.z, FULL())
+        .strap(link, apart.z, Similitude::FULL)
         .map_err(|reason| AssembleError::NotInSpace { field: "stack.strap", reason })?;
     builder.loose.push(Loose::new(strap, give, Straps::WORDS));
     Ok(())

@@ -1,11 +1,11 @@
 //! Ties in space: from the middles of the four sides of a rack, those to the left and right as in the plane across the
 //! barrels, those at the near and the far side as in the plane along them, whose left is near.
 
-use barrelstack::assemble::{AssembleError, PartKind};
+use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
 use barrelstack_dynamics::{BodyId, Link, Vec3};
 
-use super::{FULL, Loose};
+use super::Loose;
 use crate::builder::Builder;
 use crate::stack::Stack;
 
@@ -82,6 +82,6 @@ fn tie(device: &AnchorTies, builder: &mut Builder<'_>, rack: BodyId, end: &End) 
         bodies: [rack, other],
         points: [builder.within(rack, from), builder.within(other, to)],
     };
-    let tie = device.tie(link, 1.0, FULL());
+    let tie = device.tie(link, 1.0, Similitude::FULL);
     builder.loose.push(Loose::new(tie, device.slack, AnchorTies::WORDS));
 }

@@ -1,10 +1,9 @@
 //! Tuned masses in space: they swing both ways, each way on the spring, the damper and the stops of a plane.
 
-use barrelstack::assemble::PartKind;
+use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::TunedMass;
 use barrelstack_dynamics::{Body, Link, Motion, Pose, Quaternion, Twist, Vec3};
 
-use super::FULL;
 use crate::builder::Builder;
 use crate::part::Part;
 
@@ -49,10 +48,14 @@ pub(super) fn place(device: &TunedMass, builder: &mut Builder<'_>) {
             let name = format!("{name} {way}");
             let link = Link { name, bodies: [rack, mass], points: [Vec3::default(); 2] };
             let axis = turned.unapply(Vec3::new(x, y, 0.0));
-            builder.held.push((device.swing(link, axis, 1.0, FULL()).into(), TunedMass::WORDS));
+            builder
+                .held
+                .push((device.swing(link, axis, 1.0, Similitude::FULL).into(), TunedMass::WORDS));
         }
         let link = Link { name, bodies: [rack, mass], points: [Vec3::default(); 2] };
         let up = turned.unapply(Vec3::new(0.0, 0.0, 1.0));
-        builder.held.push((device.hold(link, up, 1.0, FULL()).into(), TunedMass::SUPPORT));
+        builder
+            .held
+            .push((device.hold(link, up, 1.0, Similitude::FULL).into(), TunedMass::SUPPORT));
     }
 }

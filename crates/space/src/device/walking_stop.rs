@@ -4,11 +4,11 @@
 //! is further from that axis, upward or around the barrel, than at rest by its lip.
 //! A saddle is met across the barrel, wherever along it the rack lies, and is off once the rack has risen by its lip.
 
-use barrelstack::assemble::PartKind;
+use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Holds, WalkingStops, lowest};
 use barrelstack_dynamics::{BodyId, Guide, Link, Vec3};
 
-use super::{FULL, Loose};
+use super::Loose;
 use crate::builder::Builder;
 use crate::rack::Heights;
 
@@ -41,7 +41,7 @@ fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyI
     let point = builder.within(rack, over);
     let name = link(builder, rack, barrel, "along");
     let link = Link { name, bodies: [barrel, rack], points: [Vec3::default(), point] };
-    let guide = device.guide(link, axis, FULL());
+    let guide = device.guide(link, axis, Similitude::FULL);
     let hook = Loose { about_axis: true, ..Loose::new(guide, 0.0, WalkingStops::WORDS) };
     builder.loose.push(hook);
     // From the rack over both ends of the barrel.
@@ -58,8 +58,10 @@ fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [Bod
     let name = link(builder, rack, barrel, "across");
     let link = Link { name, bodies: [rack, barrel], points: [Vec3::default(); 2] };
     let turned = builder.turned(rack);
-    let guide =
-        Guide { free: turned.unapply(along), ..device.guide(link, turned.unapply(across), FULL()) };
+    let guide = Guide {
+        free: turned.unapply(along),
+        ..device.guide(link, turned.unapply(across), Similitude::FULL)
+    };
     builder.loose.push(Loose::new(guide, 0.0, WalkingStops::WORDS));
     let size = builder.parts[barrel].size;
     let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, size);

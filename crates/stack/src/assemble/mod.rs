@@ -13,13 +13,11 @@ mod stack;
 mod transverse;
 
 use barrelstack_dynamics::{
-    BodyId, Element, Interface, InterfaceId, Model, ModelError, Placed, Planar, Spatial, Vec2,
+    BodyId, Element, Interface, Model, ModelError, Placed, Planar, Spatial, Vec2,
 };
 
-use crate::device::{Isolators, Loose, Words};
-use crate::scenario::{
-    self, FreeInterface, Scenario, Scene, SpatialScene, StackPair, StackSpec, View,
-};
+use crate::device::{Loose, Words};
+use crate::scenario::{self, FreeInterface, Scenario, Scene, SpatialScene, StackSpec, View};
 use crate::step::TimeStepping;
 
 pub(crate) use builder::{Builder, Draft};
@@ -237,40 +235,20 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     Ok(assembly)
 }
 
-/// The laws of contact of a stack in space.
-#[derive(Clone, Debug)]
-pub struct SpatialLaws {
-    /// At the places of [`StackPair::ALL`], then those of devices in their order: those of the plane, of which every
-    /// element is a contact of its own.
-    pub all: Vec<Interface<Spatial>>,
-    /// The number of that of barrels in their cradles.
-    pub cradle: InterfaceId,
-    /// The number of that of the bearings of platforms, where there are some: one at each corner.
-    pub bearing: Option<InterfaceId>,
+/// The laws of contact of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL): those
+/// of the plane, of which every element is a contact of its own.
+pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
+    stack::laws(spec, 1.0, Similitude::FULL)
 }
 
-impl SpatialLaws {
-    /// Those of a stack.
-    pub fn of(spec: &StackSpec, scale: Similitude) -> Self {
-        let mut all = stack::laws(spec, 1.0, scale);
-        let mut add = |name: &str, law: &scenario::Interface| {
-            all.push(interfaces::interface(name, law, 1.0, scale));
-            all.len() - 1
-        };
-        let pad = spec.devices.pad.law();
-        let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", &law));
-        // Two corners make an end.
-        let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
-        let bearing = isolator.map(|isolator| add("isolator-ground", &isolator.law(0.5)));
-        Self { all, cradle, bearing }
-    }
+/// A law of contact in space.
+pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
+    interfaces::interface(name, law, 1.0, Similitude::FULL)
 }
 
 /// The laws of contact of a free scene in space, in the order of its interfaces.
 pub fn laws_of_free(scene: &SpatialScene) -> Vec<Interface<Spatial>> {
-    let law = |law: &FreeInterface| {
-        interfaces::interface(&law.between.join("-"), &law.law, 1.0, Similitude::new(1.0))
-    };
+    let law = |law: &FreeInterface| law_in_space(&law.between.join("-"), &law.law);
     scene.interfaces.iter().map(law).collect()
 }
 

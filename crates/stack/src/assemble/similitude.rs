@@ -13,6 +13,9 @@ pub struct Similitude {
 }
 
 impl Similitude {
+    /// Full size.
+    pub const FULL: Self = Self { length: 1.0 };
+
     /// A length scale λ.
     pub fn new(length: f64) -> Self {
         Self { length }

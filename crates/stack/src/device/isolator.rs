@@ -142,7 +142,7 @@ impl Isolators {
     }
 
     /// The law of a bearing, one of those under an end of a platform or of a share of it.
-    pub(crate) fn law(&self, share: f64) -> Interface {
+    pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
             basis: Basis::Node,

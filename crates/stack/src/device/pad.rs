@@ -70,7 +70,7 @@ impl Pads {
     }
 
     /// The law of one contact element on pads, where there are some.
-    pub(crate) fn law(&self) -> Option<Interface> {
+    pub fn law(&self) -> Option<Interface> {
         self.stiffness.map(|stiffness| Interface {
             basis: Basis::Node,
             normal: NormalLaw::KelvinVoigt {

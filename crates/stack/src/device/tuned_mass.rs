@@ -112,7 +112,7 @@ impl TunedMass {
     /// Half of its width and height (m) as drawn.
     pub const HALF: [f64; 2] = [0.15, 0.03];
     /// Of what holds a mass up, which is not told of.
-    pub const SUPPORT: &'static Words = &SUPPORT;
+    pub const SUPPORT: &'static Words = &Words::silent("support");
 
     /// Whether the stack has them.
     pub fn is_on(&self) -> bool {
@@ -201,5 +201,3 @@ impl TunedMass {
         Ok(())
     }
 }
-
-static SUPPORT: Words = Words::silent("support");

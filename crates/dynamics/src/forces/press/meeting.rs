@@ -50,10 +50,24 @@ impl<S: Space> Seen<S> {
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
 
-    /// Whether it is what a pair sees.
+    /// That of a pair: what the pair before it saw, where that is the same.
     #[inline(always)]
-    pub(super) fn is_of(&self, pair: &ContactPair) -> bool {
-        self.of == [pair.contactor, pair.target, pair.surface]
+    pub(super) fn shared<'a>(
+        last: &'a mut Option<Self>,
+        model: &Model<S>,
+        pair: &ContactPair,
+        state: &State<S>,
+        rotations: &[S::Rotation],
+    ) -> &'a Self {
+        let of = [pair.contactor, pair.target, pair.surface];
+        last.take_if(
+            #[inline(always)]
+            |seen| seen.of != of,
+        );
+        last.get_or_insert_with(
+            #[inline(always)]
+            || Self::new(model, pair, state, rotations),
+        )
     }
 }
 
