@@ -174,11 +174,11 @@ fn a_hunt_in_space_brackets_the_collapse() {
 
 #[test]
 fn what_space_does_not_know_is_a_row_with_its_reason() {
-    let lids = "[[factor]]\nfield = \"stack.lid.levels\"\nvalues = [1]\n";
+    let wine = "[[factor]]\nfield = \"stack.barrel.fill\"\nvalues = [\"part\"]\n";
     let table =
-        study(&format!("{PULSE}{lids}[design]\nkind = \"full-factorial\"")).table().unwrap();
+        study(&format!("{PULSE}{wine}[design]\nkind = \"full-factorial\"")).table().unwrap();
     let error = table.texts("error").unwrap()[0].as_deref().unwrap();
-    assert!(error.contains("lids are known in a plane"), "{error}");
+    assert!(error.contains("wine that sloshes is known in a plane"), "{error}");
     assert_eq!(table.integers("debris_near").unwrap()[0], None);
 }
 

@@ -53,7 +53,7 @@ fn what_space_does_not_know_is_refused_before_any_work() {
     for (more, told) in [
         (&["--verify"][..], "--verify is known in a plane"),
         (&["--set=stack.rack=rack-on-rack"], "has posts"),
-        (&["--set=stack.lid.levels=1"], "lids are known in a plane"),
+        (&["--set=stack.barrel.fill=part"], "wine that sloshes is known in a plane"),
         (&["--set=stack.columns_along=3", "--set=stack.rack=four-barrel"], "stack.columns_along"),
     ] {
         let output = barrelstack([&SOLID[..], more].concat());
