@@ -173,7 +173,7 @@ fn a_step_far_too_long_ends_with_the_time_and_the_body() {
             error.to_string(),
             format!(
                 "the step failed at t = {time:.6} s: body \"squeezed\" left the finite numbers; try \
-                 a step below 1e-2 s"
+                 a step below 1.00e-2 s"
             )
         );
     }
