@@ -90,7 +90,8 @@ fn dishes_swing_as_pendulums_in_every_direction() {
     {
         let ways = ways(&run, "platform of R1");
         let ways: Vec<_> = ways.iter().map(|(time, way)| (*time, way.dot(axis))).collect();
-        near(name, period(&ways, 0.3), TAU * (1.0 / GRAVITY).sqrt(), 5e-3);
+        // Measured 3.9e-4 and 8.4e-4 off.
+        near(name, period(&ways, 0.3), TAU * (1.0 / GRAVITY).sqrt(), 2e-3);
     }
 }
 
@@ -104,10 +105,12 @@ fn a_sheet_slides_as_the_block_of_newmark_whatever_the_direction() {
     for angle in [0.0, 90.0, 37.0] {
         let run = run(&stack(&settings, &pulse(push, seconds), 4.0, angle)).unwrap();
         let (_, last) = *ways(&run, "platform of R1").last().unwrap();
+        // Measured 9.1e-3 to 9.4e-3 off.
         near(&format!("{angle} degrees"), last.length(), exact, 1e-2);
         let (sin, cos) = angle.to_radians().sin_cos();
         let aside = (last.x * sin - last.y * cos).abs();
-        assert!(aside < 1e-3 * exact, "{aside} m aside");
+        println!("{aside:e} m aside");
+        assert!(aside < 1e-3 * exact, "{aside} m aside"); // measured 1.6e-4 m
     }
 }
 
@@ -127,7 +130,8 @@ fn stops_of_a_platform_on_springs_hold_it_both_ways() {
         ways(&run, "platform of R1").iter().map(|(time, way)| (*time, way.dot(axis))).collect()
     };
     let exact = TAU * (aboard / spring).sqrt();
-    near("across", period(&of(Vec3::new(1.0, 0.0, 0.0)), 0.2), exact, 5e-3);
+    // Measured 5.1e-4 off across, and 4.1e-3 along.
+    near("across", period(&of(Vec3::new(1.0, 0.0, 0.0)), 0.2), exact, 2e-3);
     near("along", period(&of(Vec3::new(0.0, 1.0, 0.0)), 0.2), exact, 5e-3);
 }
 
@@ -152,7 +156,8 @@ fn a_stack_glides_between_ties_to_walls_on_all_four_sides() {
         assert_eq!(run.elements.len(), 4 + 4);
         let ways = ways(&run, "R1");
         let ways: Vec<_> = ways.iter().map(|(time, way)| (*time, way.dot(axis))).collect();
-        near(&format!("{angle}"), period(&ways, seconds), 4.0 * slack / speed + TAU / omega, 5e-3);
+        // Measured 6.4e-5 across and 6.8e-4 along.
+        near(&format!("{angle}"), period(&ways, seconds), 4.0 * slack / speed + TAU / omega, 2e-3);
     }
 }
 
@@ -188,7 +193,7 @@ fn a_tuned_mass_splits_the_frequency_of_its_platform_both_ways() {
                     (*time, aboard * x.dot(axis) + mass * shape * y.dot(axis))
                 })
                 .collect();
-            // Along the barrels what they stick to gives: measured 2.8e-3 off, across 3.5e-4.
+            // Measured 2.8e-3 off along, 3.5e-4 across.
             near("period of a mode", period(&mode, 0.1), TAU / square.sqrt(), 5e-3);
         }
     }
@@ -223,6 +228,7 @@ fn barrels_sink_into_pads_by_their_weight() {
     let along = spec.rack.rail_half_spacing / arc;
     let upward = CRADLE.to_radians().cos() * (1.0 - along * along).sqrt();
     let exact = BARREL * GRAVITY / (4.0 * upward * upward) * (1.0 / 2e5 - 1.0 / 4e5);
+    // Measured 7.5e-3 off.
     near("sinks", sinks(2e5) - sinks(4e5), exact, 1e-2);
 }
 
@@ -238,7 +244,8 @@ fn a_lid_holds_what_would_roll_out() {
         "interface.barrel-rack.stiffness='500 MN/m'",
         "interface.barrel-rack.friction.coefficient=0",
     ];
-    near("force", largest(&run(&stack(&settings, &growing(0.9), 8.0, 0.0)).unwrap()), exact, 1e-2);
+    let force = largest(&run(&stack(&settings, &growing(0.9), 8.0, 0.0)).unwrap());
+    near("force", force, exact, 2e-3); // measured 6.1e-4
 }
 
 #[test]
@@ -261,7 +268,8 @@ fn hooks_and_saddles_bear_what_a_rack_without_friction_is_pushed_with() {
         assert_eq!(run.elements.len(), 2);
         let exact = if holds == "along" { pushed * on_a_slope(&run) } else { pushed };
         for element in &run.elements {
-            near(holds, element.peak.0.abs(), exact, 1e-2);
+            // Measured 3.9e-4 across and 2.0e-3 along.
+            near(holds, element.peak.0.abs(), exact, 5e-3);
         }
     }
 }
@@ -305,9 +313,9 @@ fn a_saddle_lets_a_rack_go_along_and_a_hook_lets_it_go_across() {
         let (time, way) = *ways(&run, "R2").last().unwrap();
         let gone = 0.05 * GRAVITY * 0.2 * (time - 0.1);
         println!("{holds}: {} m of {gone} m, {:.1} N", way.length(), largest(&run));
-        assert!(way.length() > 0.8 * gone);
+        assert!(way.length() > 0.95 * gone); // measured 1.00 and 1.03
         assert!(run.elements.iter().all(|element| element.broken_at.is_none()));
-        assert!(largest(&run) < 50.0);
+        assert!(largest(&run) < 1.0); // measured 0.0
     }
 }
 
@@ -358,7 +366,9 @@ fn a_mirrored_stack_with_all_devices_has_the_same_forces_on_the_other_side() {
         all
     };
     let (one, other) = (peaks(&[]), peaks(&["stack.mirror=true", "motion.scale.factor=-1"]));
-    assert!(one.iter().filter(|force| **force > 0.0).count() > 10, "{one:?}");
+    let bearing = one.iter().filter(|force| **force > 0.0).count();
+    println!("{bearing} bear");
+    assert!(bearing > 10, "{one:?}"); // measured 21
     let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("{apart:e} N apart");
     assert!(apart < 1e-6, "{apart}"); // measured 1.4e-9
@@ -379,9 +389,12 @@ fn seats_bear_weight_and_push_whatever_the_direction() {
     }
     assert_eq!(summary.interfaces.len(), 3);
     let load = summary.demands.stave_utilization.unwrap();
-    near("staves", load, BARREL * GRAVITY / pushed.stack.stave_capacity, 1e-3);
-    near("still", demands(&still).stress_amplification.unwrap(), 1.0, 1e-6);
-    near("still", demands(&still).mean_stress_amplification.unwrap(), 1.0, 1e-6);
+    near("staves", load, BARREL * GRAVITY / pushed.stack.stave_capacity, 1e-3); // measured 1.5e-5
+    // Measured 5.2e-9 and 4.9e-9 off.
+    near("still", demands(&still).stress_amplification.unwrap(), 1.0, 1e-7);
+    near("still", demands(&still).mean_stress_amplification.unwrap(), 1.0, 1e-7);
     // A barrel that is pushed to a side leans on its supports there.
-    assert!(summary.demands.stress_amplification.unwrap() > 1.1);
+    let most = summary.demands.stress_amplification.unwrap();
+    println!("{most}");
+    assert!(most > 1.1); // measured 1.60
 }

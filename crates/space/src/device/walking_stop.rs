@@ -29,7 +29,7 @@ pub(super) fn place(device: &WalkingStops, builder: &mut Builder<'_>) {
     }
 }
 
-fn link(builder: &Builder<'_>, rack: BodyId, barrel: BodyId, way: &str) -> String {
+fn named(builder: &Builder<'_>, rack: BodyId, barrel: BodyId, way: &str) -> String {
     format!("{}-{} {way}", builder.parts[rack].name, builder.parts[barrel].name)
 }
 
@@ -39,7 +39,7 @@ fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyI
     let over =
         center + Vec3::new(0.0, 0.0, Heights::of(&builder.spec.rack, &builder.barrel).underside);
     let point = builder.within(rack, over);
-    let name = link(builder, rack, barrel, "along");
+    let name = named(builder, rack, barrel, "along");
     let link = Link { name, bodies: [barrel, rack], points: [Vec3::default(), point] };
     let guide = device.guide(link, axis, Similitude::FULL);
     let hook = Loose { about_axis: true, ..Loose::new(guide, 0.0, WalkingStops::WORDS) };
@@ -55,7 +55,7 @@ fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyI
 
 fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyId; 2]) {
     let [across, along] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
-    let name = link(builder, rack, barrel, "across");
+    let name = named(builder, rack, barrel, "across");
     let link = Link { name, bodies: [rack, barrel], points: [Vec3::default(); 2] };
     let turned = builder.turned(rack);
     let guide = Guide {
