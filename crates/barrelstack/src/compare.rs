@@ -4,7 +4,7 @@ mod labels;
 mod page;
 mod tables;
 
-use barrelstack_report::{Document, described};
+use barrelstack_report::described;
 
 use crate::run::Run;
 use crate::scenario::Scenario;
@@ -12,6 +12,7 @@ use crate::summary::Summary;
 use crate::variants::{Answer, Spread};
 
 pub use labels::labels;
+pub use page::document;
 
 /// One run among others.
 #[derive(Clone, Debug)]
@@ -155,9 +156,4 @@ pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec
 /// The letter of a run: A for the first.
 fn letter(at: usize) -> char {
     char::from(b'A' + u8::try_from(at).unwrap_or(0))
-}
-
-/// The comparison as a document, free of any output format.
-pub fn document(sides: &[Side]) -> Document {
-    page::document(sides)
 }

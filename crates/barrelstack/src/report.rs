@@ -23,11 +23,11 @@ use crate::variants::{self, Answer, Plane, Remedy, Shown, Variants};
 use crate::verify::Verification;
 
 pub use glossary::WORDS;
-pub(crate) use inputs::{setting_row, shown};
+pub(crate) use inputs::{settings_table, shown};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
 pub use tables::{demand_table, device_table, interface_table};
-pub use words::device as device_sentence;
+pub use words::{device as device_sentence, fine};
 pub(crate) use words::{headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
@@ -36,11 +36,6 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences.extend(summary.remedy.as_ref().map(Remedy::sentence));
     sentences.extend(words::details(run, summary, None));
     sentences
-}
-
-/// The sentences with the numbers behind those.
-pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
-    words::fine(run, summary)
 }
 
 /// The whole report as a document, free of any output format.
@@ -89,7 +84,7 @@ fn page(
             headline: headline(run, summary),
             advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
             command: words::command(summary),
-            fine: words::fine(run, summary),
+            fine: fine(run, summary),
             sentences: words::details(run, summary, verification),
             tone: tone(run, summary),
         },

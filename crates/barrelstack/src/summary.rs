@@ -5,7 +5,7 @@ mod devices;
 use barrelstack_dynamics::EnergySummary;
 use barrelstack_report::described;
 
-use crate::assemble::PartKind;
+use crate::assemble::{Part, PartKind};
 use crate::demand::Demands;
 use crate::ground::MotionSummary;
 use crate::outcome::Outcome;
@@ -13,7 +13,7 @@ use crate::run::Run;
 use crate::scenario::View;
 use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
-use crate::watch::{Joint, StressEnvelope};
+use crate::watch::{Fate, Joint, StressEnvelope};
 
 pub use devices::{Device, Devices, ElementSummary};
 
@@ -21,48 +21,48 @@ described! {
     /// The summary of a run. Lengths in m, times in s, forces in N, angles in rad; null where it did not
     /// happen or does not apply.
     #[derive(Clone, Debug)]
-    pub struct Summary {
+    pub struct Summary of run: &Run, wall_seconds: Option<f64> {
         /// Name and version of this layout.
-        pub schema: &'static str ["summary/2"],
+        pub schema: &'static str ["summary/2"] = "summary/2",
         /// The scenario's title.
-        pub title: String,
+        pub title: String = run.stated.title.clone(),
         /// The plane of the model; null for a free scene.
-        pub view: Option<&'static str> ["transverse", "longitudinal"],
+        pub view: Option<&'static str> ["transverse", "longitudinal"] = run.assembly.view.map(View::name),
         /// Which variant of the stack this is; 0 as it is stated.
-        pub variant: u32,
+        pub variant: u32 = 0,
         /// What all variants say together; null where none were run.
-        pub ensemble: Option<Spread>,
+        pub ensemble: Option<Spread> = None,
         /// What would have kept the stack up; null where it stands, or nothing was looked for.
-        pub remedy: Option<Remedy>,
+        pub remedy: Option<Remedy> = None,
         /// What happened.
-        pub outcome: OutcomeSummary,
+        pub outcome: OutcomeSummary = outcome(run),
         /// Every body but the ground; none where the run is invalid.
-        pub bodies: Vec<BodySummary>,
+        pub bodies: Vec<BodySummary> = bodies(run),
         /// Demands on the stack.
-        pub demands: Demands,
+        pub demands: Demands = demands(run),
         /// Forces between bodies; none where the run is invalid.
-        pub interfaces: Vec<JointSummary>,
+        pub interfaces: Vec<JointSummary> = joints(run),
         /// The force elements of every device, where there are any.
         #[serde(flatten)]
-        pub devices: Devices,
+        pub devices: Devices = Devices::of(run),
         /// The energy books; null where numbers were lost.
-        pub energy: Option<EnergyBooks>,
+        pub energy: Option<EnergyBooks> = run.energy.as_ref().map(EnergyBooks::of),
         /// What shook it.
-        pub motion: Option<MotionSummary>,
+        pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
         /// How it was computed.
-        pub run: RunSummary,
+        pub run: RunSummary = RunSummary::of(run, wall_seconds),
         /// What the reader should know.
-        pub warnings: Vec<String>,
+        pub warnings: Vec<String> = run.warnings.clone(),
         /// What made the result.
-        pub provenance: Provenance,
+        pub provenance: Provenance = Provenance::of(run),
         /// What repeats say about it; null where there were none.
-        pub verification: Option<Verification>,
+        pub verification: Option<Verification> = None,
         /// The same of the other plane, where the scenario looks at its stack in both: this one is the worse.
-        pub other_plane: Option<Box<Summary>>,
+        pub other_plane: Option<Box<Summary>> = None,
     }
 
     /// What happened.
-    #[derive(Clone, Debug)]
+    #[derive(Clone, Debug, Default)]
     pub struct OutcomeSummary {
         /// What it was.
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
@@ -88,46 +88,46 @@ described! {
 
     /// One body.
     #[derive(Clone, Debug)]
-    pub struct BodySummary {
+    pub struct BodySummary of part: &Part, fate: Fate, stress: Option<&StressEnvelope> {
         /// Its name.
-        pub name: String,
+        pub name: String = part.name.clone(),
         /// What it is.
-        pub kind: &'static str ["barrel", "rack", "body"],
+        pub kind: &'static str ["barrel", "rack", "body"] = part.kind.name(),
         /// Level, 1 at the bottom.
-        pub level: Option<u32>,
+        pub level: Option<u32> = part.level,
         /// Column, 1 at the left.
-        pub column: Option<u32>,
+        pub column: Option<u32> = part.column,
         /// When it left its seat.
-        pub left_seat_at: Option<f64> as "s",
+        pub left_seat_at: Option<f64> as "s" = fate.left_seat.map(|(time, _)| time),
         /// When it had fallen.
-        pub fell_at: Option<f64> as "s",
+        pub fell_at: Option<f64> as "s" = fate.fell_at,
         /// Largest drop below its place at rest, for what fell.
-        pub fall_height: Option<f64> as "m",
+        pub fall_height: Option<f64> as "m" = fate.fell_at.map(|_| fate.drop),
         /// When it landed: when it went down less than half as fast as it had since it fell.
-        pub landed_at: Option<f64> as "s",
+        pub landed_at: Option<f64> as "s" = fate.landed_at,
         /// Its largest speed downward until then.
-        pub landing_speed: Option<f64> as "m/s",
+        pub landing_speed: Option<f64> as "m/s" = fate.landing_speed,
         /// Largest force on it since it had fallen.
-        pub fall_force: Option<f64> as "N",
+        pub fall_force: Option<f64> as "N" = fate.fall_force,
         /// Displacement along x relative to the ground, at the end.
-        pub residual_displacement: f64 as "m",
+        pub residual_displacement: f64 as "m" = fate.residual_displacement,
         /// Largest displacement along x relative to the ground, while the stack stood.
-        pub peak_displacement: f64 as "m",
+        pub peak_displacement: f64 as "m" = fate.peak_displacement,
         /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's way in its
         /// cradle.
-        pub residual_slip: f64 as "m",
+        pub residual_slip: f64 as "m" = fate.residual_slip,
         /// Largest such displacement while the stack stood.
-        pub peak_slip: f64 as "m",
+        pub peak_slip: f64 as "m" = fate.peak_slip,
         /// Largest rise above its place at rest while the stack stood.
-        pub peak_uplift: f64 as "m",
+        pub peak_uplift: f64 as "m" = fate.peak_uplift,
         /// Largest tilt while the stack stood; racks only.
-        pub peak_tilt: Option<f64> as "rad",
+        pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
         /// Largest normal stress at rest, per meter of boundary.
-        pub stress_at_rest: Option<f64> as "N/m",
+        pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
         /// Largest normal stress while the stack stood, over the largest at rest.
-        pub stress_amplification: Option<f64> as "1",
+        pub stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification),
         /// Average over the loaded boundary of the same ratio.
-        pub mean_stress_amplification: Option<f64> as "1",
+        pub mean_stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::mean_amplification),
     }
 
     /// The force between two bodies.
@@ -149,146 +149,75 @@ described! {
 
     /// The energy books at the end (J), relative to the start.
     #[derive(Clone, Debug)]
-    pub struct EnergyBooks {
+    pub struct EnergyBooks of books: &EnergySummary {
         /// Kinetic energy.
-        pub kinetic: f64 as "J",
+        pub kinetic: f64 as "J" = books.kinetic,
         /// Potential energy in gravity.
-        pub potential: f64 as "J",
+        pub potential: f64 as "J" = books.potential,
         /// In contact springs and force elements.
-        pub elastic: f64 as "J",
+        pub elastic: f64 as "J" = books.elastic,
         /// In sticks.
-        pub stick: f64 as "J",
+        pub stick: f64 as "J" = books.stick,
         /// Lost in the dampers of contacts and elements, and with elements that broke.
-        pub damped: f64 as "J",
+        pub damped: f64 as "J" = books.damped,
         /// Lost to friction.
-        pub friction: f64 as "J",
+        pub friction: f64 as "J" = books.friction,
         /// Lost to viscous damping.
-        pub viscous: f64 as "J",
+        pub viscous: f64 as "J" = books.viscous,
         /// Work of the ground.
-        pub ground_work: f64 as "J",
+        pub ground_work: f64 as "J" = books.ground_work,
         /// What does not balance.
-        pub residual: f64 as "J",
+        pub residual: f64 as "J" = books.residual,
         /// Energy that went through: absolute work of the ground plus the drop of potential energy.
-        pub input: f64 as "J",
+        pub input: f64 as "J" = books.throughput,
         /// |residual| / input.
-        pub residual_ratio: f64 as "1",
+        pub residual_ratio: f64 as "1" = books.residual_ratio(),
     }
 
     /// How it was computed.
     #[derive(Clone, Debug)]
-    pub struct RunSummary {
+    pub struct RunSummary of run: &Run, wall_seconds: Option<f64> {
         /// Integration method.
-        pub method: &'static str,
+        pub method: &'static str = run.simulation.method.name(),
         /// Time step.
-        pub time_step: f64 as "s",
+        pub time_step: f64 as "s" = run.simulation.time_step,
         /// Accepted steps.
-        pub steps: u64,
+        pub steps: u64 = run.work.steps,
         /// Evaluations of all forces.
-        pub evaluations: u64,
+        pub evaluations: u64 = run.work.evaluations,
         /// Contact elements tested.
-        pub contact_evaluations: u64,
+        pub contact_evaluations: u64 = run.work.contact_evaluations,
         /// Simulated time reached.
-        pub end_time: f64 as "s",
+        pub end_time: f64 as "s" = run.end_time,
         /// Why it ended.
-        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"],
+        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] = run.ending.name(),
         /// Whether it was stopped early by the user.
-        pub interrupted: bool,
+        pub interrupted: bool = run.interrupted,
         /// What contact constants are stated for.
-        pub stiffness_basis: &'static str ["node", "length", "mixed"],
+        pub stiffness_basis: &'static str ["node", "length", "mixed"] = run.stiffness_basis(),
         /// Length scale of similitude.
-        pub similitude: f64 as "1",
+        pub similitude: f64 as "1" = run.scenario.run.similitude,
         /// Steps taken to find equilibrium.
-        pub settle_steps: Option<u64>,
+        pub settle_steps: Option<u64> = run.settled.map(|settled| settled.steps),
         /// Time on the clock.
-        pub wall_seconds: Option<f64> as "s",
+        pub wall_seconds: Option<f64> as "s" = wall_seconds,
     }
 
     /// What made the result.
     #[derive(Clone, Debug)]
-    pub struct Provenance {
+    pub struct Provenance of run: &Run {
         /// The program.
-        pub program: &'static str,
+        pub program: &'static str = "barrelstack",
         /// Its version.
-        pub version: &'static str,
+        pub version: &'static str = env!("CARGO_PKG_VERSION"),
         /// Hash of the scenario with every default written out.
-        pub scenario_hash: String,
+        pub scenario_hash: String = format!("{:016x}", run.stated.fingerprint()),
         /// Where the motion came from and what was done to it, one sentence each.
-        pub motion: Vec<String>,
-    }
-}
-
-impl EnergyBooks {
-    /// Those of a run.
-    pub fn of(books: &EnergySummary) -> Self {
-        Self {
-            kinetic: books.kinetic,
-            potential: books.potential,
-            elastic: books.elastic,
-            stick: books.stick,
-            damped: books.damped,
-            friction: books.friction,
-            viscous: books.viscous,
-            ground_work: books.ground_work,
-            residual: books.residual,
-            input: books.throughput,
-            residual_ratio: books.residual_ratio(),
-        }
+        pub motion: Vec<String> = run.ground.motion.iter().flat_map(|motion| motion.provenance.clone()).collect(),
     }
 }
 
 impl Summary {
-    /// Sums up a run; `wall_seconds` is the time it took on the clock, where it was measured.
-    pub fn of(run: &Run, wall_seconds: Option<f64>) -> Self {
-        Self {
-            schema: "summary/2",
-            title: run.stated.title.clone(),
-            view: run.assembly.view.map(View::name),
-            variant: 0,
-            ensemble: None,
-            remedy: None,
-            outcome: outcome(run),
-            // Numbers of a run that broke down look like results and are none.
-            bodies: if sound(run) { bodies(run) } else { Vec::new() },
-            demands: if sound(run) {
-                Demands::of(&run.assembly, &run.fates, &run.stresses, run.recording.forces())
-            } else {
-                Demands::default()
-            },
-            interfaces: if sound(run) { joints(run) } else { Vec::new() },
-            devices: Devices::of(run),
-            energy: run.energy.as_ref().map(EnergyBooks::of),
-            motion: run.ground.motion.as_ref().map(MotionSummary::of),
-            run: RunSummary {
-                method: run.simulation.method.name(),
-                time_step: run.simulation.time_step,
-                steps: run.work.steps,
-                evaluations: run.work.evaluations,
-                contact_evaluations: run.work.contact_evaluations,
-                end_time: run.end_time,
-                ending: run.ending.name(),
-                interrupted: run.interrupted,
-                stiffness_basis: run.stiffness_basis(),
-                similitude: run.scenario.run.similitude,
-                settle_steps: run.settled.map(|settled| settled.steps),
-                wall_seconds,
-            },
-            warnings: run.warnings.clone(),
-            provenance: Provenance {
-                program: "barrelstack",
-                version: env!("CARGO_PKG_VERSION"),
-                scenario_hash: format!("{:016x}", run.stated.fingerprint()),
-                motion: run
-                    .ground
-                    .motion
-                    .as_ref()
-                    .map(|motion| motion.provenance.clone())
-                    .unwrap_or_default(),
-            },
-            verification: None,
-            other_plane: None,
-        }
-    }
-
     /// What all variants say in each plane in which they were run, across the barrels first.
     pub fn spreads(&self) -> Vec<(View, &Spread)> {
         let own = std::iter::once(self).chain(self.other_plane.as_deref());
@@ -314,71 +243,49 @@ impl Summary {
     }
 }
 
-/// Whether the numbers of a run are results.
+/// Whether the numbers of a run are results; those of one that broke down look like results and are none.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }
 
 fn outcome(run: &Run) -> OutcomeSummary {
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
-    let mut summary = OutcomeSummary {
+    let summary = OutcomeSummary {
         kind: if run.interrupted && sound(run) { "interrupted" } else { run.outcome.kind() },
-        mode: None,
-        time: None,
-        first: None,
-        from_level: None,
-        to_level: None,
         first_fall: run.fates.first_fall().filter(|_| sound(run)),
         barrels_fallen: sound(run).then(|| {
             barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some()).count()
         }),
         barrels: barrels.len(),
-        reason: None,
+        ..OutcomeSummary::default()
     };
     match &run.outcome {
-        Outcome::Collapse { mode, time, first, from_level, to_level } => {
-            summary.mode = Some(mode.name());
-            summary.time = Some(*time);
-            summary.first = Some(first.clone());
-            summary.from_level = Some(*from_level);
-            summary.to_level = Some(*to_level);
-        }
-        Outcome::Invalid { reason } => summary.reason = Some(reason.clone()),
-        Outcome::Stable | Outcome::NotJudged => {}
+        Outcome::Collapse { mode, time, first, from_level, to_level } => OutcomeSummary {
+            mode: Some(mode.name()),
+            time: Some(*time),
+            first: Some(first.clone()),
+            from_level: Some(*from_level),
+            to_level: Some(*to_level),
+            ..summary
+        },
+        Outcome::Invalid { reason } => OutcomeSummary { reason: Some(reason.clone()), ..summary },
+        Outcome::Stable | Outcome::NotJudged => summary,
     }
-    summary
 }
 
 fn bodies(run: &Run) -> Vec<BodySummary> {
-    let parts = run.assembly.parts.iter().enumerate();
+    let parts = run.assembly.parts.iter().enumerate().filter(|_| sound(run));
     parts
         .filter(|(_, part)| part.kind != PartKind::Ground)
-        .map(|(i, part)| {
-            let fate = run.fates.fate(i);
-            let stress = run.stresses.of(i);
-            BodySummary {
-                name: part.name.clone(),
-                kind: part.kind.name(),
-                level: part.level,
-                column: part.column,
-                left_seat_at: fate.left_seat.map(|(time, _)| time),
-                fell_at: fate.fell_at,
-                fall_height: fate.fell_at.map(|_| fate.drop),
-                landed_at: fate.landed_at,
-                landing_speed: fate.landing_speed,
-                fall_force: fate.fall_force,
-                residual_displacement: fate.residual_displacement,
-                peak_displacement: fate.peak_displacement,
-                residual_slip: fate.residual_slip,
-                peak_slip: fate.peak_slip,
-                peak_uplift: fate.peak_uplift,
-                peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
-                stress_at_rest: stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-                stress_amplification: stress.and_then(StressEnvelope::amplification),
-                mean_stress_amplification: stress.and_then(StressEnvelope::mean_amplification),
-            }
-        })
+        .map(|(i, part)| BodySummary::of(part, run.fates.fate(i), run.stresses.of(i)))
         .collect()
+}
+
+fn demands(run: &Run) -> Demands {
+    if !sound(run) {
+        return Demands::default();
+    }
+    Demands::of(&run.assembly, &run.fates, &run.stresses, run.recording.forces())
 }
 
 impl JointSummary {
@@ -398,6 +305,6 @@ impl JointSummary {
 }
 
 fn joints(run: &Run) -> Vec<JointSummary> {
-    let joints = run.recording.forces().joints.iter();
+    let joints = run.recording.forces().joints.iter().filter(|_| sound(run));
     joints.filter_map(|joint| JointSummary::of(joint.name(&run.assembly), joint)).collect()
 }

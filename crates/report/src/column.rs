@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 
 use crate::described::{Described, Objects};
-use crate::{csv_field, described, shortest};
+use crate::{csv_field, described, escape::with_unit, shortest};
 
 /// What a column tells of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,11 +85,7 @@ impl ColumnSpec {
 
     /// The name with its unit, as files have it: `pga (m/s2)`.
     pub fn heading(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} ({})", self.name, self.unit)
-        }
+        with_unit(&self.name, &self.unit)
     }
 }
 

@@ -210,8 +210,8 @@ impl<'a> Walk<'a> {
 /// Declares an object of a document: a struct that is written as JSON and knows its schema.
 ///
 /// The comment of a field is its meaning. Behind the type follow, where there are any, the unit (`as "m/s"`,
-/// `as "1"` for a ratio), the words that it may be (`["a", "b"]`), and, in a struct that is made `of` something,
-/// its value.
+/// `as "1"` for a ratio), the words that it may be (`["a", "b"]`), and, in a struct that is made `of` one thing or
+/// several, its value.
 ///
 /// ```
 /// barrelstack_report::described! {
@@ -234,7 +234,7 @@ macro_rules! described {
     ($(
         $(#[doc = $doc:literal])+
         $(#[derive($($derive:path),* $(,)?)])?
-        $vis:vis struct $name:ident $(of $from:ident: $of:ty)? {
+        $vis:vis struct $name:ident $(of $($from:ident: $of:ty),+)? {
             $(
                 $(#[doc = $meaning:literal])+
                 $(#[serde($how:ident)])?
@@ -265,7 +265,7 @@ macro_rules! described {
                 }
             }
 
-            $crate::described!(@of $vis $name $(, $from, $of)? { $($field $(= $value)?),* });
+            $crate::described!(@of $vis $name $(, $($from: $of),+)? { $($field $(= $value)?),* });
         )*
     };
     (@option) => { None };
@@ -273,10 +273,10 @@ macro_rules! described {
     (@name) => { None };
     (@name $how:ident) => { Some(stringify!($how)) };
     (@of $vis:vis $name:ident { $($field:ident),* }) => {};
-    (@of $vis:vis $name:ident, $from:ident, $of:ty { $($field:ident = $value:expr),* }) => {
+    (@of $vis:vis $name:ident, $($from:ident: $of:ty),+ { $($field:ident = $value:expr),* }) => {
         impl $name {
             /// What there is to say of it.
-            $vis fn of($from: $of) -> Self {
+            $vis fn of($($from: $of),+) -> Self {
                 Self { $($field: $value),* }
             }
         }

@@ -85,6 +85,18 @@ impl Tone {
     }
 }
 
+impl Block {
+    /// A heading.
+    pub fn heading(level: u8, text: impl Into<String>) -> Self {
+        Self::Heading { level, text: text.into() }
+    }
+
+    /// Blocks that are folded away under a line.
+    pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
+        Self::Details { summary: summary.into(), blocks }
+    }
+}
+
 /// The summary of the fold that holds [`Verdict::fine`].
 pub(crate) const FINE: &str = "The numbers behind it";
 

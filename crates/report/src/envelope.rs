@@ -190,9 +190,7 @@ impl Envelope {
     }
 
     pub(crate) fn to_csv(&self) -> String {
-        let unit = |name: &str, unit: &str| {
-            escape::csv(&if unit.is_empty() { name.into() } else { format!("{name} ({unit})") })
-        };
+        let unit = |name: &str, unit: &str| escape::csv(&escape::with_unit(name, unit));
         let name = if self.coordinate.0.is_empty() { "coordinate" } else { &self.coordinate.0 };
         let mut out = format!(
             "{},x (m),z (m),nx,nz,{},{}\n",

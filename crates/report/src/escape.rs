@@ -32,6 +32,11 @@ pub fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// A name with its unit behind it, where it has one: `pga (m/s2)`.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+}
+
 /// JSON text that cannot end the script element it sits in.
 ///
 /// In JSON `<` occurs only inside strings, where `\u003c` means the same.

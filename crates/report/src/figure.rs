@@ -34,7 +34,28 @@ pub enum FigureKind {
     Diagram(Diagram),
 }
 
+macro_rules! kinds {
+    ($($kind:ident),*) => {
+        $(impl From<$kind> for FigureKind {
+            fn from(picture: $kind) -> Self {
+                Self::$kind(picture)
+            }
+        })*
+    };
+}
+
+kinds!(Plot, Panels, Strip, Envelope, Diagram);
+
 impl Figure {
+    /// A picture with its name and its caption.
+    pub fn new(
+        id: impl Into<String>,
+        caption: impl Into<String>,
+        picture: impl Into<FigureKind>,
+    ) -> Self {
+        Self { id: id.into(), caption: caption.into(), kind: picture.into() }
+    }
+
     /// The picture as a standalone SVG document: white ground, text as text, f64 coordinates.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()

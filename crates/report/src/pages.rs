@@ -3,7 +3,7 @@
 use pdf_writer::types::StructRole;
 
 use crate::{
-    Block, Document, EventKind, Figure, FigureKind, Panel, Player, Strip, Table, Tone,
+    Block, Document, EventKind, Figure, Panel, Player, Strip, Table, Tone,
     document::FINE,
     drawing::{Anchor, Drawing, Item},
     escape,
@@ -364,11 +364,7 @@ impl<'a> Flow<'a> {
         };
         let panel = Panel { time: fall.time, note: fall.text.clone() };
         let strip = Strip { scene: player.scene.clone(), panels: vec![panel] };
-        Figure {
-            id: player.id.clone(),
-            caption: player.caption.clone(),
-            kind: FigureKind::Strip(strip),
-        }
+        Figure::new(&player.id, &player.caption, strip)
     }
 
     fn player(&mut self, player: &Player) {

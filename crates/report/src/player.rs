@@ -24,11 +24,7 @@ impl Player {
         let scene = Arc::clone(&self.scene);
         let strip =
             if shows_strip(blocks, &scene) { Strip::still(scene) } else { Strip::of_run(scene, 6) };
-        Figure {
-            id: self.id.clone(),
-            caption: self.caption.clone(),
-            kind: FigureKind::Strip(strip),
-        }
+        Figure::new(&self.id, &self.caption, strip)
     }
 }
 
@@ -77,11 +73,8 @@ impl Players {
             .map(|(at, pane)| {
                 let panels = times.iter().map(|&time| Panel { time, note: String::new() });
                 let strip = Strip { scene: Arc::clone(&pane.scene), panels: panels.collect() };
-                Figure {
-                    id: format!("{}-{}", self.id, at + 1),
-                    caption: format!("{}: {}. {}", pane.mark, pane.name, pane.verdict),
-                    kind: FigureKind::Strip(strip),
-                }
+                let caption = format!("{}: {}. {}", pane.mark, pane.name, pane.verdict);
+                Figure::new(format!("{}-{}", self.id, at + 1), caption, strip)
             })
             .collect()
     }

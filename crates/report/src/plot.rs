@@ -76,11 +76,10 @@ impl Axis {
 
     /// Name and unit as printed.
     pub(crate) fn title(&self) -> String {
-        match (self.label.is_empty(), self.unit.is_empty()) {
-            (_, true) => self.label.clone(),
-            (true, false) => self.unit.clone(),
-            (false, false) => format!("{} ({})", self.label, self.unit),
+        if self.label.is_empty() {
+            return self.unit.clone();
         }
+        escape::with_unit(&self.label, &self.unit)
     }
 
     /// Whether the axis can show `value`.
@@ -166,6 +165,12 @@ pub struct Band {
 }
 
 impl Plot {
+    /// Lines over time (s), with chosen times, which the page draws live.
+    pub fn over_time(y: Axis, series: Vec<Series>, marks: Vec<Mark>) -> Self {
+        let x = Axis::new("time", "s");
+        Self { x, y, series, marks, interactive: true, ..Self::default() }
+    }
+
     /// Whether the page may draw it live: asked for, x never decreases, and no names or ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
@@ -203,9 +208,7 @@ impl Plot {
                 None => groups.push((x, vec![series])),
             }
         }
-        let with_unit = |label: &str, unit: &str| {
-            escape::csv(&if unit.is_empty() { label.into() } else { format!("{label} ({unit})") })
-        };
+        let with_unit = |label: &str, unit: &str| escape::csv(&escape::with_unit(label, unit));
         let mut header = Vec::new();
         for (_, members) in &groups {
             header.push(with_unit(&self.x.label, &self.x.unit));

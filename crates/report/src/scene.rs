@@ -193,13 +193,7 @@ impl EventKind {
     }
 
     pub(crate) fn class(self) -> &'static str {
-        match self {
-            Self::Uplift => "uplift",
-            Self::Slip => "slip",
-            Self::LossOfSeat => "seat",
-            Self::Fall => "fall",
-            Self::Note => "note",
-        }
+        if self == Self::LossOfSeat { "seat" } else { self.word() }
     }
 }
 

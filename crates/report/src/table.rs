@@ -29,11 +29,7 @@ impl Column {
     }
 
     pub(crate) fn heading(&self) -> String {
-        if self.unit.is_empty() {
-            self.name.clone()
-        } else {
-            format!("{} ({})", self.name, self.unit)
-        }
+        escape::with_unit(&self.name, &self.unit)
     }
 }
 
@@ -80,6 +76,21 @@ impl Cell {
         Self::Text(text.into())
     }
 
+    /// A cell of text, where there is one.
+    pub fn maybe(text: Option<impl Into<String>>) -> Self {
+        text.map_or(Self::Missing, Self::text)
+    }
+
+    /// A number, where there is one, and the count of its significant digits.
+    pub fn number(value: Option<f64>, digits: usize) -> Self {
+        value.map_or(Self::Missing, |value| Self::Number(value, digits))
+    }
+
+    /// A measured number, where there is one, and the most of its decimals.
+    pub fn measured(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or(Self::Missing, |value| Self::Measured(value, decimals))
+    }
+
     pub(crate) fn shown(&self) -> String {
         match self {
             Self::Text(text) | Self::Rated(_, text) => text.clone(),
@@ -90,11 +101,26 @@ impl Cell {
     }
 }
 
+/// A column of a table of things: its name, its unit, and its cell of a thing.
+pub type Told<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+
 impl Table {
     /// An empty table with these columns, given as pairs of name and unit.
     pub fn new(caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
         let columns = columns.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
         Self { caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// A table with a row for each of some things: its columns by their name, their unit and what their cell
+    /// tells of a thing.
+    pub fn of<T>(
+        caption: impl Into<String>,
+        things: impl IntoIterator<Item = T>,
+        columns: &[Told<'_, T>],
+    ) -> Self {
+        let heads: Vec<_> = columns.iter().map(|(name, unit, _)| (*name, *unit)).collect();
+        let row = |thing: T| columns.iter().map(|(.., cell)| cell(&thing)).collect();
+        Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
     /// The table as CSV: a header with units, then every row at full precision.

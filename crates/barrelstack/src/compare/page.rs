@@ -2,8 +2,8 @@
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
-    Axis, Block, Document, Figure, FigureKind, History, Mark, Pane, Players, Plot, Series,
-    SeriesStyle, Verdict, capital, significant,
+    Axis, Block, Document, Figure, History, Mark, Pane, Players, Plot, Series, SeriesStyle,
+    Verdict, capital, significant,
 };
 
 use super::{Difference, Side, differences, letter, tables};
@@ -13,12 +13,13 @@ use crate::report;
 use crate::scenario::title;
 use crate::variants::{Spread, words};
 
-pub(super) fn document(sides: &[Side]) -> Document {
+/// The comparison as a document, free of any output format.
+pub fn document(sides: &[Side]) -> Document {
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     let mut blocks = vec![Block::Players(players(sides))];
     let mut section = |title: &str, content: Vec<Block>| {
         if !content.is_empty() {
-            blocks.push(Block::Heading { level: 2, text: title.to_owned() });
+            blocks.push(Block::heading(2, title));
             blocks.extend(content);
         }
     };
@@ -26,13 +27,8 @@ pub(super) fn document(sides: &[Side]) -> Document {
     section("What came of it", vec![Block::Table(tables::outcomes(sides))]);
     section("Demands", vec![Block::Table(tables::demands(sides))]);
     section("Histories", histories(sides));
-    section(
-        "Inputs in common",
-        vec![Block::Details {
-            summary: "Every input that is the same".into(),
-            blocks: vec![Block::Table(tables::common(sides, &differing))],
-        }],
-    );
+    let common = vec![Block::Table(tables::common(sides, &differing))];
+    section("Inputs in common", vec![Block::details("Every input that is the same", common)]);
     Document {
         title: heading(sides),
         verdict: verdict(sides, &differing),
@@ -327,19 +323,9 @@ fn history(
             lines.iter().zip(&ranges).map(|((_, one), range)| range.unwrap_or_else(|| own(one)));
         y.range = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
     }
-    Block::Figure(Figure {
-        id: id.to_owned(),
-        caption: caption.to_owned(),
-        kind: FigureKind::Plot(Plot {
-            x: Axis::new("time", "s"),
-            y,
-            series: lines.into_iter().map(|(_, one)| one).collect(),
-            marks: marks.collect(),
-            interactive: true,
-            timeline: true,
-            ..Plot::default()
-        }),
-    })
+    let series = lines.into_iter().map(|(_, one)| one).collect();
+    let plot = Plot::over_time(y, series, marks.collect());
+    Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
 /// What made the results: once where it is the same for all, else for each run.

@@ -17,10 +17,6 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
     table
 }
 
-fn text(value: Option<&String>) -> Cell {
-    value.map_or(Cell::Missing, Cell::text)
-}
-
 /// The inputs that differ.
 pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     let mut table = table(
@@ -31,8 +27,8 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     );
     for one in differing {
         let mut row = vec![Cell::text(&one.path)];
-        let shown = |value: &String| Cell::text(report::shown(&one.path, value));
-        row.extend(one.values.iter().map(|v| v.as_ref().map_or(Cell::Missing, shown)));
+        let shown = |value: &String| report::shown(&one.path, value);
+        row.extend(one.values.iter().map(|value| Cell::maybe(value.as_ref().map(shown))));
         row.push(Cell::text(one.help));
         table.rows.push(row);
     }
@@ -41,17 +37,10 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
 
 /// The inputs that are the same in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
-    let mut table = Table::new(
-        "Inputs that all runs share.",
-        &[("input", ""), ("value", ""), ("source", ""), ("meaning", "")],
-    );
-    let Some(first) = sides.first() else { return table };
-    for setting in first.run.stated.settings() {
-        if differing.iter().all(|one| one.path != setting.path) {
-            table.rows.push(report::setting_row(&setting).to_vec());
-        }
-    }
-    table
+    let mut settings: Vec<_> =
+        sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
+    settings.retain(|setting| differing.iter().all(|one| one.path != setting.path));
+    report::settings_table("Inputs that all runs share.", &settings)
 }
 
 /// What became of each run.
@@ -62,15 +51,13 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         row.extend(sides.iter().map(cell));
         table.rows.push(row);
     };
-    let seconds =
-        |time: Option<f64>| time.map_or(Cell::Missing, |time| Cell::text(format!("{time:.2} s")));
+    let seconds = |time: Option<f64>| Cell::maybe(time.map(|time| format!("{time:.2} s")));
     row("run", &|side| Cell::text(&side.name));
     let collapse = |spread: Option<&Spread>| {
-        spread.map_or(Cell::Missing, |spread| {
-            let [low, high] = spread.interval.map(percent);
-            let Spread { collapsed, variants, .. } = spread;
-            Cell::text(format!("{collapsed} of {variants} ({low} to {high})"))
-        })
+        Cell::maybe(spread.map(|Spread { collapsed, variants, interval, .. }| {
+            let [low, high] = interval.map(percent);
+            format!("{collapsed} of {variants} ({low} to {high})")
+        }))
     };
     if sides.iter().any(|side| side.summary.ensemble.is_some()) {
         row("variants that collapse, with the 95 % interval of their share", &|side| {
@@ -78,7 +65,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         });
         row("first fall, and barrels fallen, in these", &|side| {
             let spread = side.summary.ensemble.as_ref().filter(|spread| spread.collapsed > 0);
-            spread.map_or(Cell::Missing, |spread| Cell::text(course(spread)))
+            Cell::maybe(spread.map(course))
         });
         row("shown", &|side| match side.summary.variant {
             0 => Cell::text("as stated"),
@@ -89,15 +76,14 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         row("variants that collapse in the other plane", &|side| collapse(side.other.as_ref()));
     }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
-    row("mode", &|side| side.summary.outcome.mode.map_or(Cell::Missing, Cell::text));
+    row("mode", &|side| Cell::maybe(side.summary.outcome.mode));
     row("gives way", &|side| seconds(side.summary.outcome.time));
-    row("first body", &|side| text(side.summary.outcome.first.as_ref()));
+    row("first body", &|side| Cell::maybe(side.summary.outcome.first.as_ref()));
     row("first fall", &|side| seconds(side.summary.outcome.first_fall));
     row("barrels fallen", &|side| {
         let outcome = &side.summary.outcome;
         let fallen = outcome.barrels_fallen;
-        fallen
-            .map_or(Cell::Missing, |fallen| Cell::text(format!("{fallen} of {}", outcome.barrels)))
+        Cell::maybe(fallen.map(|fallen| format!("{fallen} of {}", outcome.barrels)))
     });
     row("end of the run", &|side| seconds(Some(side.run.end_time)));
     table
@@ -118,8 +104,7 @@ pub(super) fn demands(sides: &[Side]) -> Table {
             continue;
         }
         let mut row = vec![Cell::text(demand.label), Cell::text(demand.shown_unit)];
-        let cell = |value: f64| Cell::Measured(value, demand.decimals);
-        row.extend(values.into_iter().map(|value| value.map_or(Cell::Missing, cell)));
+        row.extend(values.into_iter().map(|value| Cell::measured(value, demand.decimals)));
         table.rows.push(row);
     }
     table

@@ -5,14 +5,18 @@ use barrelstack_report::{Block, Cell, Table, significant};
 use crate::run::Run;
 use crate::scenario::{Setting, Source, catalog};
 
-/// A setting as a row: input, value, source, meaning.
-pub(crate) fn setting_row(setting: &Setting) -> [Cell; 4] {
-    [
-        Cell::text(&setting.path),
-        Cell::text(shown(&setting.path, &setting.value)),
-        Cell::text(setting.source.words()),
-        Cell::text(setting.help),
-    ]
+/// Settings as a table.
+pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
+    Table::of(
+        caption,
+        settings,
+        &[
+            ("input", "", &|one| Cell::text(&one.path)),
+            ("value", "", &|one| Cell::text(shown(&one.path, &one.value))),
+            ("source", "", &|one| Cell::text(one.source.words())),
+            ("meaning", "", &|one| Cell::text(one.help)),
+        ],
+    )
 }
 
 /// The value of an input as a page shows it: of a file its name, and not where it lies.
@@ -47,35 +51,32 @@ const DIGITS: usize = 6;
 
 /// What was chosen, in sight; every value, folded.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
-    let columns = [("input", ""), ("value", ""), ("source", ""), ("meaning", "")];
-    let mut chosen = Table::new(
-        "Inputs that differ from their defaults. Quantities are in SI units.",
-        &[("input", ""), ("value", ""), ("meaning", "")],
-    );
-    let mut all = Table::new("Every input.", &columns);
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
-    for setting in run.stated.settings() {
+    let mut settings = run.stated.settings();
+    settings.retain(|setting| {
         let inside = setting.path.strip_prefix("stack.").and_then(|path| path.split('.').next());
-        if inside.is_some_and(|table| absent.contains(&table)) && setting.source != Source::Given {
-            continue;
-        }
-        let row = setting_row(&setting);
-        if setting.source == Source::Given {
-            let [input, value, _, meaning] = &row;
-            chosen.rows.push([input, value, meaning].map(Cell::clone).to_vec());
-        }
-        all.rows.push(row.to_vec());
-    }
+        setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
+    });
+    let chosen = Table::of(
+        "Inputs that differ from their defaults. Quantities are in SI units.",
+        settings.iter().filter(|one| one.source == Source::Given),
+        &[
+            ("input", "", &|one| Cell::text(&one.path)),
+            ("value", "", &|one| Cell::text(shown(&one.path, &one.value))),
+            ("meaning", "", &|one| Cell::text(one.help)),
+        ],
+    );
+    let all = settings_table("Every input.", &settings);
     let left_out = (!absent.is_empty()).then(|| {
         let names = absent.join(", ").replace('_', " ");
         Block::Paragraph(format!("Without those of devices that are not on the stack: {names}."))
     });
     let mut blocks = vec![Block::Table(chosen)];
     blocks.extend(dimensions(run));
-    blocks.push(Block::Details {
-        summary: format!("All {} inputs with every default written out", all.rows.len()),
-        blocks: [Block::Table(all)].into_iter().chain(left_out).collect(),
-    });
+    blocks.push(Block::details(
+        format!("All {} inputs with every default written out", all.rows.len()),
+        [Block::Table(all)].into_iter().chain(left_out).collect(),
+    ));
     blocks
 }
 

@@ -108,7 +108,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     let mut row = |name: &str, cell: &dyn Fn(&Spread) -> Option<String>| {
         let cells: Vec<Option<String>> = planes.iter().map(|(_, spread)| cell(spread)).collect();
         if cells.iter().any(Option::is_some) {
-            let shown = cells.into_iter().map(|cell| cell.map_or(Cell::Missing, Cell::text));
+            let shown = cells.into_iter().map(Cell::maybe);
             table.rows.push(std::iter::once(Cell::text(name)).chain(shown).collect());
         }
     };

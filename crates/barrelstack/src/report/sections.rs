@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
-    Axis, Block, BoundarySample, Cell, Envelope, Figure, FigureKind, Mark, Player, Plot, Scene,
-    Series, SeriesStyle, Strip, Table, Trace, capital, significant,
+    Axis, Block, BoundarySample, Cell, Envelope, Figure, Mark, Player, Plot, Scene, Series,
+    SeriesStyle, Strip, Table, Trace, capital, significant,
 };
 
 use super::tables::{demand_table, device_table, interface_table};
@@ -33,11 +33,11 @@ pub(super) fn all(
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();
     section(&mut blocks, 2, "How far to trust this run", trusted);
-    let folded = vec![Block::Details {
-        summary: "Bodies, demands, stresses, forces, motion, energies and inputs".into(),
-        blocks: engineering(run, summary, variants),
-    }];
-    section(&mut blocks, 2, "For the engineer", folded);
+    let folded = Block::details(
+        "Bodies, demands, stresses, forces, motion, energies and inputs",
+        engineering(run, summary, variants),
+    );
+    section(&mut blocks, 2, "For the engineer", vec![folded]);
     blocks
 }
 
@@ -75,7 +75,7 @@ fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec
 
 fn section(blocks: &mut Vec<Block>, level: u8, title: &str, content: Vec<Block>) {
     if !content.is_empty() {
-        blocks.push(Block::Heading { level, text: title.to_owned() });
+        blocks.push(Block::heading(level, title));
         blocks.extend(content);
     }
 }
@@ -111,65 +111,31 @@ fn sequence(run: &Run, scene: &Arc<Scene>) -> Vec<Block> {
     if run.assembly.levels == 0 {
         return Vec::new();
     }
-    vec![Block::Figure(Figure {
-        id: "sequence".into(),
-        caption: "The stack at the moments that matter.".into(),
-        kind: FigureKind::Strip(Strip::of_run(Arc::clone(scene), 6)),
-    })]
-}
-
-/// A time (s) or a height (m): hundredths can be seen.
-pub(super) fn hundredths(value: Option<f64>) -> Cell {
-    value.map_or(Cell::Missing, |value| Cell::Measured(value, 2))
-}
-
-/// A length (m) in centimeters, to the millimeter.
-fn centimeters(value: f64) -> Cell {
-    Cell::Measured(100.0 * value, 1)
+    let strip = Strip::of_run(Arc::clone(scene), 6);
+    vec![Block::Figure(Figure::new("sequence", "The stack at the moments that matter.", strip))]
 }
 
 fn fates(summary: &Summary) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "Largest slip: against what the body stands on, while the stack stood. At the end: displacement \
          against the ground from the place at rest.",
+        &summary.bodies,
         &[
-            ("body", ""),
-            ("left seat", "s"),
-            ("fell", "s"),
-            ("fall height", "m"),
-            ("largest slip", "cm"),
-            ("at the end", "cm"),
+            ("body", "", &|body| Cell::text(&body.name)),
+            ("left seat", "s", &|body| Cell::measured(body.left_seat_at, 2)),
+            ("fell", "s", &|body| Cell::measured(body.fell_at, 2)),
+            ("fall height", "m", &|body| Cell::measured(body.fall_height, 2)),
+            ("largest slip", "cm", &|body| Cell::Measured(100.0 * body.peak_slip, 1)),
+            ("at the end", "cm", &|body| Cell::Measured(100.0 * body.residual_displacement, 1)),
         ],
-    );
-    for body in &summary.bodies {
-        table.rows.push(vec![
-            Cell::text(&body.name),
-            hundredths(body.left_seat_at),
-            hundredths(body.fell_at),
-            hundredths(body.fall_height),
-            centimeters(body.peak_slip),
-            centimeters(body.residual_displacement),
-        ]);
-    }
-    table
+    )
 }
 
 /// A figure of histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
     let mark = run.fates.collapse_time().map(|at| Mark { at, label: "gives way".into() });
-    Block::Figure(Figure {
-        id: id.to_owned(),
-        caption: caption.to_owned(),
-        kind: FigureKind::Plot(Plot {
-            x: Axis::new("time", "s"),
-            y,
-            series,
-            marks: mark.into_iter().collect(),
-            interactive: true,
-            timeline: true,
-            ..Plot::default()
-        }),
-    })
+    let plot = Plot::over_time(y, series, mark.into_iter().collect());
+    Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
 /// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
@@ -309,24 +275,19 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
             push(point, 0.0, envelope.at_rest[i], envelope.peak[i]);
         }
     }
-    Figure {
-        id: format!("stress-{name}"),
-        caption: format!("Normal stress on {name}, at rest and at its largest."),
-        kind: FigureKind::Envelope(Envelope {
-            outline: drawing::outlines(&run.assembly, envelope.body),
-            samples,
-            closed: envelope.closed,
-            static_stress: at_rest,
-            dynamic_stress: peak,
-            unit: "kN/m".into(),
-            amplification: envelope.amplification(),
-            coordinate: if envelope.closed {
-                ("angle".into(), "rad".into())
-            } else {
-                ("x".into(), "m".into())
-            },
-        }),
-    }
+    let (coordinate, unit) = if envelope.closed { ("angle", "rad") } else { ("x", "m") };
+    let picture = Envelope {
+        outline: drawing::outlines(&run.assembly, envelope.body),
+        samples,
+        closed: envelope.closed,
+        static_stress: at_rest,
+        dynamic_stress: peak,
+        unit: "kN/m".into(),
+        amplification: envelope.amplification(),
+        coordinate: (coordinate.into(), unit.into()),
+    };
+    let caption = format!("Normal stress on {name}, at rest and at its largest.");
+    Figure::new(format!("stress-{name}"), caption, picture)
 }
 
 fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
@@ -353,10 +314,7 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
             ],
         ));
     }
-    blocks.push(Block::Details {
-        summary: "Largest forces at every interface".into(),
-        blocks: vec![Block::Table(table)],
-    });
+    blocks.push(Block::details("Largest forces at every interface", vec![Block::Table(table)]));
     blocks
 }
 

@@ -2,7 +2,7 @@
 
 use barrelstack_motion::{GroundMotion, ResponseSpectrum, STANDARD_GRAVITY, standard_periods};
 use barrelstack_report::{
-    Axis, Band, Block, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, measured, significant,
+    Axis, Band, Block, Figure, Mark, Plot, Series, SeriesStyle, measured, significant,
 };
 
 use crate::period::{Drift, RigidBlock, Swing, drift};
@@ -145,7 +145,7 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
             (_, None) => {}
         }
     }
-    Some(Figure { id: "spectrum".into(), caption, kind: FigureKind::Plot(plot) })
+    Some(Figure::new("spectrum", caption, plot))
 }
 
 /// Period against amplitude: every swing of the run, and the rigid block.
@@ -163,19 +163,16 @@ fn periods(rocking: &Rocking) -> Figure {
         let style = SeriesStyle { points: true, ..SeriesStyle::default() };
         series.push(Series { style, ..Series::new("swings of the stack", x, y) });
     }
-    Figure {
-        id: "periods".into(),
-        caption: "Period of rocking against its amplitude at the top: a rigid block of the same mass \
-                  and foot, and the swings of the drift while the stack stood, their periods twice the \
-                  time between zero crossings."
-            .into(),
-        kind: FigureKind::Plot(Plot {
-            x: Axis::new("amplitude", "cm"),
-            y: Axis::new("period", "s"),
-            marks: vec![Mark { at: 100.0 * rocking.drift.largest, label: "largest drift".into() }],
-            series,
-            interactive: true,
-            ..Plot::default()
-        }),
-    }
+    let plot = Plot {
+        x: Axis::new("amplitude", "cm"),
+        y: Axis::new("period", "s"),
+        marks: vec![Mark { at: 100.0 * rocking.drift.largest, label: "largest drift".into() }],
+        series,
+        interactive: true,
+        ..Plot::default()
+    };
+    let caption = "Period of rocking against its amplitude at the top: a rigid block of the same mass and \
+                   foot, and the swings of the drift while the stack stood, their periods twice the time \
+                   between zero crossings.";
+    Figure::new("periods", caption, plot)
 }

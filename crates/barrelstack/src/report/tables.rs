@@ -2,7 +2,6 @@
 
 use barrelstack_report::{Block, Cell, Table};
 
-use super::sections::hundredths;
 use crate::demand::{DEMANDS, Demands};
 use crate::summary::{Device, JointSummary};
 
@@ -13,63 +12,49 @@ fn kilonewtons(value: f64) -> Cell {
 
 /// The demands on a stack.
 pub fn demand_table(demands: &Demands) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "While the stack stood, unless said otherwise.",
-        &[("demand", ""), ("value", ""), ("unit", "")],
-    );
-    for demand in DEMANDS {
-        if let Some(value) = demand.shown(demands) {
-            let (label, unit) = (Cell::text(demand.label), Cell::text(demand.shown_unit));
-            table.rows.push(vec![label, Cell::Measured(value, demand.decimals), unit]);
-        }
-    }
-    table
+        DEMANDS.iter().filter_map(|demand| Some((demand, demand.shown(demands)?))),
+        &[
+            ("demand", "", &|(demand, _)| Cell::text(demand.label)),
+            ("value", "", &|(demand, value)| Cell::Measured(*value, demand.decimals)),
+            ("unit", "", &|(demand, _)| Cell::text(demand.shown_unit)),
+        ],
+    )
 }
 
 /// The largest forces at interfaces.
 pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
-    let mut table = Table::new(
+    Table::of(
         caption,
+        interfaces,
         &[
-            ("interface", ""),
-            ("vertical at rest", "kN"),
-            ("vertical, largest", "kN"),
-            ("at", "s"),
-            ("horizontal, largest", "kN"),
-            ("at", "s"),
+            ("interface", "", &|joint| Cell::text(&joint.name)),
+            ("vertical at rest", "kN", &|joint| kilonewtons(joint.at_rest)),
+            ("vertical, largest", "kN", &|joint| kilonewtons(joint.peak_vertical)),
+            ("at", "s", &|joint| Cell::Measured(joint.peak_vertical_at, 2)),
+            ("horizontal, largest", "kN", &|joint| kilonewtons(joint.peak_horizontal)),
+            ("at", "s", &|joint| Cell::Measured(joint.peak_horizontal_at, 2)),
         ],
-    );
-    for joint in interfaces {
-        table.rows.push(vec![
-            Cell::text(&joint.name),
-            kilonewtons(joint.at_rest),
-            kilonewtons(joint.peak_vertical),
-            hundredths(Some(joint.peak_vertical_at)),
-            kilonewtons(joint.peak_horizontal),
-            hundredths(Some(joint.peak_horizontal_at)),
-        ]);
-    }
-    table
+    )
 }
 
 /// What the elements of a device bore, as a table; none where it is not there.
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
-    let largest = format!("{}, largest", words.force);
-    let mut table = Table::new(
+    let table = Table::of(
         format!(
             "Largest {} of every {} in the whole run. Left and right are those of the picture.",
             words.force, words.one
         ),
-        &[(words.one, ""), (&largest, "kN"), ("at", "s"), (words.broken, "s")],
+        elements,
+        &[
+            (words.one, "", &|element| Cell::text(&element.name)),
+            (&format!("{}, largest", words.force), "kN", &|element| kilonewtons(element.peak)),
+            ("at", "s", &|element| {
+                Cell::measured((element.peak != 0.0).then_some(element.peak_at), 2)
+            }),
+            (words.broken, "s", &|element| Cell::measured(element.broken_at, 2)),
+        ],
     );
-    for element in elements {
-        let at = (element.peak != 0.0).then_some(element.peak_at);
-        table.rows.push(vec![
-            Cell::text(&element.name),
-            kilonewtons(element.peak),
-            hundredths(at),
-            hundredths(element.broken_at),
-        ]);
-    }
     if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] }
 }

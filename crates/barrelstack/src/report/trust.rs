@@ -7,19 +7,21 @@ use crate::verify::{Repeat, Verification};
 /// The section of a verification.
 pub(super) fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
-    let mut table = Table::new(
+    let table = Table::of(
         "Repeats of this run, each with one change. Falls are compared until the first repeat parts \
          from the run.",
+        &found.repeats,
         &[
-            ("change", ""),
-            ("outcome", ""),
-            ("first body", ""),
-            ("gives way", "s"),
-            ("parts from the run", "s"),
-            ("falls differ by", "ms"),
+            ("change", "", &|repeat| Cell::text(&repeat.change)),
+            ("outcome", "", &|repeat| Cell::text(outcome(repeat))),
+            ("first body", "", &|repeat| Cell::maybe(repeat.outcome.first.as_ref())),
+            ("gives way", "s", &|repeat| Cell::number(repeat.outcome.time, 4)),
+            ("parts from the run", "s", &|repeat| Cell::number(repeat.apart_at, 4)),
+            ("falls differ by", "ms", &|repeat| {
+                Cell::number(repeat.fall_difference.map(|seconds| 1e3 * seconds), 4)
+            }),
         ],
     );
-    table.rows.extend(found.repeats.iter().map(row));
     if !table.rows.is_empty() {
         blocks.push(Block::Table(table));
     }
@@ -34,18 +36,8 @@ pub(super) fn trust(found: &Verification) -> Vec<Block> {
     blocks
 }
 
-fn row(repeat: &Repeat) -> Vec<Cell> {
-    let optional = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 4));
-    let outcome = &repeat.outcome;
+fn outcome(repeat: &Repeat) -> String {
     let same = if repeat.same_outcome { "the same" } else { "another" };
-    let what =
-        outcome.mode.map_or(outcome.kind.to_owned(), |mode| format!("{} by {mode}", outcome.kind));
-    vec![
-        Cell::text(&repeat.change),
-        Cell::text(format!("{same}: {what}")),
-        outcome.first.as_ref().map_or(Cell::Missing, Cell::text),
-        optional(outcome.time),
-        optional(repeat.apart_at),
-        optional(repeat.fall_difference.map(|seconds| 1e3 * seconds)),
-    ]
+    let by = repeat.outcome.mode.map(|mode| format!(" by {mode}")).unwrap_or_default();
+    format!("{same}: {}{by}", repeat.outcome.kind)
 }

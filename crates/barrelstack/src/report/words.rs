@@ -117,7 +117,7 @@ fn shaking(motion: &MotionSummary) -> String {
 }
 
 /// The numbers behind the sentences: how strong the motion is, which variant is shown, how variants differ.
-pub(super) fn fine(run: &Run, summary: &Summary) -> Vec<String> {
+pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let strength = |motion: &MotionSummary| {
         format!(
             "The motion that is shown reaches {:.2} g and {:.0} cm/s.",

@@ -61,37 +61,30 @@ impl Remedy {
 
     /// Every change that was tried.
     pub(crate) fn table(&self) -> Table {
-        let mut table = Table::new(
-            format!(
-                "Changes that were tried, each in variants of its own; one suffices when at least {:.0} % of \
-                 all stand in every plane, and is dropped as soon as too many have failed. Straps do not \
-                 slip on what they tie.",
-                100.0 * self.required_share
-            ),
-            &[
-                ("change", ""),
-                ("variants run", ""),
-                ("of these fall", ""),
-                ("share that falls, 95 % interval", ""),
-                ("suffices", ""),
-            ],
+        let caption = format!(
+            "Changes that were tried, each in variants of its own; one suffices when at least {:.0} % of \
+             all stand in every plane, and is dropped as soon as too many have failed. Straps do not \
+             slip on what they tie.",
+            100.0 * self.required_share
         );
-        for one in &self.tried {
-            let [low, high] = one.interval.map(percent);
-            let verdict = match (one.suffices, self.complete) {
-                (true, _) => "yes",
-                (false, true) => "no",
-                (false, false) => "not known",
-            };
-            table.rows.push(vec![
-                Cell::text(name(one)),
-                Cell::Measured(f64::from(one.variants), 0),
-                Cell::Measured(f64::from(one.failed), 0),
-                Cell::text(format!("{low} to {high}")),
-                Cell::text(verdict),
-            ]);
-        }
-        table
+        let verdict = |one: &Tried| match (one.suffices, self.complete) {
+            (true, _) => "yes",
+            (false, true) => "no",
+            (false, false) => "not known",
+        };
+        Table::of(
+            caption,
+            &self.tried,
+            &[
+                ("change", "", &|one| Cell::text(name(one))),
+                ("variants run", "", &|one| Cell::Measured(f64::from(one.variants), 0)),
+                ("of these fall", "", &|one| Cell::Measured(f64::from(one.failed), 0)),
+                ("share that falls, 95 % interval", "", &|one| {
+                    Cell::text(one.interval.map(percent).join(" to "))
+                }),
+                ("suffices", "", &|one| Cell::text(verdict(one))),
+            ],
+        )
     }
 }
 
