@@ -36,7 +36,7 @@ pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
                     }
                 }
             });
-            Job { label: format!("eight barrels, {}", name(factors)), scenario, keep: false }
+            Job::brief(format!("eight barrels, {}", name(factors)), scenario)
         })
         .collect()
 }
@@ -123,52 +123,39 @@ pub(super) fn agreement(base: &Summary, members: &[Summary]) -> Agreement {
 /// The outcomes as tables: one parameter at a time in sight, the corners folded away.
 pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
     let names: Vec<String> = self::members().into_iter().map(name).collect();
-    let single = PARAMETERS.len() * 2;
-    let mut one = table("The eight barrels with one contact parameter changed.");
-    one.rows.push(row("as stated", base));
-    let mut corners = table("The eight barrels with all four contact parameters changed at once.");
-    for (at, (name, member)) in names.iter().zip(members).enumerate() {
-        let into = if at < single { &mut one } else { &mut corners };
-        into.rows.push(row(name, member));
-    }
+    let all: Vec<_> = names.iter().map(String::as_str).zip(members).collect();
+    let (one, corners) = all.split_at(all.len().min(PARAMETERS.len() * 2));
     vec![
-        Block::Table(one),
-        Block::Details {
-            summary: "All sixteen corners".into(),
-            blocks: vec![Block::Table(corners)],
-        },
+        Block::Table(table(
+            "The eight barrels with one contact parameter changed.",
+            &[&[("as stated", base)], one].concat(),
+        )),
+        Block::details(
+            "All sixteen corners",
+            vec![Block::Table(table(
+                "The eight barrels with all four contact parameters changed at once.",
+                corners,
+            ))],
+        ),
     ]
 }
 
-fn table(caption: &str) -> Table {
-    Table::new(
+fn table(caption: &str, members: &[(&str, &Summary)]) -> Table {
+    Table::of(
         caption,
+        members,
         &[
-            ("parameters", ""),
-            ("outcome", ""),
-            ("first body", ""),
-            ("leaves its seat", "s"),
-            ("first fall", "s"),
-            ("drift", "%"),
-            ("stress", "× at rest"),
+            ("parameters", "", &|(name, _)| Cell::text(*name)),
+            ("outcome", "", &|(_, m)| Cell::text(m.outcome.mode.unwrap_or(m.outcome.kind))),
+            ("first body", "", &|(_, m)| Cell::maybe(m.outcome.first.as_ref())),
+            ("leaves its seat", "s", &|(_, m)| Cell::number(m.outcome.time, 3)),
+            ("first fall", "s", &|(_, m)| Cell::number(m.outcome.first_fall, 3)),
+            ("drift", "%", &|(_, m)| {
+                Cell::number(m.demands.top_drift_ratio.map(|drift| 100.0 * drift), 3)
+            }),
+            ("stress", "× at rest", &|(_, m)| Cell::number(m.demands.stress_amplification, 3)),
         ],
     )
-}
-
-fn row(name: &str, summary: &Summary) -> Vec<Cell> {
-    let number = |value: Option<f64>, factor: f64| {
-        value.map_or(Cell::Missing, |v| Cell::Number(v * factor, 3))
-    };
-    let outcome = &summary.outcome;
-    vec![
-        Cell::text(name),
-        Cell::text(outcome.mode.unwrap_or(outcome.kind)),
-        outcome.first.as_ref().map_or(Cell::Missing, Cell::text),
-        number(outcome.time, 1.0),
-        number(outcome.first_fall, 1.0),
-        number(summary.demands.top_drift_ratio, 100.0),
-        number(summary.demands.stress_amplification, 1.0),
-    ]
 }
 
 #[cfg(test)]

@@ -6,16 +6,11 @@ use barrelstack::assemble::{Assembly, PartKind};
 use barrelstack::report::{scene, standing_range, stress_figure};
 use barrelstack::run::Run;
 use barrelstack_report::{
-    Arrow, Axis, Block, Cell, Diagram, Figure, FigureKind, Mark, Panel, Player, Plot, Point, Scene,
-    Series, Strip, Table,
+    Arrow, Axis, Block, Cell, Diagram, Figure, Mark, Panel, Player, Plot, Point, Scene, Series,
+    Strip, Table,
 };
 
 use super::numbering;
-
-/// The scene of a run, to be shared by its pictures.
-pub(super) fn scene_of(run: &Run) -> Arc<Scene> {
-    scene(run)
-}
 
 /// A run to watch.
 pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
@@ -35,11 +30,7 @@ pub(super) fn strip(
     panels: impl IntoIterator<Item = (f64, String)>,
 ) -> Block {
     let panels = panels.into_iter().map(|(time, note)| Panel { time, note }).collect();
-    Block::Figure(Figure {
-        id: id.to_owned(),
-        caption: caption.to_owned(),
-        kind: FigureKind::Strip(Strip { scene: Arc::clone(scene), panels }),
-    })
+    Block::Figure(Figure::new(id, caption, Strip { scene: Arc::clone(scene), panels }))
 }
 
 /// The moments of a collapse: at rest, before, the loss of seat, and how it goes on.
@@ -68,12 +59,7 @@ pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let Some(loss) = run.fates.collapse_time() else { return moments(run) };
     let parts = &run.assembly.parts;
-    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
-    let named = |body: usize| match numbering::number(&parts[body].name, columns) {
-        Some(number) => format!("{number} = {}", parts[body].name),
-        None => parts[body].name.clone(),
-    };
-    let first = run.fates.first().map_or_else(String::new, named);
+    let first = run.fates.first().map_or_else(String::new, |body| named(run, body));
     panels.push((loss - 0.3, "0.3 s before".into()));
     panels.push((loss, format!("{first} leaves its seat")));
     let top = run
@@ -82,7 +68,7 @@ pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
         .filter(|body| parts[*body].level == Some(run.assembly.levels));
     for body in top {
         if let Some(fell) = run.fates.fate(body).fell_at {
-            panels.push((fell, format!("{} has fallen", named(body))));
+            panels.push((fell, format!("{} has fallen", named(run, body))));
         }
     }
     let last = panels.iter().map(|(time, _)| *time).fold(0.0, f64::max);
@@ -90,6 +76,20 @@ pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     panels.retain(|(time, _)| *time >= 0.0 && *time <= run.end_time);
     panels.sort_by(|one, other| one.0.total_cmp(&other.0));
     panels
+}
+
+/// Barrels on a level.
+fn columns(run: &Run) -> u32 {
+    run.scenario.stack().map_or(2, |stack| stack.columns)
+}
+
+/// A body by the paper's number and our name: "3 = R1".
+fn named(run: &Run, body: usize) -> String {
+    let name = &run.assembly.parts[body].name;
+    match numbering::number(name, columns(run)) {
+        Some(number) => format!("{number} = {name}"),
+        None => name.clone(),
+    }
 }
 
 /// How far from its center an arrow ends in a barrel, as a share of the radius: within the round, clear
@@ -104,7 +104,7 @@ const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     let assembly = &run.assembly;
     let parts = &assembly.parts;
-    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let columns = columns(run);
     let rest: Vec<Point> = run
         .recording
         .frames
@@ -134,12 +134,8 @@ pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
         let aside = if part.kind == PartKind::Rack && columns == 1 { 0.14 } else { 0.0 };
         Some(([rest[at][0] + aside, rest[at][1] + lift], number.to_string()))
     });
-    let labels = labels.collect();
-    Block::Figure(Figure {
-        id: id.to_owned(),
-        caption: caption.to_owned(),
-        kind: FigureKind::Diagram(Diagram { scene: scene_of(run), time: 0.0, labels, arrows }),
-    })
+    let diagram = Diagram { scene: scene(run), time: 0.0, labels: labels.collect(), arrows };
+    Block::Figure(Figure::new(id, caption, diagram))
 }
 
 /// From a rack upright into the barrel it meets, or the other way round.
@@ -163,7 +159,7 @@ fn arrow(
 /// Histories of the horizontal displacement of the paper's bodies 1, 4 and 7, relative to the ground.
 pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
     let recording = &run.recording;
-    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
+    let columns = columns(run);
     let series: Vec<Series> = [1, 4, 7]
         .into_iter()
         .filter_map(|number| {
@@ -175,27 +171,14 @@ pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
         })
         .collect();
     let range = standing_range(run, &series);
-    let mut marks: Vec<Mark> = run
-        .fates
-        .collapse_time()
-        .map(|at| Mark { at, label: "loss of seat".into() })
-        .into_iter()
-        .collect();
-    if let Some(at) = peak_velocity_time(run) {
-        marks.push(Mark { at, label: "peak ground velocity".into() });
-    }
-    Block::Figure(Figure {
-        id: id.to_owned(),
-        caption: caption.to_owned(),
-        kind: FigureKind::Plot(Plot {
-            x: Axis::new("time", "s"),
-            y: Axis { range, ..Axis::new("displacement", "cm") },
-            series,
-            marks,
-            interactive: true,
-            ..Plot::default()
-        }),
-    })
+    let times = [
+        (run.fates.collapse_time(), "loss of seat"),
+        (peak_velocity_time(run), "peak ground velocity"),
+    ];
+    let mark = |(at, label): (Option<f64>, &str)| Some(Mark { at: at?, label: label.into() });
+    let y = Axis { range, ..Axis::new("displacement", "cm") };
+    let plot = Plot::over_time(y, series, times.into_iter().filter_map(mark).collect());
+    Block::Figure(Figure::new(id, caption, plot))
 }
 
 /// When (s) the ground is fastest.
@@ -231,33 +214,25 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Which body carries nodes against which, for all bodies that lean on each other by design.
-pub(super) fn pairs(run: &Run, caption: &str) -> Table {
-    let parts = &run.assembly.parts;
-    let columns = run.scenario.stack().map_or(2, |stack| stack.columns);
-    let mut table = Table::new(
+/// Which body carries nodes against which, for all bodies that lean on each other by design; folded away.
+pub(super) fn pairs(run: &Run, caption: &str) -> Block {
+    let table = Table::of(
         caption,
+        designed_pairs(run),
         &[
-            ("contact body, with the nodes", ""),
-            ("target body, with the surface", ""),
-            ("the contact body is", ""),
-            ("force at rest", "kN"),
+            ("contact body, with the nodes", "", &|(contactor, ..)| {
+                Cell::text(named(run, *contactor))
+            }),
+            ("target body, with the surface", "", &|(_, target, _)| {
+                Cell::text(named(run, *target))
+            }),
+            ("the contact body is", "", &|(contactor, target, _)| {
+                Cell::text(if is_above(run, *contactor, *target) { "above" } else { "below" })
+            }),
+            ("force at rest", "kN", &|(.., at_rest)| Cell::Number(1e-3 * at_rest, 3)),
         ],
     );
-    let named = |body: usize| match numbering::number(&parts[body].name, columns) {
-        Some(number) => format!("{number} = {}", parts[body].name),
-        None => parts[body].name.clone(),
-    };
-    for (contactor, target, at_rest) in designed_pairs(run) {
-        let above = is_above(run, contactor, target);
-        table.rows.push(vec![
-            Cell::text(named(contactor)),
-            Cell::text(named(target)),
-            Cell::text(if above { "above" } else { "below" }),
-            Cell::Number(1e-3 * at_rest, 3),
-        ]);
-    }
-    table
+    Block::details("The pairs as a table, with the forces at rest", vec![Block::Table(table)])
 }
 
 /// Contactor, target and force at rest (N) of all bodies that lean on each other by design.

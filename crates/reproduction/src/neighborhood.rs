@@ -70,11 +70,7 @@ pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
         let mut job = |case: &str, base: &Scenario, until: Option<f64>| {
             let mut scenario = with(&brief(base, 0.05), |stack| change(stack, index));
             scenario.run.duration = until.or(scenario.run.duration);
-            jobs.push(Job {
-                label: format!("{case}, neighbor {}", index + 1),
-                scenario,
-                keep: false,
-            });
+            jobs.push(Job::brief(format!("{case}, neighbor {}", index + 1), scenario));
         };
         job("eight barrels", &cases.eight, None);
         job("along the barrels", &cases.along, None);
@@ -127,7 +123,7 @@ pub(super) fn block(kept: &Kept) -> Block {
         &[("finding", ""), ("kept by", "of all draws")],
     );
     for (question, count) in QUESTIONS.iter().zip(kept.each) {
-        let cell = count.map_or(Cell::Missing, |count| Cell::text(count.to_string()));
+        let cell = Cell::maybe(count.map(|count| count.to_string()));
         table.rows.push(vec![Cell::text(*question), cell]);
     }
     table.rows.push(vec![Cell::text("all that were asked"), Cell::text(kept.all.to_string())]);

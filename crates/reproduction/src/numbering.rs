@@ -23,32 +23,21 @@ pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
 
 /// The whole table.
 pub(super) fn table() -> Table {
-    let mut table = Table::new(
-        "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
-         racks. The paper lists no numbers; the rule is read off its text.",
-        &[
-            ("level", ""),
-            ("transverse, left barrel", ""),
-            ("transverse, right barrel", ""),
-            ("transverse, rack", ""),
-            ("longitudinal, barrel", ""),
-            ("longitudinal, rack", ""),
-        ],
-    );
     let pair =
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));
-    for level in (1..=4).rev() {
-        let (first, along) = (3 * (level - 1), 2 * (level - 1));
-        table.rows.push(vec![
-            Cell::text(format!("{level}")),
-            pair(first + 1, 2),
-            pair(first + 2, 2),
-            pair(first + 3, 2),
-            pair(along + 1, 1),
-            pair(along + 2, 1),
-        ]);
-    }
-    table
+    Table::of(
+        "The paper's body numbers and the names on this page: B level.column for barrels, R level for \
+         racks. The paper lists no numbers; the rule is read off its text.",
+        (1..=4).rev(),
+        &[
+            ("level", "", &|level: &u32| Cell::text(level.to_string())),
+            ("transverse, left barrel", "", &|level| pair(3 * level - 2, 2)),
+            ("transverse, right barrel", "", &|level| pair(3 * level - 1, 2)),
+            ("transverse, rack", "", &|level| pair(3 * level, 2)),
+            ("longitudinal, barrel", "", &|level| pair(2 * level - 1, 1)),
+            ("longitudinal, rack", "", &|level| pair(2 * level, 1)),
+        ],
+    )
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The page: the paper's numbers and figures in its order, ours beside them, and why they differ.
 
 use std::fmt::Write as _;
-use std::sync::Arc;
 
-use barrelstack_report::{Block, Cell, Document, Scene, Table, Tone, Verdict as Headline};
+use barrelstack::Summary;
+use barrelstack::report::scene;
+use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict as Headline, significant};
 
 use super::cases::Motion;
 use super::compare::{Comparison, Verdict, percent};
@@ -61,7 +62,7 @@ fn warnings(motion: &Motion) -> Vec<String> {
         Motion::Other { file, pga } => vec![format!(
             "{file} is not the paper's record: its peak is {} g, that of PEL360 0.358 g. What depends \
              on the motion is shown but not compared. The paper's record: {OBTAIN}.",
-            barrelstack_report::significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
+            significant(pga / barrelstack_motion::STANDARD_GRAVITY, 3)
         )],
         Motion::Bundled => vec![format!(
             "The paper's record may not be passed on with the program and was not named. Its six \
@@ -71,26 +72,21 @@ fn warnings(motion: &Motion) -> Vec<String> {
     }
 }
 
-fn heading(level: u8, text: &str) -> Block {
-    Block::Heading { level, text: text.to_owned() }
-}
-
 fn text(text: impl Into<String>) -> Block {
     Block::Paragraph(text.into())
 }
 
 fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
-    let mut blocks = vec![heading(2, "Published against ours"), Block::Table(overview(rows))];
+    let mut blocks =
+        vec![Block::heading(2, "Published against ours"), Block::Table(overview(rows))];
     blocks.push(text(
         "A number agrees when it is within ±20 % of the published one, a finding when the same thing \
          happens. Some numbers have a wider band too, which says what the project still accepts, \
          since the paper leaves its geometry open.",
     ));
-    blocks.push(Block::Details {
-        summary: "How each row is measured, and why it differs".into(),
-        blocks: vec![Block::Table(reasons(rows))],
-    });
-    blocks.push(heading(2, "Body numbers"));
+    let reasons = vec![Block::Table(reasons(rows))];
+    blocks.push(Block::details("How each row is measured, and why it differs", reasons));
+    blocks.push(Block::heading(2, "Body numbers"));
     blocks.push(Block::Table(numbering::table()));
     blocks.extend(figure_6(results));
     blocks.extend(figure_7(results));
@@ -100,7 +96,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
             "The studies were left out: what moves our numbers, and contact parameters 10 % off.",
         ));
     } else {
-        blocks.push(heading(2, "Contact parameters 10 % off"));
+        blocks.push(Block::heading(2, "Contact parameters 10 % off"));
         blocks.extend(ensemble::blocks(&results.eight.summary, &results.ensemble));
         blocks.push(text(
             "Two courses compete: the top level slides off alone, or level 3 does and carries it along, \
@@ -112,7 +108,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
         blocks.push(neighborhood::block(&results.neighborhood));
         blocks.extend(studies(results));
     }
-    blocks.push(heading(2, "What is not compared"));
+    blocks.push(Block::heading(2, "What is not compared"));
     blocks.push(Block::List(NOT_COMPARED.iter().map(|s| (*s).to_owned()).collect()));
     blocks
 }
@@ -128,53 +124,42 @@ const NOT_COMPARED: [&str; 5] = [
 ];
 
 fn overview(rows: &[Comparison]) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "Every number and every finding that the paper states.",
+        rows,
         &[
-            ("in the paper", ""),
-            ("quantity", ""),
-            ("published", ""),
-            ("ours", ""),
-            ("difference", ""),
-            ("band", ""),
-            ("verdict", ""),
+            ("in the paper", "", &|row| Cell::text(row.place)),
+            ("quantity", "", &|row| Cell::text(&row.quantity)),
+            ("published", "", &|row| Cell::text(&row.published)),
+            ("ours", "", &|row| Cell::text(&row.ours)),
+            ("difference", "", &|row| Cell::maybe(row.difference.map(percent))),
+            ("band", "", &|row| Cell::maybe(row.band)),
+            ("verdict", "", &|row| Cell::text(row.verdict.words())),
         ],
-    );
-    for row in rows {
-        table.rows.push(vec![
-            Cell::text(row.place),
-            Cell::text(&row.quantity),
-            Cell::text(&row.published),
-            Cell::text(&row.ours),
-            row.difference.map_or(Cell::Missing, |d| Cell::text(percent(d))),
-            row.band.map_or(Cell::Missing, Cell::text),
-            Cell::text(row.verdict.words()),
-        ]);
-    }
-    table
+    )
 }
 
 fn reasons(rows: &[Comparison]) -> Table {
-    let mut table = Table::new(
+    Table::of(
         "How each row is measured, and why it differs.",
-        &[("quantity", ""), ("verdict", ""), ("how and why", "")],
-    );
-    for row in rows {
-        let cells = [row.quantity.as_str(), row.verdict.words(), &row.why];
-        table.rows.push(cells.map(Cell::text).into());
-    }
-    table
+        rows,
+        &[
+            ("quantity", "", &|row| Cell::text(&row.quantity)),
+            ("verdict", "", &|row| Cell::text(row.verdict.words())),
+            ("how and why", "", &|row| Cell::text(&row.why)),
+        ],
+    )
 }
 
 fn figure_6(results: &Results) -> Vec<Block> {
     let (six, slippery) = (&results.six.run, &results.slippery.run);
-    let scene = figures::scene_of(six);
+    let scene = scene(six);
     let under = results.motion.words();
-    let mut blocks = vec![heading(2, "Fig. 6: six barrels on three levels")];
+    let mut blocks = vec![Block::heading(2, "Fig. 6: six barrels on three levels")];
     if !results.motion.is_papers() {
         blocks.push(text(stand_in(results)));
     }
-    blocks.push(heading(3, "(a) collapse sequence"));
+    blocks.push(Block::heading(3, "(a) collapse sequence"));
     blocks.push(figures::strip(
         &scene,
         "figure-6a",
@@ -186,7 +171,7 @@ fn figure_6(results: &Results) -> Vec<Block> {
         "six-barrels",
         &format!("The same run to watch: six barrels, μ rack–ground 0.4, under {under}."),
     ));
-    blocks.push(heading(3, "(b) normal stress on barrel 1"));
+    blocks.push(Block::heading(3, "(b) normal stress on barrel 1"));
     blocks.extend(figures::envelope(
         six,
         1,
@@ -196,7 +181,7 @@ fn figure_6(results: &Results) -> Vec<Block> {
              the stack stands, under {under}."
         ),
     ));
-    blocks.push(heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
+    blocks.push(Block::heading(3, "(c) horizontal displacement of barrels 1, 4 and 7"));
     for (run, id, friction) in
         [(six, "figure-6c-upper", "0.4"), (slippery, "figure-6c-lower", "0.1")]
     {
@@ -213,14 +198,14 @@ fn figure_6(results: &Results) -> Vec<Block> {
 
 /// What the stand-in motion shows, in place of what the paper shows.
 fn stand_in(results: &Results) -> String {
-    let slip = |summary: &barrelstack::Summary| {
+    let slip = |summary: &Summary| {
         let slip = summary.demands.base_slip_residual.unwrap_or(f64::NAN);
-        barrelstack_report::significant(100.0 * slip.abs(), 2)
+        significant(100.0 * slip.abs(), 2)
     };
     let (six, slippery) = (&results.six.summary, &results.slippery.summary);
-    let what = |summary: &barrelstack::Summary| match (summary.outcome.mode, summary.outcome.time) {
+    let what = |summary: &Summary| match (summary.outcome.mode, summary.outcome.time) {
         (Some(mode), Some(time)) => {
-            format!("{mode} after {} s", barrelstack_report::significant(time, 3))
+            format!("{mode} after {} s", significant(time, 3))
         }
         _ => summary.outcome.kind.to_owned(),
     };
@@ -243,13 +228,12 @@ fn equivalent(panels: &[(f64, String)]) -> Vec<(f64, String)> {
 
 fn figure_7(results: &Results) -> Vec<Block> {
     let (full, half) = (&results.eight.run, &results.half.run);
-    let (scene, scene_half): (Arc<Scene>, Arc<Scene>) =
-        (figures::scene_of(full), figures::scene_of(half));
+    let (full_scene, half_scene) = (scene(full), scene(half));
     let moments = figures::moments(full);
     let mut blocks = vec![
-        heading(2, "Fig. 7: eight barrels on four levels"),
-        figures::player(&scene, "eight-barrels", "Eight barrels at full scale, to watch."),
-        heading(3, "(a) contact bodies, target bodies, and the collapse"),
+        Block::heading(2, "Fig. 7: eight barrels on four levels"),
+        figures::player(&full_scene, "eight-barrels", "Eight barrels at full scale, to watch."),
+        Block::heading(3, "(a) contact bodies, target bodies, and the collapse"),
         figures::contact_bodies(
             full,
             "figure-7a-pairs",
@@ -257,18 +241,15 @@ fn figure_7(results: &Results) -> Vec<Block> {
              which carries the nodes, and ends in its target body, which has the surface.",
         ),
         figures::strip(
-            &scene,
+            &full_scene,
             "figure-7a-sequence",
             "The collapse in the transverse section, by what happens in it.",
             figures::events(full),
         ),
-        Block::Details {
-            summary: "The pairs as a table, with the forces at rest".into(),
-            blocks: vec![Block::Table(figures::pairs(
-                full,
-                "Bodies that lean on each other by design, by the paper's numbers and ours.",
-            ))],
-        },
+        figures::pairs(
+            full,
+            "Bodies that lean on each other by design, by the paper's numbers and ours.",
+        ),
     ];
     if figures::racks_carry_the_nodes(full) {
         blocks.push(text(
@@ -277,20 +258,20 @@ fn figure_7(results: &Results) -> Vec<Block> {
              barrel on barrel, are in the model too.",
         ));
     }
-    blocks.push(heading(3, "(b) half scale at t* against full scale at √2 t*"));
+    blocks.push(Block::heading(3, "(b) half scale at t* against full scale at √2 t*"));
     blocks.push(figures::strip(
-        &scene_half,
+        &half_scene,
         "figure-7b-half",
         "Half scale, sine of 2 in and 0.76 s, at the instants t*.",
         equivalent(&moments),
     ));
     blocks.push(figures::strip(
-        &scene,
+        &full_scene,
         "figure-7b-full",
         "Full scale, sine of 4 in and 0.76 √2 s, at √2 t*.",
         moments,
     ));
-    blocks.push(heading(3, "(c) normal stress on bodies 2 and 3"));
+    blocks.push(Block::heading(3, "(c) normal stress on bodies 2 and 3"));
     for (number, what) in [(2, "barrel, body 2 (B1.2)"), (3, "rack, body 3 (R1)")] {
         blocks.extend(figures::envelope(
             full,
@@ -307,9 +288,9 @@ fn figure_7(results: &Results) -> Vec<Block> {
 
 fn along(results: &Results) -> Vec<Block> {
     let run = &results.along.run;
-    let scene = figures::scene_of(run);
+    let scene = scene(run);
     vec![
-        heading(2, "Along the barrels: rack sliding"),
+        Block::heading(2, "Along the barrels: rack sliding"),
         text("The paper describes this case and does not draw it."),
         figures::strip(
             &scene,
@@ -325,19 +306,13 @@ fn along(results: &Results) -> Vec<Block> {
             "The section along the barrels with the paper's body numbers: the targets of every contact \
              body are above and below it.",
         ),
-        Block::Details {
-            summary: "The pairs as a table, with the forces at rest".into(),
-            blocks: vec![Block::Table(figures::pairs(
-                run,
-                "Contact and target bodies along the barrels.",
-            ))],
-        },
+        figures::pairs(run, "Contact and target bodies along the barrels."),
     ]
 }
 
 fn studies(results: &Results) -> Vec<Block> {
     let mut blocks = vec![
-        heading(2, "What moves our numbers"),
+        Block::heading(2, "What moves our numbers"),
         text(
             "The paper gives neither the dimensions of its racks nor the number of its contact \
              elements, and it does not say how its sine begins. Each of these, and each parameter it \
@@ -350,7 +325,7 @@ fn studies(results: &Results) -> Vec<Block> {
             Subject::Eight => ("Eight barrels", "study-eight", [Some(1.5), Some(0.052), Some(3.0)]),
             Subject::Along => ("Along the barrels", "study-along", [Some(4.5), None, None]),
         };
-        blocks.push(heading(3, title));
+        blocks.push(Block::heading(3, title));
         blocks.extend(tornado::blocks(study, id, published));
     }
     if !results.motion.is_papers() {
@@ -377,7 +352,7 @@ fn provenance(results: &Results) -> Vec<(String, String)> {
             format!(
                 "{}, step {} ms, constants per {}, energy residual {}",
                 summary.run.method,
-                barrelstack_report::significant(1e3 * summary.run.time_step, 3),
+                significant(1e3 * summary.run.time_step, 3),
                 summary.run.stiffness_basis,
                 summary.energy.as_ref().map_or_else(
                     || "lost".to_owned(),

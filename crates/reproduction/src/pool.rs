@@ -20,6 +20,13 @@ pub(super) struct Job {
     pub(super) keep: bool,
 }
 
+impl Job {
+    /// A run of which the summary alone is wanted.
+    pub(super) fn brief(label: String, scenario: Scenario) -> Self {
+        Self { label, scenario, keep: false }
+    }
+}
+
 /// One run done.
 pub(super) struct Done {
     /// Its summary.

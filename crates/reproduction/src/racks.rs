@@ -1,7 +1,7 @@
 //! Other racks that give the paper's numbers as well, but for the residual slip: how robust its result is
 //! hangs on what it does not state.
 
-use barrelstack::scenario::{Cradle, Scenario, StackSpec};
+use barrelstack::scenario::{Cradle, StackSpec};
 use barrelstack::summary::Summary;
 use barrelstack_report::{Block, Cell, Table};
 
@@ -60,11 +60,7 @@ pub(super) struct Tried {
 pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (name, change) in RACKS {
-        let job = |case: &str, scenario: Scenario| Job {
-            label: format!("{case} with {name}"),
-            scenario,
-            keep: false,
-        };
+        let job = |case: &str, scenario| Job::brief(format!("{case} with {name}"), scenario);
         if cases.motion.is_papers() {
             let mut six = with(&brief(&cases.six, 0.1), change);
             six.run.duration = Some(20.0);
@@ -94,38 +90,26 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
 
 /// The table.
 pub(super) fn block(found: &[Tried]) -> Block {
-    let mut table = Table::new(
+    let mode = |summary: &Summary| summary.outcome.mode.unwrap_or(summary.outcome.kind);
+    let stress = |summary: &Summary| summary.demands.stress_amplification;
+    let drift = |summary: &Summary| summary.demands.top_drift_ratio.map(|drift| 100.0 * drift);
+    let table = Table::of(
         "Other racks, which the paper's text would allow as well. Robust: combinations of contact \
          parameters 10 % off that keep the mode.",
+        found,
         &[
-            ("rack", ""),
-            ("eight barrels", ""),
-            ("robust", ""),
-            ("first fall", "s"),
-            ("drift", "%"),
-            ("stress", "× at rest"),
-            ("six barrels", ""),
-            ("stands for", "s"),
-            ("stress", "× at rest"),
+            ("rack", "", &|rack| Cell::text(rack.name)),
+            ("eight barrels", "", &|rack| Cell::text(mode(&rack.eight))),
+            ("robust", "", &|rack| Cell::text(format!("{} of {}", rack.same_mode, rack.members))),
+            ("first fall", "s", &|rack| Cell::number(rack.eight.outcome.first_fall, 3)),
+            ("drift", "%", &|rack| Cell::number(drift(&rack.eight), 3)),
+            ("stress", "× at rest", &|rack| Cell::number(stress(&rack.eight), 3)),
+            ("six barrels", "", &|rack| Cell::maybe(rack.six.as_ref().map(mode))),
+            ("stands for", "s", &|rack| {
+                Cell::number(rack.six.as_ref().and_then(|six| six.outcome.time), 3)
+            }),
+            ("stress", "× at rest", &|rack| Cell::number(rack.six.as_ref().and_then(stress), 3)),
         ],
     );
-    let number = |value: Option<f64>, factor: f64| {
-        value.map_or(Cell::Missing, |v| Cell::Number(v * factor, 3))
-    };
-    let mode = |summary: &Summary| summary.outcome.mode.unwrap_or(summary.outcome.kind);
-    for rack in found {
-        let six = rack.six.as_ref();
-        table.rows.push(vec![
-            Cell::text(rack.name),
-            Cell::text(mode(&rack.eight)),
-            Cell::text(format!("{} of {}", rack.same_mode, rack.members)),
-            number(rack.eight.outcome.first_fall, 1.0),
-            number(rack.eight.demands.top_drift_ratio, 100.0),
-            number(rack.eight.demands.stress_amplification, 1.0),
-            six.map_or(Cell::Missing, |six| Cell::text(mode(six))),
-            number(six.and_then(|six| six.outcome.time), 1.0),
-            number(six.and_then(|six| six.demands.stress_amplification), 1.0),
-        ]);
-    }
     Block::Table(table)
 }

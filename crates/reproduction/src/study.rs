@@ -73,20 +73,15 @@ impl Clock {
 }
 
 /// One quantity and what it was changed to.
-pub(super) struct Factor {
+pub(super) struct Factor<Run = Scenario> {
     /// The quantity with its regular value, such as "cradle angle 28°".
     pub(super) name: String,
     /// What it was changed to, and the run of it.
-    pub(super) ends: Vec<(String, Scenario)>,
+    pub(super) ends: Vec<(String, Run)>,
 }
 
-/// A factor with its runs done.
-pub(super) struct Effect {
-    /// The quantity with its regular value.
-    pub(super) name: String,
-    /// What it was changed to, and what came of it.
-    pub(super) ends: Vec<(String, Summary)>,
-}
+/// A factor with its runs done, and what came of them.
+pub(super) type Effect = Factor<Summary>;
 
 /// A case with all its effects.
 pub(super) struct Study {
@@ -191,10 +186,9 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
 /// The runs of factors, in order.
 pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
     factors.iter().flat_map(move |factor| {
-        factor.ends.iter().map(move |(label, scenario)| Job {
-            label: format!("{}, {}: {label}", subject.name(), factor.name),
-            scenario: scenario.clone(),
-            keep: false,
+        factor.ends.iter().map(move |(label, scenario)| {
+            let label = format!("{}, {}: {label}", subject.name(), factor.name);
+            Job::brief(label, scenario.clone())
         })
     })
 }
@@ -228,15 +222,18 @@ impl Study {
         Self { subject, base, effects }
     }
 
+    /// All changes in words, with what came of each.
+    fn changes(&self) -> impl Iterator<Item = (String, &Summary)> {
+        self.effects.iter().flat_map(|Effect { name, ends }| {
+            ends.iter().map(move |(label, summary)| (format!("{name} ({label})"), summary))
+        })
+    }
+
     /// Least and greatest time (s) among all changes that collapse, the case as stated included.
     pub(super) fn times(&self) -> Option<[f64; 2]> {
-        let clock = self.subject.clock();
-        let all = self.effects.iter().flat_map(|effect| &effect.ends).map(|(_, summary)| summary);
-        let times = all.chain([&self.base]).filter_map(|summary| clock.time(summary));
-        times.fold(None, |range: Option<[f64; 2]>, time| {
-            let [low, high] = range.unwrap_or([time; 2]);
-            Some([low.min(time), high.max(time)])
-        })
+        let all = || self.changes().map(|(_, summary)| summary).chain([&self.base]);
+        let times = || all().filter_map(|summary| self.subject.clock().time(summary));
+        Some([times().reduce(f64::min)?, times().reduce(f64::max)?])
     }
 
     /// The changes that bring a quantity to the published value or past it, in words.
@@ -246,27 +243,13 @@ impl Study {
         of: impl Fn(&Summary) -> Option<f64>,
     ) -> Vec<String> {
         let Some(ours) = of(&self.base) else { return Vec::new() };
-        let mut found = Vec::new();
-        for effect in &self.effects {
-            for (label, summary) in &effect.ends {
-                let crosses = |value: f64| (value - published) * (ours - published) <= 0.0;
-                if of(summary).is_some_and(crosses) {
-                    found.push(format!("{} ({label})", effect.name));
-                }
-            }
-        }
-        found
+        let crosses = |value: f64| (value - published) * (ours - published) <= 0.0;
+        self.holding(|summary| of(summary).is_some_and(crosses))
     }
 
     /// The changes with which something holds, in words.
     pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
-        let mut found = Vec::new();
-        for effect in &self.effects {
-            for (label, _) in effect.ends.iter().filter(|(_, summary)| what(summary)) {
-                found.push(format!("{} ({label})", effect.name));
-            }
-        }
-        found
+        self.changes().filter(|(_, summary)| what(summary)).map(|(change, _)| change).collect()
     }
 
     /// The change that brings a quantity nearest to a published value, in words, and what it is then.
@@ -275,19 +258,9 @@ impl Study {
         published: f64,
         of: impl Fn(&Summary) -> Option<f64>,
     ) -> Option<(String, f64)> {
-        let mut best: Option<(String, f64)> = None;
-        for effect in &self.effects {
-            for (label, summary) in &effect.ends {
-                let Some(value) = of(summary) else { continue };
-                let farther = |(_, known): &(String, f64)| {
-                    (known - published).abs() > (value - published).abs()
-                };
-                if best.as_ref().is_none_or(farther) {
-                    best = Some((format!("{} ({label})", effect.name), value));
-                }
-            }
-        }
-        best
+        let known = self.changes().filter_map(|(change, summary)| Some((change, of(summary)?)));
+        let off = |(_, value): &(String, f64)| (value - published).abs();
+        known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
     /// The changes that move a quantity most, at most `count`, in words with what becomes of it.
@@ -298,17 +271,12 @@ impl Study {
         shown: impl Fn(f64) -> String,
     ) -> Vec<String> {
         let Some(ours) = of(&self.base) else { return Vec::new() };
-        let mut found: Vec<(f64, String)> = Vec::new();
-        for effect in &self.effects {
-            for (label, summary) in &effect.ends {
-                if let Some(value) = of(summary) {
-                    let words = format!("{} ({label}): {}", effect.name, shown(value));
-                    found.push(((value - ours).abs(), words));
-                }
-            }
-        }
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        found.into_iter().take(count).map(|(_, words)| words).collect()
+        let known = self.changes().filter_map(|(change, summary)| Some((change, of(summary)?)));
+        let mut found: Vec<(String, f64)> = known.collect();
+        let moved = |(_, value): &(String, f64)| (value - ours).abs();
+        found.sort_by(|one, other| moved(other).total_cmp(&moved(one)));
+        found.truncate(count);
+        found.into_iter().map(|(change, value)| format!("{change}: {}", shown(value))).collect()
     }
 }
 

@@ -1,9 +1,7 @@
 //! A study as a picture and a table: how far each change moves time, drift and stress.
 
 use barrelstack::summary::Summary;
-use barrelstack_report::{
-    Axis, Block, Cell, Figure, FigureKind, Mark, Plot, Series, SeriesStyle, Table,
-};
+use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table};
 
 use super::study::{Clock, Study};
 
@@ -68,66 +66,42 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
     let span = (high - low).max(1.0);
     let range = [low - 0.05 * span, high + 0.05 * span];
     let names = study.effects.iter().map(|effect| effect.name.clone()).collect();
-    Figure {
-        id: id.to_owned(),
-        caption: format!(
-            "What moves the {}: change against the case as stated, one quantity changed at a time, the \
-             largest effect on the {} on top; the table below names both ends. Upright lines: where the \
-             published values stand.",
-            study.subject.name(),
-            clock.words()
-        ),
-        kind: FigureKind::Plot(Plot {
-            x: Axis { range: Some(range), ..Axis::new("change", "%") },
-            y: Axis::named(names),
-            series,
-            marks,
-            ..Plot::default()
-        }),
-    }
+    let caption = format!(
+        "What moves the {}: change against the case as stated, one quantity changed at a time, the \
+         largest effect on the {} on top; the table below names both ends. Upright lines: where the \
+         published values stand.",
+        study.subject.name(),
+        clock.words()
+    );
+    let x = Axis { range: Some(range), ..Axis::new("change", "%") };
+    Figure::new(id, caption, Plot { x, y: Axis::named(names), series, marks, ..Plot::default() })
 }
 
 fn table(study: &Study) -> Table {
     let clock = study.subject.clock();
-    let mut table = Table::new(
-        format!(
-            "The {} with one quantity changed at a time. Time: {}.",
-            study.subject.name(),
-            clock.words()
-        ),
-        &[
-            ("quantity", ""),
-            ("changed", ""),
-            ("outcome", ""),
-            ("first", ""),
-            ("time", "s"),
-            ("drift", "%"),
-            ("stress", "× at rest"),
-        ],
+    let caption = format!(
+        "The {} with one quantity changed at a time. Time: {}.",
+        study.subject.name(),
+        clock.words()
     );
-    let cells = |summary: &Summary| {
-        let [time, drift, stress] = values(clock, summary);
-        let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 3));
-        let outcome = &summary.outcome;
-        vec![
-            Cell::text(outcome.mode.unwrap_or(outcome.kind)),
-            outcome.first.as_ref().map_or(Cell::Missing, Cell::text),
-            number(time),
-            number(drift.map(|d| 100.0 * d)),
-            number(stress),
-        ]
-    };
-    let mut base = vec![Cell::text("as stated"), Cell::text("")];
-    base.extend(cells(&study.base));
-    table.rows.push(base);
-    for effect in &study.effects {
-        for (at, (label, summary)) in effect.ends.iter().enumerate() {
-            let first = at == 0;
-            let mut line =
-                vec![Cell::text(if first { effect.name.as_str() } else { "" }), Cell::text(label)];
-            line.extend(cells(summary));
-            table.rows.push(line);
-        }
-    }
-    table
+    let changed = study.effects.iter().flat_map(|effect| {
+        effect.ends.iter().enumerate().map(|(at, (label, summary))| {
+            (if at == 0 { effect.name.as_str() } else { "" }, label.as_str(), summary)
+        })
+    });
+    let [time, drift, stress] =
+        [0, 1, 2].map(|quantity| move |summary: &Summary| values(clock, summary)[quantity]);
+    Table::of(
+        caption,
+        std::iter::once(("as stated", "", &study.base)).chain(changed),
+        &[
+            ("quantity", "", &|(name, ..)| Cell::text(*name)),
+            ("changed", "", &|(_, label, _)| Cell::text(*label)),
+            ("outcome", "", &|(.., m)| Cell::text(m.outcome.mode.unwrap_or(m.outcome.kind))),
+            ("first", "", &|(.., m)| Cell::maybe(m.outcome.first.as_ref())),
+            ("time", "s", &|(.., m)| Cell::number(time(m), 3)),
+            ("drift", "%", &|(.., m)| Cell::number(drift(m).map(|d| 100.0 * d), 3)),
+            ("stress", "× at rest", &|(.., m)| Cell::number(stress(m), 3)),
+        ],
+    )
 }
