@@ -58,6 +58,18 @@ pub enum ExportError {
     },
 }
 
+impl ExportError {
+    /// A path that cannot be written, and why.
+    pub(crate) fn write(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Write { path: path.to_owned(), reason: reason.into() }
+    }
+
+    /// A path that the system refuses.
+    pub(crate) fn refused(path: &Path, error: &std::io::Error) -> Self {
+        Self::write(path, system::words(error))
+    }
+}
+
 /// A folder that is ready to take the files of a run.
 #[derive(Clone, Debug)]
 pub struct Folder {
@@ -71,16 +83,13 @@ impl Folder {
     /// When it holds anything and `overwrite` is not set, or is no folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
         if path.as_os_str().is_empty() {
-            let reason = "the name is empty".to_owned();
-            return Err(ExportError::Write { path: path.to_owned(), reason });
+            return Err(ExportError::write(path, "the name is empty"));
         }
         // A folder that is to be made needs one above it that is there.
         let there = path.ancestors().find(|folder| folder.exists());
         if let Some(file) = there.filter(|there| !there.is_dir()) {
-            return Err(ExportError::Write {
-                path: path.to_owned(),
-                reason: format!("{} is a file, not a folder", file.display()),
-            });
+            let reason = format!("{} is a file, not a folder", file.display());
+            return Err(ExportError::write(path, reason));
         }
         let first = || {
             let names = std::fs::read_dir(path).into_iter().flatten().flatten();
@@ -89,8 +98,7 @@ impl Folder {
         if let (false, Some(file)) = (overwrite, first()) {
             return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
-        system::writable(path)
-            .map_err(|reason| ExportError::Write { path: path.to_owned(), reason })?;
+        system::writable(path).map_err(|reason| ExportError::write(path, reason))?;
         Ok(Self { path: path.to_owned() })
     }
 
@@ -232,12 +240,8 @@ impl Folder {
     }
 
     fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {
-        refused(self.path.join(name), error)
+        ExportError::refused(&self.path.join(name), error)
     }
-}
-
-fn refused(path: PathBuf, error: &std::io::Error) -> ExportError {
-    ExportError::Write { path, reason: system::words(error) }
 }
 
 /// The files of an answer by their names, those of a run with the name of its plane before theirs where there are
@@ -263,9 +267,11 @@ pub fn files(
         let view = run.assembly.view.filter(|_| both);
         let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
         let npz = format!("{plane}histories.npz");
+        let refused = |error| ExportError::refused(Path::new(&npz), &error);
+        let histories = histories_npz(run).map_err(refused)?;
         files.extend([
             (format!("{plane}histories.csv"), histories_csv(run).into_bytes()),
-            (npz.clone(), histories_npz(run).map_err(|error| refused(npz.into(), &error))?),
+            (npz, histories),
             (format!("{plane}forces.csv"), forces_csv(run).into_bytes()),
             (format!("{plane}envelopes.csv"), envelopes_csv(run).into_bytes()),
             (format!("{plane}frames.csv"), frames_csv(run).into_bytes()),

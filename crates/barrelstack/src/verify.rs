@@ -102,14 +102,11 @@ pub fn verify(
     for (repeat, (change, _)) in repeat_all(base, &changes, progress)?.into_iter().zip(&changes) {
         match repeat {
             Some(repeat) => repeats.push(repeat),
-            None => skipped.push(Skipped {
-                change: if change.starts_with("disturbed") {
-                    "a disturbed repeat"
-                } else {
-                    "a finer repeat"
-                },
-                reason: "stopped before its end".into(),
-            }),
+            None => {
+                let disturbed = change.starts_with("disturbed");
+                let change = if disturbed { "a disturbed repeat" } else { "a finer repeat" };
+                skipped.push(Skipped { change, reason: "stopped before its end".into() });
+            }
         }
     }
     Ok(judge(base, repeats, skipped))

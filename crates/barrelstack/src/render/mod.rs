@@ -2,7 +2,7 @@
 
 mod terminal;
 
-use std::fmt::Write as _;
+use std::fmt::{Display, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -95,20 +95,16 @@ impl Rendering {
     /// # Errors
     /// When a number is out of range, or the run ends before it is to be filmed.
     pub fn check(&self, run: &Run) -> Result<(), String> {
+        let expected =
+            |what: &str, found: &dyn Display| Err(format!("expected {what}, found {found}"));
         if !(20.0..=1200.0).contains(&self.dpi) {
-            return Err(format!(
-                "expected 20 to 1200 dots per inch, such as 300, found {}",
-                self.dpi
-            ));
+            return expected("20 to 1200 dots per inch, such as 300", &self.dpi);
         }
         if !(self.rate.is_finite() && self.rate > 0.0) {
-            return Err(format!(
-                "expected pictures a second above zero, such as 20, found {}",
-                self.rate
-            ));
+            return expected("pictures a second above zero, such as 20", &self.rate);
         }
         if !(64..=4096).contains(&self.largest) {
-            return Err(format!("expected 64 to 4096 pixels, such as 480, found {}", self.largest));
+            return expected("64 to 4096 pixels, such as 480", &self.largest);
         }
         match self.between {
             Some([from, to]) if !(from >= 0.0 && to > from) => Err(format!(
@@ -158,10 +154,7 @@ impl RenderFolder {
         let folders = folders.map(|part| path.join(part.place()));
         for folder in std::iter::once(path.to_owned()).chain(folders) {
             if folder.exists() && !folder.is_dir() {
-                return Err(ExportError::Write {
-                    path: folder,
-                    reason: "it is a file, not a folder".into(),
-                });
+                return Err(ExportError::write(&folder, "it is a file, not a folder"));
             }
         }
         let folder = Self { path: path.to_owned(), parts: parts.to_vec() };
@@ -173,8 +166,7 @@ impl RenderFolder {
                 }
             }
         }
-        system::writable(path)
-            .map_err(|reason| ExportError::Write { path: path.to_owned(), reason })?;
+        system::writable(path).map_err(|reason| ExportError::write(path, reason))?;
         Ok(folder)
     }
 
@@ -239,9 +231,9 @@ impl RenderFolder {
     fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
         let place = self.path.join(part.place());
         let folder = if part == Part::Report { &self.path } else { &place };
-        std::fs::create_dir_all(folder).map_err(|error| refused(folder, &error))?;
+        std::fs::create_dir_all(folder).map_err(|error| ExportError::refused(folder, &error))?;
         for file in self.earlier(part)? {
-            std::fs::remove_file(&file).map_err(|error| refused(&file, &error))?;
+            std::fs::remove_file(&file).map_err(|error| ExportError::refused(&file, &error))?;
         }
         Ok(place)
     }
@@ -258,9 +250,10 @@ impl RenderFolder {
         if !place.is_dir() {
             return Ok(files);
         }
-        let entries = std::fs::read_dir(&place).map_err(|error| refused(&place, &error))?;
+        let entries =
+            std::fs::read_dir(&place).map_err(|error| ExportError::refused(&place, &error))?;
         for entry in entries {
-            let path = entry.map_err(|error| refused(&place, &error))?.path();
+            let path = entry.map_err(|error| ExportError::refused(&place, &error))?.path();
             let kind = path.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
             if path.is_file() && KINDS.contains(&kind) {
                 files.push(path);
@@ -337,10 +330,6 @@ fn write_all(folder: &Path, files: &[Attachment]) -> Result<usize, ExportError> 
 
 /// Writes one file.
 fn put(path: &Path, bytes: &[u8]) -> Result<usize, ExportError> {
-    system::store(path, bytes).map_err(|error| refused(path, &error))?;
+    system::store(path, bytes).map_err(|error| ExportError::refused(path, &error))?;
     Ok(1)
-}
-
-fn refused(path: &Path, error: &std::io::Error) -> ExportError {
-    ExportError::Write { path: path.to_owned(), reason: system::words(error) }
 }
