@@ -16,7 +16,7 @@ use crate::assemble::PartKind;
 use crate::pool;
 use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{
-    Basis, BodyOverride, Method, Nodes, Scenario, Scene, SeatContact, StackBody, StackSpec, View,
+    Basis, BodyOverride, Method, Nodes, Scenario, Scene, SeatContact, StackBody, View,
 };
 use crate::summary::{OutcomeSummary, Summary};
 
@@ -50,20 +50,20 @@ described! {
 
     /// One repeat.
     #[derive(Clone, Debug)]
-    pub struct Repeat {
+    pub struct Repeat of base: &Run, other: &Run, change: &str {
         /// What is different.
-        pub change: String,
+        pub change: String = change.to_owned(),
         /// What happens.
-        pub outcome: OutcomeSummary,
+        pub outcome: OutcomeSummary = Summary::of(other, None).outcome,
         /// Whether kind, mode and first body are those of the run.
-        pub same_outcome: bool,
+        pub same_outcome: bool = same_outcome(base, other),
         /// When some body is first too far from where the run has it; none where that does not happen.
-        pub apart_at: Option<f64> as "s",
+        pub apart_at: Option<f64> as "s" = apart_at(base, other),
         /// Largest difference of a fall before any repeat parts from the run; none where nothing falls.
-        pub fall_difference: Option<f64> as "s",
+        pub fall_difference: Option<f64> as "s" = None,
         /// When each barrel had fallen.
         #[serde(skip)]
-        falls: Vec<Option<f64>>,
+        falls: Vec<Option<f64>> = falls(other),
     }
 
     /// A repeat that was not done.
@@ -100,13 +100,12 @@ pub fn verify(
     }
     let mut repeats = Vec::new();
     for (repeat, (change, _)) in repeat_all(base, &changes, progress)?.into_iter().zip(&changes) {
-        match repeat {
-            Some(repeat) => repeats.push(repeat),
-            None => {
-                let disturbed = change.starts_with("disturbed");
-                let change = if disturbed { "a disturbed repeat" } else { "a finer repeat" };
-                skipped.push(Skipped { change, reason: "stopped before its end".into() });
-            }
+        if let Some(repeat) = repeat {
+            repeats.push(repeat);
+        } else {
+            let disturbed = change.starts_with("disturbed");
+            let change = if disturbed { "a disturbed repeat" } else { "a finer repeat" };
+            skipped.push(Skipped { change, reason: "stopped before its end".into() });
         }
     }
     Ok(judge(base, repeats, skipped))
@@ -131,7 +130,7 @@ fn repeat_all(
             Err(_) => ControlFlow::Break(()),
         };
         let run = scenario.run_watched(&mut told)?;
-        Ok((!run.interrupted).then(|| compare(base, &run, change)))
+        Ok((!run.interrupted).then(|| Repeat::of(base, &run, change)))
     };
     let tasks: Vec<(usize, &(String, Scenario))> = changes.iter().enumerate().collect();
     pool::map(&tasks, repeat, &|_| ()).into_iter().collect()
@@ -202,8 +201,9 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     let mut offset = || DISTURBANCE * noise(&mut state);
     match &mut changed.scene {
         Scene::Stack { stack, .. } => {
-            let places: Vec<(u32, u32)> = places(stack);
-            stack.overrides.extend(places.into_iter().map(|(level, column)| BodyOverride {
+            let places = (1..=stack.levels)
+                .flat_map(|level| (1..=stack.columns).map(move |column| (level, column)));
+            stack.overrides.extend(places.map(|(level, column)| BodyOverride {
                 body: StackBody::Barrel,
                 level,
                 column: Some(column),
@@ -228,10 +228,6 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     changed
 }
 
-fn places(stack: &StackSpec) -> Vec<(u32, u32)> {
-    (1..=stack.levels).flat_map(|level| (1..=stack.columns).map(move |c| (level, c))).collect()
-}
-
 /// A number between −1 and 1 from a generator with one word of state (`SplitMix64` of Steele, Lea and
 /// Flood 2014).
 fn noise(state: &mut u64) -> f64 {
@@ -244,20 +240,10 @@ fn noise(state: &mut u64) -> f64 {
     (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// One repeat against the run.
-fn compare(base: &Run, other: &Run, change: &str) -> Repeat {
-    let outcome = Summary::of(other, None).outcome;
-    let own = Summary::of(base, None).outcome;
-    let same_outcome =
-        (outcome.kind, outcome.mode, &outcome.first) == (own.kind, own.mode, &own.first);
-    Repeat {
-        change: change.to_owned(),
-        same_outcome,
-        apart_at: apart_at(base, other),
-        fall_difference: None,
-        falls: falls(other),
-        outcome,
-    }
+/// Whether kind, mode and first body of two runs are the same.
+fn same_outcome(base: &Run, other: &Run) -> bool {
+    let [own, outcome] = [base, other].map(|run| Summary::of(run, None).outcome);
+    (outcome.kind, outcome.mode, outcome.first) == (own.kind, own.mode, own.first)
 }
 
 /// When each barrel had fallen (s).

@@ -152,20 +152,15 @@ impl Format {
 pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     let mut found = Vec::new();
     let mut names = Names::default();
-    walk(&document.blocks, &mut |block| match block {
-        Block::Figure(figure) => found.push((names.take(&figure.id), figure.clone())),
-        Block::Player(player) => {
+    walk(&document.blocks, &mut |block| {
+        if let Block::Figure(figure) = block {
+            found.push((names.take(&figure.id), figure.clone()));
+        } else if let Block::Player(player) = block {
             found.push((names.take(&player.id), player.paper_figure(&document.blocks)));
-        }
-        Block::Players(players) => {
+        } else if let Block::Players(players) = block {
             let drawn = players.paper_figures();
             found.extend(drawn.into_iter().map(|figure| (names.take(&figure.id), figure)));
         }
-        Block::Heading { .. }
-        | Block::Paragraph(_)
-        | Block::List(_)
-        | Block::Table(_)
-        | Block::Details { .. } => {}
     });
     found
 }
@@ -189,7 +184,7 @@ pub fn attachments(document: &Document) -> Vec<Attachment> {
 }
 
 /// Visits blocks in reading order, those that are folded away too.
-fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
+pub(crate) fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
         visit(block);
         if let Block::Details { blocks, .. } = block {

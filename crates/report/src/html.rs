@@ -259,7 +259,7 @@ impl<'a> Writer<'a> {
         self.put(&format!(" aria-label=\"Table {}. {label}\">\n<table>\n", self.tables));
         let number = format!("<caption><span><b>Table {}.</b> ", self.tables);
         self.explained(&number, &table.caption, "</span></caption>");
-        let numeric: Vec<bool> = (0..table.columns.len()).map(|c| table.is_numeric(c)).collect();
+        let numeric = table.numeric();
         let class = |column: usize| if numeric[column] { " class=\"number\"" } else { "" };
         self.put("<thead><tr>");
         for (at, column) in table.columns.iter().enumerate() {
@@ -279,8 +279,7 @@ impl<'a> Writer<'a> {
         self.put("</tr></thead>\n<tbody>\n");
         for row in &table.rows {
             self.put("<tr>");
-            for at in 0..table.columns.len() {
-                let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
+            for (at, text) in table.shown(row).enumerate() {
                 let class = match row.get(at) {
                     Some(crate::Cell::Rated(rating, _)) => format!(" class=\"{}\"", rating.class()),
                     Some(crate::Cell::Text(text)) if text.len() > LONG => " class=\"long\"".into(),
@@ -296,14 +295,9 @@ impl<'a> Writer<'a> {
 
     fn figure(&mut self, figure: &Figure) {
         let id = self.names.take(&figure.id);
-        let live = match &figure.kind {
-            FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
-            FigureKind::Plot(_)
-            | FigureKind::Panels(_)
-            | FigureKind::Strip(_)
-            | FigureKind::Envelope(_)
-            | FigureKind::Diagram(_) => None,
-        };
+        let plot = if let FigureKind::Plot(plot) = &figure.kind { Some(plot) } else { None };
+        let live = plot.filter(|plot| plot.is_live());
+        let live = live.map(|plot| self.payload.add_plot(&id, plot));
         let kind = match &figure.kind {
             FigureKind::Plot(_) | FigureKind::Panels(_) => "plot",
             FigureKind::Strip(_) => "strip",
@@ -315,19 +309,15 @@ impl<'a> Writer<'a> {
         if live.is_some() {
             self.put("<div class=\"live\"></div>\n");
         }
-        match &figure.kind {
-            FigureKind::Strip(strip) => self.strip(strip, &id),
-            FigureKind::Plot(_)
-            | FigureKind::Panels(_)
-            | FigureKind::Envelope(_)
-            | FigureKind::Diagram(_) => {
-                let drawing = figure.draw(&id).inline();
-                self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
-                // What is drawn live fits any width by itself.
-                if live.is_none() {
-                    let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
-                    self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
-                }
+        if let FigureKind::Strip(strip) = &figure.kind {
+            self.strip(strip, &id);
+        } else {
+            let drawing = figure.draw(&id).inline();
+            self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
+            // What is drawn live fits any width by itself.
+            if live.is_none() {
+                let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
+                self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
             }
         }
         self.caption(&figure.caption);

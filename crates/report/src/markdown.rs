@@ -1,7 +1,5 @@
 //! A document as Markdown with its figures beside it.
 
-use std::fmt::Write as _;
-
 use crate::{
     Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
     escape, figure::Names, glossary, number,
@@ -171,22 +169,16 @@ impl Writer {
         if table.columns.is_empty() {
             return;
         }
-        let mut head = String::from("|");
-        let mut rule = String::from("|");
-        for (at, column) in table.columns.iter().enumerate() {
-            // Writing to a String cannot fail.
-            let _ = write!(head, " {} |", escape::markdown(&column.heading()));
-            rule.push_str(if table.is_numeric(at) { " ---: |" } else { " :--- |" });
-        }
-        self.line(&head);
-        self.line(&rule);
+        let line = |cells: Vec<String>| {
+            let cells = cells.iter().map(|cell| format!(" {} |", escape::markdown(cell)));
+            format!("|{}", cells.collect::<String>())
+        };
+        self.line(&line(table.columns.iter().map(crate::Column::heading).collect()));
+        let rule = |numeric| if numeric { " ---: |" } else { " :--- |" };
+        let rules: String = table.numeric().into_iter().map(rule).collect();
+        self.line(&format!("|{rules}"));
         for row in &table.rows {
-            let mut line = String::from("|");
-            for at in 0..table.columns.len() {
-                let text = row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown);
-                let _ = write!(line, " {} |", escape::markdown(&text));
-            }
-            self.line(&line);
+            self.line(&line(table.shown(row).collect()));
         }
         self.line("");
     }

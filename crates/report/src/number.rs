@@ -123,23 +123,11 @@ fn begins_with_unit(text: &str) -> bool {
 }
 
 pub(crate) fn superscript(exponent: i64) -> String {
-    exponent
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4' => '⁴',
-            '5' => '⁵',
-            '6' => '⁶',
-            '7' => '⁷',
-            '8' => '⁸',
-            '9' => '⁹',
-            _ => '⁰',
-        })
-        .collect()
+    let raised = |c: char| {
+        let digit = c.to_digit(10).and_then(|digit| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit as usize));
+        digit.unwrap_or('⁻')
+    };
+    exponent.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]

@@ -384,22 +384,13 @@ impl<'a> Flow<'a> {
 
     fn table(&mut self, table: &Table) {
         self.tables += 1;
-        let columns = 0..table.columns.len();
-        let numeric: Vec<bool> = columns.clone().map(|at| table.is_numeric(at)).collect();
-        let shown = |row: &Vec<crate::Cell>, at: usize| {
-            row.get(at).map_or_else(|| number::MISSING.into(), crate::Cell::shown)
-        };
         let head = table.columns.iter().map(crate::Column::heading).collect();
-        let rows = table
-            .rows
-            .iter()
-            .map(|row| columns.clone().map(|at| shown(row, at)).collect())
-            .collect();
+        let rows = table.rows.iter().map(|row| table.shown(row).collect()).collect();
         self.need(66.0);
         let caption = format!("Table {}. {}", self.tables, table.caption);
         self.tagged(StructRole::P, None, |flow| flow.text("page-small", 0.0, &caption));
         self.y += 3.0;
-        self.rows(&Sheet::new(head, rows, numeric, self.width()));
+        self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
     }
 
     /// The rows of a table, its head again on every page.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Block, Figure, FigureKind, History, Panel, Scene, Strip, Tone, Trace};
+use crate::{Block, Figure, FigureKind, History, Panel, Scene, Strip, Tone, Trace, figure::walk};
 
 /// Moving bodies with controls.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,17 +88,11 @@ impl Players {
 }
 
 fn shows_strip(blocks: &[Block], scene: &Arc<Scene>) -> bool {
-    blocks.iter().any(|block| match block {
-        Block::Figure(Figure { kind: FigureKind::Strip(strip), .. }) => {
-            Arc::ptr_eq(&strip.scene, scene)
+    let mut shown = false;
+    walk(blocks, &mut |block| {
+        if let Block::Figure(Figure { kind: FigureKind::Strip(strip), .. }) = block {
+            shown |= Arc::ptr_eq(&strip.scene, scene);
         }
-        Block::Details { blocks, .. } => shows_strip(blocks, scene),
-        Block::Figure(_)
-        | Block::Player(_)
-        | Block::Players(_)
-        | Block::Table(_)
-        | Block::Heading { .. }
-        | Block::Paragraph(_)
-        | Block::List(_) => false,
-    })
+    });
+    shown
 }

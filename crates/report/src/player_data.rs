@@ -17,14 +17,24 @@ use crate::{
 /// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, places of forces of 2⁻¹⁰ m and
 /// forces of a power of two at most 2⁻¹² of the largest component.
 pub(crate) fn of_player(player: &Player, id: &str) -> Value {
-    let view = whole_window(&player.scene);
-    let lanes: Vec<Value> = player.scene.ground.iter().map(history).collect();
+    let scene = &player.scene;
+    let alone = pane("", scene, &player.traces, &whole_window(scene));
+    together(id, &[alone], &scene.ground, [&**scene])
+}
+
+/// What panes share.
+fn together<'a>(
+    id: &str,
+    panes: &[Value],
+    ground: &[History],
+    scenes: impl IntoIterator<Item = &'a Scene>,
+) -> Value {
     json!({
         "id": id,
-        "panes": [pane("", &player.scene, &player.traces, &view)],
-        "ground": lanes,
-        "opens": opens([&*player.scene]),
-        "begins": begins(&player.scene.ground),
+        "panes": panes,
+        "ground": ground.iter().map(history).collect::<Vec<_>>(),
+        "opens": opens(scenes),
+        "begins": begins(ground),
     })
 }
 
@@ -75,15 +85,10 @@ pub(crate) fn of_players(players: &Players, id: &str) -> Value {
             pane(&one.mark, &one.scene, &one.traces, &view)
         })
         .collect();
-    let lanes: Vec<Value> = players.ground.iter().map(history).collect();
-    json!({
-        "id": id,
-        "panes": panes,
-        "ground": lanes,
-        "opens": opens(players.panes.iter().map(|pane| &*pane.scene)),
-        "begins": begins(&players.ground),
-        "overlay": players.overlay,
-    })
+    let scenes = players.panes.iter().map(|pane| &*pane.scene);
+    let mut value = together(id, &panes, &players.ground, scenes);
+    value["overlay"] = json!(players.overlay);
+    value
 }
 
 fn whole_window(scene: &Scene) -> Extent {

@@ -145,8 +145,18 @@ impl Table {
         out
     }
 
-    /// A column is numeric when it holds a number and no text.
-    pub(crate) fn is_numeric(&self, column: usize) -> bool {
+    /// The cells of a row as people read them, one for each column.
+    pub(crate) fn shown<'a>(&'a self, row: &'a [Cell]) -> impl Iterator<Item = String> + 'a {
+        let cells = row.iter().chain(std::iter::repeat(&Cell::Missing));
+        cells.take(self.columns.len()).map(Cell::shown)
+    }
+
+    /// Which columns are numeric: those that hold a number and no text.
+    pub(crate) fn numeric(&self) -> Vec<bool> {
+        (0..self.columns.len()).map(|column| self.is_numeric(column)).collect()
+    }
+
+    fn is_numeric(&self, column: usize) -> bool {
         let cells = || self.rows.iter().filter_map(move |row| row.get(column));
         cells().any(|cell| matches!(cell, Cell::Number(..) | Cell::Measured(..)))
             && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))

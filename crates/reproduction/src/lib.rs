@@ -27,7 +27,7 @@ use std::path::Path;
 use barrelstack::ground::GroundError;
 use barrelstack::run::RunFailure;
 use barrelstack::scenario::ScenarioError;
-use barrelstack_report::{Document, MarkdownBundle};
+use barrelstack_report::Document;
 
 pub use cases::{Motion, recognize};
 pub use compare::{Comparison, Verdict, percent};
@@ -109,16 +109,6 @@ pub fn reproduce(
     let comparisons = rows::all(&results);
     let document = page::document(&results, &comparisons);
     Ok(Reproduction { comparisons, motion: results.motion, document })
-}
-
-/// The page as one file that asks the network for nothing.
-pub fn html(found: &Reproduction) -> String {
-    barrelstack_report::html(&found.document)
-}
-
-/// The page as text, with its figures and tables as files for a folder named `figure_dir`.
-pub fn markdown(found: &Reproduction, figure_dir: &str) -> MarkdownBundle {
-    barrelstack_report::markdown(&found.document, figure_dir)
 }
 
 /// The comparisons alone, as one Markdown table.

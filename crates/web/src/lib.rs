@@ -53,10 +53,11 @@ pub use records::Reading;
 use verdict::Verdict;
 
 /// What a page may ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ask {
     /// The scenarios that come with the program, but those in space: a JSON list of pairs of name and text.
+    #[default]
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
@@ -84,7 +85,7 @@ pub enum Ask {
 }
 
 /// What is asked.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
     /// What for.
@@ -118,17 +119,7 @@ pub struct Request {
 impl Request {
     /// A request for a scenario by its text, and nothing else.
     pub fn of(ask: Ask, scenario: &str) -> Self {
-        Self {
-            ask,
-            scenario: scenario.to_owned(),
-            name: String::new(),
-            set: Vec::new(),
-            records: Vec::new(),
-            numbers: Vec::new(),
-            cases: Vec::new(),
-            trails: 0,
-            reading: Reading::default(),
-        }
+        Self { ask, scenario: scenario.to_owned(), ..Self::default() }
     }
 
     /// The request in bytes, with those of its records in their order.

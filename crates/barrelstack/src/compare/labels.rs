@@ -80,20 +80,15 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {
         return "without straps".to_owned();
     };
-    let others = runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
-    let mut said = vec!["with straps".to_owned()];
-    let (mut levels, mut tight) = (false, false);
-    for other in others {
-        levels |= other.levels != own.levels;
-        tight |= other.pretension != own.pretension;
+    let others = || runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
+    let mut said = "with straps".to_owned();
+    if others().any(|other| other.levels != own.levels) {
+        said += &format!(" on {}", counted(own.levels, "level"));
     }
-    if levels {
-        said.push(format!("on {}", counted(own.levels, "level")));
+    if others().any(|other| other.pretension != own.pretension) {
+        said += &format!(" at {} kN", 1e-3 * own.pretension);
     }
-    if tight {
-        said.push(format!("at {} kN", 1e-3 * own.pretension));
-    }
-    said.join(" ")
+    said
 }
 
 /// An input in words: "rack-ground friction 0.1".

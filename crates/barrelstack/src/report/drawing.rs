@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use barrelstack_dynamics::{Element, Shape};
+use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     ContactForce, Event, EventKind, Frames, Ghosts, History, Moment, Point, Polyline, Role, Scene,
     SceneBody, Tie, Tint, significant,
@@ -277,25 +278,14 @@ pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
         return Vec::new();
     }
     let recording = &run.recording;
-    let history = |channel: &str, label: &str, unit: &str, factor: f64| {
+    let history = |(channel, label, unit, factor): (&str, &str, &str, f64)| {
         let values = recording.channel(channel)?.values.iter().map(|v| v * factor).collect();
-        Some(History {
-            label: label.to_owned(),
-            unit: unit.to_owned(),
-            times: recording.times.clone(),
-            values,
-        })
+        let (label, unit) = (label.to_owned(), unit.to_owned());
+        Some(History { label, unit, times: recording.times.clone(), values })
     };
-    [
-        history(
-            "ground acceleration x",
-            "ground acceleration",
-            "g",
-            1.0 / barrelstack_motion::STANDARD_GRAVITY,
-        ),
-        history("ground velocity x", "ground velocity", "cm/s", 100.0),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let shown = [
+        ("ground acceleration x", "ground acceleration", "g", 1.0 / STANDARD_GRAVITY),
+        ("ground velocity x", "ground velocity", "cm/s", 100.0),
+    ];
+    shown.into_iter().filter_map(history).collect()
 }

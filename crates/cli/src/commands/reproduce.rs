@@ -45,8 +45,8 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
     let put = |name: &str, bytes: &[u8]| store(&out.join(name), bytes);
-    put("index.html", barrelstack_reproduction::html(found).as_bytes())?;
-    let bundle = barrelstack_reproduction::markdown(found, "figures");
+    put("index.html", barrelstack_report::html(&found.document).as_bytes())?;
+    let bundle = barrelstack_report::markdown(&found.document, "figures");
     put("index.md", bundle.text.as_bytes())?;
     put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
     prepare(&out.join("figures"))?;
