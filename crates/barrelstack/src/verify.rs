@@ -381,48 +381,40 @@ impl Verification {
 
     /// What was found, as pairs of name and value for people.
     pub fn rows(&self) -> Vec<(String, String)> {
+        const UNKNOWN: &str = "not known: no repeat reached its end";
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
-        let mut rows = vec![(
-            "predictable".to_owned(),
-            match self.predictable_until {
-                None if self.repeats.is_empty() => {
-                    "not known: no repeat reached its end".to_owned()
-                }
-                Some(time) => format!(
-                    "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
-                ),
-                None => format!(
-                    "to the end; no body is more than {centimeters} cm elsewhere in a repeat"
-                ),
-            },
-        )];
+        let mut rows = Vec::new();
+        let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
+        let predictable = match self.predictable_until {
+            None if self.repeats.is_empty() => UNKNOWN.to_owned(),
+            Some(time) => format!(
+                "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
+            ),
+            None => {
+                format!("to the end; no body is more than {centimeters} cm elsewhere in a repeat")
+            }
+        };
+        row("predictable", predictable);
         let count = self.repeats.len();
-        rows.push((
-            "outcome".to_owned(),
-            if self.repeats.is_empty() {
-                "not known: no repeat reached its end".to_owned()
-            } else if !self.judged() {
-                "not judged: a free scene has no verdict that could change".to_owned()
-            } else if self.robust.outcome() {
-                format!("robust in {}: the same in all {count} repeats", self.parts().join(", "))
-            } else {
-                let alike = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
-                format!("not robust: the same in {alike} of {count} repeats")
-            },
-        ));
+        let outcome = if self.repeats.is_empty() {
+            UNKNOWN.to_owned()
+        } else if !self.judged() {
+            "not judged: a free scene has no verdict that could change".to_owned()
+        } else if self.robust.outcome() {
+            format!("robust in {}: the same in all {count} repeats", self.parts().join(", "))
+        } else {
+            let alike = self.repeats.iter().filter(|repeat| repeat.same_outcome).count();
+            format!("not robust: the same in {alike} of {count} repeats")
+        };
+        row("outcome", outcome);
         if let Some(late) = self.robust.first_fall_within {
-            rows.push(("first fall".to_owned(), format!("within {} in all", shortly(late))));
+            row("first fall", format!("within {} in all", shortly(late)));
         }
+        // Without repeats nothing is judged.
         match self.robust.barrels_fallen {
-            _ if self.repeats.is_empty() || !self.judged() => {}
-            [least, most] => rows.push((
-                "barrels fallen".to_owned(),
-                if least == most {
-                    format!("{most} in all")
-                } else {
-                    format!("not robust: {least} to {most}")
-                },
-            )),
+            _ if !self.judged() => {}
+            [least, most] if least == most => row("barrels fallen", format!("{most} in all")),
+            [least, most] => row("barrels fallen", format!("not robust: {least} to {most}")),
         }
         for repeat in &self.repeats {
             let outcome = &repeat.outcome;
@@ -439,13 +431,10 @@ impl Verification {
             if let Some(time) = repeat.apart_at {
                 let _ = write!(what, "; parts at {time:.2} s");
             }
-            rows.push((format!("  {}", repeat.change), what));
+            row(&format!("  {}", repeat.change), what);
         }
         for skipped in &self.skipped {
-            rows.push((
-                format!("  {}", skipped.change),
-                format!("not repeated: {}", skipped.reason),
-            ));
+            row(&format!("  {}", skipped.change), format!("not repeated: {}", skipped.reason));
         }
         rows
     }

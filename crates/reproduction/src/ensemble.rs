@@ -69,55 +69,21 @@ fn name(factors: [f64; 4]) -> String {
     if changed.is_empty() { "as stated".into() } else { changed.join(", ") }
 }
 
-/// What the members say together.
-pub(super) struct Agreement {
-    /// How many members there are.
-    pub(super) members: usize,
-    /// How many collapse in the same mode as the base case.
-    pub(super) same_mode: usize,
-    /// In how many every barrel of the top level falls.
-    pub(super) top_down: usize,
-    /// In how many a barrel of the top level is the first to have fallen.
-    pub(super) top_first: usize,
-    /// Least and greatest first fall (s).
-    pub(super) fall: [f64; 2],
-    /// Least and greatest drift of the top.
-    pub(super) drift: [f64; 2],
-    /// Least and greatest stress amplification.
-    pub(super) amplification: [f64; 2],
-}
-
-fn top_falls(summary: &Summary) -> bool {
+/// Whether every barrel of the top level falls.
+pub(super) fn top_falls(summary: &Summary) -> bool {
     let top = summary.bodies.iter().filter_map(|b| b.level).max();
     let mut barrels = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level == top);
     barrels.all(|b| b.fell_at.is_some())
 }
 
-fn top_falls_first(summary: &Summary) -> bool {
+/// Whether a barrel of the top level is the first to have fallen.
+pub(super) fn top_falls_first(summary: &Summary) -> bool {
     let fallen = summary.bodies.iter().filter(|b| b.kind == "barrel");
     let first = fallen
         .filter_map(|b| Some((b.fell_at?, b.level)))
         .min_by(|(one, _), (other, _)| one.total_cmp(other));
     let top = summary.bodies.iter().filter_map(|b| b.level).max();
     first.is_some_and(|(_, level)| level == top)
-}
-
-/// Compares the members with the base case.
-pub(super) fn agreement(base: &Summary, members: &[Summary]) -> Agreement {
-    let same_mode = members.iter().filter(|m| m.outcome.mode == base.outcome.mode);
-    let range = |value: &dyn Fn(&Summary) -> Option<f64>| {
-        let values = members.iter().filter_map(value);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
-    };
-    Agreement {
-        members: members.len(),
-        same_mode: same_mode.count(),
-        top_down: members.iter().filter(|m| top_falls(m)).count(),
-        top_first: members.iter().filter(|m| top_falls_first(m)).count(),
-        fall: range(&|m| m.outcome.first_fall),
-        drift: range(&|m| m.demands.top_drift_ratio),
-        amplification: range(&|m| m.demands.stress_amplification),
-    }
 }
 
 /// The outcomes as tables: one parameter at a time in sight, the corners folded away.

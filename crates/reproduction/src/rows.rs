@@ -1,6 +1,6 @@
 //! One row for every number and every finding that the paper states.
 
-use barrelstack::summary::Summary;
+use barrelstack::summary::{BodySummary, Summary};
 use barrelstack_report::significant;
 
 use super::compare::{Comparison, Number, Verdict, finding};
@@ -35,9 +35,14 @@ fn mode_of(summary: &Summary) -> String {
     }
 }
 
+/// A body by its name.
+fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
+    summary.bodies.iter().find(|body| body.name == name)
+}
+
 /// When a body fell (s).
-fn fell(summary: &Summary, body: &str) -> Option<f64> {
-    summary.bodies.iter().find(|b| b.name == body)?.fell_at
+fn fell(summary: &Summary, name: &str) -> Option<f64> {
+    body(summary, name)?.fell_at
 }
 
 /// When (s) both barrels of the top of four levels had fallen.
@@ -54,19 +59,19 @@ fn top_falls_before_others(summary: &Summary) -> bool {
 /// What a study says about a published time: the changes that reach it, or those that come nearest.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
-    let clock = study.subject.clock();
+    let time = |summary: &Summary| study.subject.time(summary);
     let close = |time: f64| (time / published - 1.0).abs() < 0.05;
-    let reached = study.reaching(published, |summary| clock.time(summary));
+    let reached = study.reaching(published, time);
     let range = study
         .times()
         .map(|[low, high]| {
             format!(" The changes of the study span {} to {}.", seconds(low), seconds(high))
         })
         .unwrap_or_default();
-    if clock.time(&study.base).is_some_and(close) {
+    if time(&study.base).is_some_and(close) {
         range
     } else if reached.is_empty() {
-        let strongest = study.strongest(2, |summary| clock.time(summary), seconds);
+        let strongest = study.strongest(2, time, seconds);
         format!(
             " No single change of the study reaches it; the strongest are {}.{range}",
             strongest.join(" and ")
@@ -86,10 +91,7 @@ fn six(results: &Results) -> Vec<Comparison> {
     let centimeters = |value: Option<f64>| {
         value.map_or_else(|| "–".to_owned(), |v| significant(100.0 * v.abs(), 2))
     };
-    let body = |name: &str| {
-        let body = summary.bodies.iter().find(|b| b.name == name);
-        shown(body.and_then(|b| b.stress_amplification))
-    };
+    let stress = |name: &str| shown(body(summary, name).and_then(|b| b.stress_amplification));
     let mut rows = vec![
         finding(
             "section 3, Fig. 6a",
@@ -136,8 +138,8 @@ fn six(results: &Results) -> Vec<Comparison> {
                 "Largest stress while the stack stands over the largest at rest, the greater of both \
                  bottom barrels; barrel 1 alone {}, barrel 2 alone {}. The paper's text names barrel 1, \
                  its caption body 2.",
-                body("B1.1"),
-                body("B1.2")
+                stress("B1.1"),
+                stress("B1.2")
             ),
         }
         .judged(),
@@ -232,10 +234,8 @@ fn eight(results: &Results) -> Vec<Comparison> {
         (Some(_), Some(_)) => "11, then 10",
         _ => "not both",
     };
-    let places = ["B4.1", "B4.2"].map(|name| {
-        let body = summary.bodies.iter().find(|b| b.name == name);
-        body.map_or(f64::NAN, |b| b.residual_displacement)
-    });
+    let places = ["B4.1", "B4.2"]
+        .map(|name| body(summary, name).map_or(f64::NAN, |b| b.residual_displacement));
     let sides = places[0] * places[1] < 0.0;
     let alone = study.map(|study| {
         let changes = study.holding(top_falls_before_others);
@@ -398,13 +398,8 @@ fn scales(results: &Results) -> Vec<Comparison> {
 
 fn parameters(results: &Results) -> Vec<Comparison> {
     let base = &results.eight.summary;
-    let agreement =
-        (!results.ensemble.is_empty()).then(|| ensemble::agreement(base, &results.ensemble));
-    let span = |[low, high]: [f64; 2], factor: f64| {
-        format!("{} to {}", significant(low * factor, 3), significant(high * factor, 3))
-    };
     let measured = &results.measured;
-    let walk = base.bodies.iter().find(|b| b.name == "R3").map_or(0.0, |b| b.peak_slip);
+    let walk = body(base, "R3").map_or(0.0, |b| b.peak_slip);
     let mut rows = Vec::new();
     let robust = results
         .racks
@@ -416,24 +411,33 @@ fn parameters(results: &Results) -> Vec<Comparison> {
     } else {
         format!(" Other racks that give the paper's numbers as well: {}.", robust.join("; "))
     };
-    if let Some(agreement) = agreement {
+    let all = &results.ensemble;
+    if !all.is_empty() {
+        let members = all.len();
+        let count = |what: &dyn Fn(&Summary) -> bool| all.iter().filter(|m| what(m)).count();
+        let same_mode = count(&|m| m.outcome.mode == base.outcome.mode);
+        let span = |value: &dyn Fn(&Summary) -> Option<f64>| {
+            let values = || all.iter().filter_map(value);
+            let low = values().fold(f64::INFINITY, f64::min);
+            let high = values().fold(f64::NEG_INFINITY, f64::max);
+            format!("{} to {}", significant(low, 3), significant(high, 3))
+        };
         rows.push(finding(
             "section 4",
             "eight barrels: k, c and both μ within ±10 %",
             "robust",
-            format!("{} of {} in the same mode", agreement.same_mode, agreement.members),
-            agreement.same_mode == agreement.members,
+            format!("{same_mode} of {members} in the same mode"),
+            same_mode == members,
             format!(
-                "The top level comes down in {} of {}, one of its barrels first of all in {}; the first \
-                 fall is at {} s; drift {} %, stress amplification {}. Two courses compete: as stated R4 \
-                 leaves its seat first and alone, while R3 has walked {} cm of the {} cm of its reach; in \
+                "The top level comes down in {} of {members}, one of its barrels first of all in {}; the \
+                 first fall is at {} s; drift {} %, stress amplification {}. Two courses compete: as stated \
+                 R4 leaves its seat first and alone, while R3 has walked {} cm of the {} cm of its reach; in \
                  the others R3 leaves and carries level 4 along.{racks}",
-                agreement.top_down,
-                agreement.members,
-                agreement.top_first,
-                span(agreement.fall, 1.0),
-                span(agreement.drift, 100.0),
-                span(agreement.amplification, 1.0),
+                count(&ensemble::top_falls),
+                count(&ensemble::top_falls_first),
+                span(&|m| m.outcome.first_fall),
+                span(&|m| m.demands.top_drift_ratio.map(|drift| drift * 100.0)),
+                span(&|m| m.demands.stress_amplification),
                 significant(100.0 * walk, 3),
                 significant(100.0 * results.eight.run.assembly.rack_reach, 3)
             ),

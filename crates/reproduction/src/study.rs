@@ -17,15 +17,6 @@ pub(super) enum Subject {
     Along,
 }
 
-/// The time of a case that the paper states.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Clock {
-    /// When the first body leaves its seat.
-    Loss,
-    /// When the first barrel has fallen.
-    Fall,
-}
-
 impl Subject {
     /// What the case is called in captions.
     pub(super) fn name(self) -> &'static str {
@@ -36,11 +27,19 @@ impl Subject {
         }
     }
 
-    /// Which time stands beside the paper's.
-    pub(super) fn clock(self) -> Clock {
+    /// The words for the time that stands beside the paper's.
+    pub(super) fn clock(self) -> &'static str {
         match self {
-            Self::Six | Self::Along => Clock::Loss,
-            Self::Eight => Clock::Fall,
+            Self::Six | Self::Along => "first loss of seat",
+            Self::Eight => "first fall",
+        }
+    }
+
+    /// That time (s) in a summary.
+    pub(super) fn time(self, summary: &Summary) -> Option<f64> {
+        match self {
+            Self::Six | Self::Along => summary.outcome.time,
+            Self::Eight => summary.outcome.first_fall,
         }
     }
 
@@ -50,24 +49,6 @@ impl Subject {
             Self::Six => (20.0, 0.1),
             Self::Eight => (12.0, 1.6),
             Self::Along => (10.0, 0.1),
-        }
-    }
-}
-
-impl Clock {
-    /// The words for it.
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Self::Loss => "first loss of seat",
-            Self::Fall => "first fall",
-        }
-    }
-
-    /// The time (s) in a summary.
-    pub(super) fn time(self, summary: &Summary) -> Option<f64> {
-        match self {
-            Self::Loss => summary.outcome.time,
-            Self::Fall => summary.outcome.first_fall,
         }
     }
 }
@@ -209,12 +190,11 @@ impl Study {
                 ends: factor.ends.into_iter().map(|(label, _)| label).zip(&mut *next).collect(),
             })
             .collect();
-        let clock = subject.clock();
         let weight = |effect: &Effect| {
-            let from = clock.time(&base).unwrap_or(0.0);
+            let from = subject.time(&base).unwrap_or(0.0);
             // What does not collapse at all is the largest effect there is.
             let changes = effect.ends.iter().map(|(_, summary)| {
-                clock.time(summary).map_or(f64::INFINITY, |time| (time - from).abs())
+                subject.time(summary).map_or(f64::INFINITY, |time| (time - from).abs())
             });
             changes.fold(0.0, f64::max)
         };
@@ -232,7 +212,7 @@ impl Study {
     /// Least and greatest time (s) among all changes that collapse, the case as stated included.
     pub(super) fn times(&self) -> Option<[f64; 2]> {
         let all = || self.changes().map(|(_, summary)| summary).chain([&self.base]);
-        let times = || all().filter_map(|summary| self.subject.clock().time(summary));
+        let times = || all().filter_map(|summary| self.subject.time(summary));
         Some([times().reduce(f64::min)?, times().reduce(f64::max)?])
     }
 

@@ -3,7 +3,7 @@
 use barrelstack::summary::Summary;
 use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table};
 
-use super::study::{Clock, Study};
+use super::study::{Study, Subject};
 
 /// The three quantities of a tornado, with their place in a row.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
@@ -14,17 +14,17 @@ pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Ve
 }
 
 /// Time, drift and stress of a run.
-fn values(clock: Clock, summary: &Summary) -> [Option<f64>; 3] {
-    [clock.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
+fn values(subject: Subject, summary: &Summary) -> [Option<f64>; 3] {
+    [subject.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
 }
 
 fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
-    let clock = study.subject.clock();
-    let base = values(clock, &study.base);
+    let subject = study.subject;
+    let base = values(subject, &study.base);
     let change = |quantity: usize, summary: &Summary| -> Option<f64> {
-        Some(100.0 * (values(clock, summary)[quantity]? / base[quantity]? - 1.0))
+        Some(100.0 * (values(subject, summary)[quantity]? / base[quantity]? - 1.0))
     };
-    let mut series: Vec<Series> = [clock.words(), "drift of the top", "stress amplification"]
+    let mut series: Vec<Series> = [subject.clock(), "drift of the top", "stress amplification"]
         .into_iter()
         .enumerate()
         .map(|(quantity, label)| Series {
@@ -70,19 +70,19 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
         "What moves the {}: change against the case as stated, one quantity changed at a time, the \
          largest effect on the {} on top; the table below names both ends. Upright lines: where the \
          published values stand.",
-        study.subject.name(),
-        clock.words()
+        subject.name(),
+        subject.clock()
     );
     let x = Axis { range: Some(range), ..Axis::new("change", "%") };
     Figure::new(id, caption, Plot { x, y: Axis::named(names), series, marks, ..Plot::default() })
 }
 
 fn table(study: &Study) -> Table {
-    let clock = study.subject.clock();
+    let subject = study.subject;
     let caption = format!(
         "The {} with one quantity changed at a time. Time: {}.",
-        study.subject.name(),
-        clock.words()
+        subject.name(),
+        subject.clock()
     );
     let changed = study.effects.iter().flat_map(|effect| {
         effect.ends.iter().enumerate().map(|(at, (label, summary))| {
@@ -90,7 +90,7 @@ fn table(study: &Study) -> Table {
         })
     });
     let [time, drift, stress] =
-        [0, 1, 2].map(|quantity| move |summary: &Summary| values(clock, summary)[quantity]);
+        [0, 1, 2].map(|quantity| move |summary: &Summary| values(subject, summary)[quantity]);
     Table::of(
         caption,
         std::iter::once(("as stated", "", &study.base)).chain(changed),

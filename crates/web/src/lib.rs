@@ -156,29 +156,18 @@ pub fn answered(
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
 ) -> Result<Vec<u8>, String> {
     let Opened { request, records, trails } = read(request)?;
-    match request.ask {
-        Ask::Scenarios => {
-            let text = |name| Some((name, builtin::get(name)?));
-            // The page runs planes alone.
-            let in_a_plane = |name: &&str| {
-                Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial())
-            };
-            return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
-        }
-        Ask::Catalog => return json(&look::Catalog::new()),
-        Ask::Records => {
-            let (found, bytes) = records::of(&records, &request.reading)?;
-            let bytes: Vec<&[u8]> = bytes.iter().map(Vec::as_slice).collect();
-            return Ok(enveloped(&json(&found)?, &bytes));
-        }
-        Ask::Look
-        | Ask::Devices
-        | Ask::Show
-        | Ask::Variants
-        | Ask::Verdict
-        | Ask::Summary
-        | Ask::Report
-        | Ask::Files => {}
+    if request.ask == Ask::Scenarios {
+        let text = |name| Some((name, builtin::get(name)?));
+        // The page runs planes alone.
+        let in_a_plane =
+            |name: &&str| Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial());
+        return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
+    } else if request.ask == Ask::Catalog {
+        return json(&look::Catalog::new());
+    } else if request.ask == Ask::Records {
+        let (found, bytes) = records::of(&records, &request.reading)?;
+        let bytes: Vec<&[u8]> = bytes.iter().map(Vec::as_slice).collect();
+        return Ok(enveloped(&json(&found)?, &bytes));
     }
     let name = if request.name.is_empty() { "scenario" } else { &request.name };
     let scenario = Scenario::parse(name, &request.scenario, &request.set).map_err(words_of)?;

@@ -321,19 +321,14 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
 fn motion(run: &Run) -> Vec<Block> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
     let recording = &run.recording;
+    let vertical = motion.vertical.as_ref().map(|_| ("ground acceleration z", "vertical"));
+    let shown = std::iter::once(("ground acceleration x", "horizontal")).chain(vertical);
+    let line = |(channel, label): (&str, &str)| {
+        let values = recording.channel(channel)?.values.iter().map(|v| v / STANDARD_GRAVITY);
+        Some(Series::new(label, recording.times.clone(), values.collect()))
+    };
+    let series = shown.filter_map(line).collect();
     let mut blocks = Vec::new();
-    let mut series = Vec::new();
-    for (channel, label) in
-        [("ground acceleration x", "horizontal"), ("ground acceleration z", "vertical")]
-    {
-        if label == "vertical" && motion.vertical.is_none() {
-            continue;
-        }
-        if let Some(channel) = recording.channel(channel) {
-            let values = channel.values.iter().map(|v| v / STANDARD_GRAVITY).collect();
-            series.push(Series::new(label, recording.times.clone(), values));
-        }
-    }
     blocks.push(history(
         run,
         "ground-acceleration",

@@ -7,7 +7,7 @@ use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{Device, Summary};
+use crate::summary::{Device, EnergyBooks, RunSummary, Summary};
 use crate::variants;
 use crate::verify::Verification;
 
@@ -215,48 +215,35 @@ pub(super) fn details(
 
 /// What made the result, in pairs of name and value.
 pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
-    let mut pairs = vec![
-        ("program".to_owned(), format!("barrelstack {}", summary.provenance.version)),
-        ("scenario fingerprint".to_owned(), summary.provenance.scenario_hash.clone()),
-        (
-            "integration".to_owned(),
-            format!(
-                "{}, time step {:.4} ms, {} steps",
-                summary.run.method,
-                1e3 * summary.run.time_step,
-                summary.run.steps
-            ),
-        ),
-        (
-            "contact constants".to_owned(),
-            match summary.run.stiffness_basis {
-                "node" => "stated per contact node, as in the paper".to_owned(),
-                "length" => "stated per meter of boundary".to_owned(),
-                other => other.to_owned(),
-            },
-        ),
-        (
-            "energy books".to_owned(),
-            summary.energy.as_ref().map_or_else(
-                || "lost with the numbers".to_owned(),
-                |books| {
-                    format!(
-                        "residual {} of the {} kJ that went through",
-                        significant(books.residual_ratio, 2),
-                        significant(1e-3 * books.input, 3)
-                    )
-                },
-            ),
-        ),
-    ];
+    let mut pairs = Vec::new();
+    let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
+    pair("program", format!("barrelstack {}", summary.provenance.version));
+    pair("scenario fingerprint", summary.provenance.scenario_hash.clone());
+    let RunSummary { method, time_step, steps, stiffness_basis, .. } = summary.run;
+    let step = 1e3 * time_step;
+    pair("integration", format!("{method}, time step {step:.4} ms, {steps} steps"));
+    let constants = match stiffness_basis {
+        "node" => "stated per contact node, as in the paper",
+        "length" => "stated per meter of boundary",
+        other => other,
+    };
+    pair("contact constants", constants.to_owned());
+    let residual = |books: &EnergyBooks| {
+        format!(
+            "residual {} of the {} kJ that went through",
+            significant(books.residual_ratio, 2),
+            significant(1e-3 * books.input, 3)
+        )
+    };
+    let lost = || "lost with the numbers".to_owned();
+    pair("energy books", summary.energy.as_ref().map_or_else(lost, residual));
     for (index, step) in summary.provenance.motion.iter().enumerate() {
-        pairs.push((format!("motion, step {}", index + 1), step.clone()));
+        pair(&format!("motion, step {}", index + 1), step.clone());
     }
-    if run.scenario.run.similitude != 1.0 {
-        pairs.push((
-            "similitude".to_owned(),
-            format!("length scale {}, everything below at that scale", run.scenario.run.similitude),
-        ));
+    let similitude = run.scenario.run.similitude;
+    if similitude != 1.0 {
+        let scale = format!("length scale {similitude}, everything below at that scale");
+        pair("similitude", scale);
     }
     pairs
 }
