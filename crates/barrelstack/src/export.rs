@@ -331,20 +331,21 @@ fn array_name(name: &str) -> String {
     name.chars().map(kept).collect()
 }
 
-/// Columns side by side, `time (s)` first.
-fn csv(times: &[f64], columns: &[(String, &[f64])]) -> String {
+/// Columns side by side, `time (s)` first: their names, and the values of a row, which may lack some.
+fn csv<R: Iterator<Item = Option<f64>>>(
+    times: &[f64],
+    names: impl Iterator<Item = String>,
+    row: impl Fn(usize) -> R,
+) -> String {
     let mut text = String::from("time (s)");
-    for (name, _) in columns {
-        let _ = write!(text, ",{}", csv_field(name));
+    for name in names {
+        let _ = write!(text, ",{}", csv_field(&name));
     }
     text.push('\n');
-    for (row, time) in times.iter().enumerate() {
+    for (at, time) in times.iter().enumerate() {
         text.push_str(&shortest(*time));
-        for (_, values) in columns {
-            match values.get(row) {
-                Some(value) => _ = write!(text, ",{}", shortest(*value)),
-                None => text.push(','),
-            }
+        for value in row(at) {
+            let _ = write!(text, ",{}", value.map(shortest).unwrap_or_default());
         }
         text.push('\n');
     }
@@ -380,28 +381,22 @@ fn variants_csv(answer: &Answer) -> String {
 }
 
 fn histories_csv(run: &Run) -> String {
-    let columns: Vec<(String, &[f64])> = run
-        .recording
-        .channels
-        .iter()
-        .map(|c| (format!("{} ({})", c.name, c.unit), c.values.as_slice()))
-        .collect();
-    csv(&run.recording.times, &columns)
+    let channels = || run.recording.channels.iter();
+    let names = channels().map(|channel| format!("{} ({})", channel.name, channel.unit));
+    let row = |at| channels().map(move |channel| channel.values.get(at).copied());
+    csv(&run.recording.times, names, row)
 }
 
 fn forces_csv(run: &Run) -> String {
-    let columns: Vec<(String, &[f64])> = run
-        .recording
-        .joints
-        .iter()
-        .flat_map(|joint| {
-            [
-                (format!("{} vertical (N)", joint.name), joint.vertical.as_slice()),
-                (format!("{} horizontal (N)", joint.name), joint.horizontal.as_slice()),
-            ]
-        })
-        .collect();
-    csv(&run.recording.times, &columns)
+    let joints = || run.recording.joints.iter();
+    let names = joints().flat_map(|joint| {
+        ["vertical", "horizontal"].map(|axis| format!("{} {axis} (N)", joint.name))
+    });
+    let row = |at: usize| {
+        let of = move |values: &Vec<f64>| values.get(at).copied();
+        joints().flat_map(move |joint| [&joint.vertical, &joint.horizontal].map(of))
+    };
+    csv(&run.recording.times, names, row)
 }
 
 fn envelopes_csv(run: &Run) -> String {
@@ -426,19 +421,11 @@ fn envelopes_csv(run: &Run) -> String {
 }
 
 fn frames_csv(run: &Run) -> String {
-    let mut text = String::from("time (s)");
-    for part in &run.assembly.parts {
-        for what in ["x (m)", "z (m)", "angle (rad)"] {
-            let _ = write!(text, ",{}", csv_field(&format!("{} {what}", part.name)));
-        }
-    }
-    text.push('\n');
-    for (time, poses) in run.recording.frames.times.iter().zip(&run.recording.frames.poses) {
-        text.push_str(&shortest(*time));
-        for number in poses.iter().flatten() {
-            let _ = write!(text, ",{}", shortest(*number));
-        }
-        text.push('\n');
-    }
-    text
+    let frames = &run.recording.frames;
+    let count = frames.times.len().min(frames.poses.len());
+    let names = run.assembly.parts.iter().flat_map(|part| {
+        ["x (m)", "z (m)", "angle (rad)"].map(|what| format!("{} {what}", part.name))
+    });
+    let row = |at: usize| frames.poses[at].iter().flatten().copied().map(Some);
+    csv(&frames.times[..count], names, row)
 }

@@ -8,17 +8,16 @@ mod robust;
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
-use std::sync::Mutex;
 
 use barrelstack_report::described;
 
 use crate::assemble::PartKind;
-use crate::pool;
 use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{
     Basis, BodyOverride, Method, Nodes, Scenario, Scene, SeatContact, StackBody, View,
 };
 use crate::summary::{OutcomeSummary, Summary};
+use crate::variants::run_together;
 
 pub use robust::Robust;
 
@@ -88,18 +87,26 @@ pub fn verify(
     base: &Run,
     progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
 ) -> Result<Verification, RunFailure> {
-    let (mut changes, mut skipped) = (Vec::new(), Vec::new());
-    changes.push(finer_step(base));
+    let (change, finer) = finer_step(base);
+    let (mut changes, mut scenarios, mut skipped) = (vec![change], vec![finer], Vec::new());
+    let mut add = |change: String, scenario| {
+        changes.push(change);
+        scenarios.push(scenario);
+    };
     match finer_nodes(&base.scenario) {
-        Ok(scenario) => changes.push(("nodes at half the spacing".to_owned(), scenario)),
+        Ok(scenario) => add("nodes at half the spacing".to_owned(), scenario),
         Err(reason) => skipped.push(Skipped { change: "nodes at half the spacing", reason }),
     }
     for seed in 1..=DISTURBED {
         let change = format!("disturbed by 1 nm, {seed} of {DISTURBED}");
-        changes.push((change, disturbed(&base.scenario, seed)));
+        add(change, disturbed(&base.scenario, seed));
     }
     let mut repeats = Vec::new();
-    for (repeat, (change, _)) in repeat_all(base, &changes, progress)?.into_iter().zip(&changes) {
+    // None where one was stopped.
+    let repeat =
+        |at: usize, run: Run| (!run.interrupted).then(|| Repeat::of(base, &run, &changes[at]));
+    let done = run_together(&scenarios, base.simulation.end_time, progress, &repeat)?;
+    for (repeat, change) in done.into_iter().zip(&changes) {
         if let Some(repeat) = repeat {
             repeats.push(repeat);
         } else {
@@ -109,31 +116,6 @@ pub fn verify(
         }
     }
     Ok(judge(base, repeats, skipped))
-}
-
-/// Runs all repeats on all cores; none where one was stopped.
-fn repeat_all(
-    base: &Run,
-    changes: &[(String, Scenario)],
-    progress: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
-) -> Result<Vec<Option<Repeat>>, RunFailure> {
-    let reached = Mutex::new((vec![0.0; changes.len()], progress));
-    let end_time = base.simulation.end_time * changes.len() as f64;
-    let repeat = |(at, (change, scenario)): &(usize, &(String, Scenario))| {
-        let mut told = |now: Progress| match reached.lock() {
-            Ok(mut shared) => {
-                let (times, progress) = &mut *shared;
-                times[*at] = now.time;
-                progress(Progress { time: times.iter().sum(), end_time })
-            }
-            // Another repeat has panicked; this one is of no use any more.
-            Err(_) => ControlFlow::Break(()),
-        };
-        let run = scenario.run_watched(&mut told)?;
-        Ok((!run.interrupted).then(|| Repeat::of(base, &run, change)))
-    };
-    let tasks: Vec<(usize, &(String, Scenario))> = changes.iter().enumerate().collect();
-    pool::map(&tasks, repeat, &|_| ()).into_iter().collect()
 }
 
 /// The run with half its step; with an adaptive method, with a tenth of its tolerance.

@@ -181,12 +181,9 @@ pub(crate) fn assemble(
         );
     }
     if scripted {
-        out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        let tried = trial.map(|_| [HELD, trial::SCRIPT]);
-        for script in PLAYER.into_iter().chain(REPORT).chain(tried.into_iter().flatten()) {
-            out.push_str(script);
-        }
-        out.push_str("})();\n</script>\n");
+        let tried = trial.map(|_| [HELD, trial::SCRIPT]).into_iter().flatten();
+        let scripts: String = PLAYER.into_iter().chain(REPORT).chain(tried).collect();
+        out += &strict(&scripts);
     }
     out.push_str("</body>\n</html>\n");
     out
@@ -241,22 +238,21 @@ impl Shell<'_> {
         let worker = lean(self.worker);
         // Writing to a String cannot fail.
         let _ = write!(out, "<script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n");
-        out.push_str("<script>\n(() => {\n\"use strict\";\n");
-        for script in PLAYER.into_iter().chain([HELD]) {
-            out.push_str(&lean(script));
-        }
+        let player: String = PLAYER.into_iter().chain([HELD]).map(lean).collect();
+        let own: String = self.scripts.iter().copied().map(lean).collect();
         // In a block of their own, so that equal names of constants are no mistake.
-        out.push_str("{\n");
-        for script in self.scripts {
-            out.push_str(&lean(script));
-        }
-        out.push_str("}\n})();\n</script>\n");
+        out += &strict(&format!("{player}{{\n{own}}}\n"));
         for (id, packed) in self.held {
             hold(&mut out, id, &pack::letters(packed));
         }
         out.push_str("</body>\n</html>\n");
         out
     }
+}
+
+/// Scripts in an element, whose names nobody else sees.
+fn strict(scripts: &str) -> String {
+    format!("<script>\n(() => {{\n\"use strict\";\n{scripts}}})();\n</script>\n")
 }
 
 /// Writes letters into an element.

@@ -44,7 +44,7 @@ impl Polyline {
     }
 }
 
-/// What a body is, for its color and its line.
+/// What a body is, for its color and its line; files for ParaView number them in this order, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Moves with the ground; drawn without a name and left out of "follow the stack".

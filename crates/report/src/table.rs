@@ -153,12 +153,11 @@ impl Table {
 
     /// Which columns are numeric: those that hold a number and no text.
     pub(crate) fn numeric(&self) -> Vec<bool> {
-        (0..self.columns.len()).map(|column| self.is_numeric(column)).collect()
-    }
-
-    fn is_numeric(&self, column: usize) -> bool {
-        let cells = || self.rows.iter().filter_map(move |row| row.get(column));
-        cells().any(|cell| matches!(cell, Cell::Number(..) | Cell::Measured(..)))
-            && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))
+        let numeric = |column: usize| {
+            let cells = || self.rows.iter().filter_map(|row| row.get(column));
+            cells().any(|cell| matches!(cell, Cell::Number(..) | Cell::Measured(..)))
+                && !cells().any(|cell| matches!(cell, Cell::Text(_) | Cell::Rated(..)))
+        };
+        (0..self.columns.len()).map(numeric).collect()
     }
 }

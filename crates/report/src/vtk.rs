@@ -84,7 +84,7 @@ struct Mesh {
 struct Cell {
     points: Vec<usize>,
     body: usize,
-    role: u8,
+    role: Role,
 }
 
 fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
@@ -94,9 +94,9 @@ fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
         let start = scene.frames.pose(0, at);
         for line in body.outlines.iter().chain(&body.marks) {
             if body.role == Role::Ground && !line.closed {
-                mesh.add(&shortened(line, sight), (at, role(body.role)), pose, start);
+                mesh.add(&shortened(line, sight), (at, body.role), pose, start);
             } else {
-                mesh.add(line, (at, role(body.role)), pose, start);
+                mesh.add(line, (at, body.role), pose, start);
             }
         }
     }
@@ -123,21 +123,11 @@ fn shortened(line: &Polyline, [from, to]: [f64; 2]) -> Polyline {
     Polyline::open(points)
 }
 
-fn role(role: Role) -> u8 {
-    match role {
-        Role::Ground => 0,
-        Role::Barrel => 1,
-        Role::Rack => 2,
-        Role::Block => 3,
-        Role::Device => 4,
-    }
-}
-
 impl Mesh {
     fn add(
         &mut self,
         line: &Polyline,
-        (body, role): (usize, u8),
+        (body, role): (usize, Role),
         pose: Pose2,
         start: Option<Pose2>,
     ) {
@@ -156,21 +146,13 @@ impl Mesh {
     }
 
     fn write(&self) -> String {
-        let mut piece = String::new();
-        let _ = writeln!(
-            piece,
-            "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" \
-             NumberOfStrips=\"0\" NumberOfPolys=\"{}\">",
-            self.points.len(),
-            self.lines.len(),
-            self.polygons.len()
-        );
-        piece.push_str("<PointData Vectors=\"displacement\">\n");
+        let cells = [0, self.lines.len(), self.polygons.len()];
+        let mut piece = piece(self.points.len(), cells, "displacement");
         vectors(&mut piece, "displacement", &self.displacements);
         piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
         let cells = || self.lines.iter().chain(&self.polygons);
         whole(&mut piece, "Int32", "body", cells().map(|cell| cell.body));
-        whole(&mut piece, "Int32", "role", cells().map(|cell| usize::from(cell.role)));
+        whole(&mut piece, "Int32", "role", cells().map(|cell| cell.role as usize));
         piece.push_str("</CellData>\n<Points>\n");
         vectors(&mut piece, "points", &self.points);
         piece.push_str("</Points>\n");
@@ -185,10 +167,7 @@ fn forces(scene: &Scene, frame: usize) -> String {
     let finite = |f: &&crate::ContactForce| [f.x, f.z, f.fx, f.fz].iter().all(|v| v.is_finite());
     let list: Vec<_> = list.iter().filter(finite).collect();
     let count = list.len();
-    let mut piece = format!(
-        "<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\" NumberOfLines=\"0\" \
-         NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Vectors=\"force\">\n"
-    );
+    let mut piece = piece(count, [count, 0, 0], "force");
     vectors(&mut piece, "force", &list.iter().map(|f| [f.fx, f.fz]).collect::<Vec<_>>());
     piece.push_str("</PointData>\n<Points>\n");
     vectors(&mut piece, "points", &list.iter().map(|f| [f.x, f.z]).collect::<Vec<_>>());
@@ -197,6 +176,14 @@ fn forces(scene: &Scene, frame: usize) -> String {
     whole(&mut piece, "Int64", "offsets", 1..=count);
     piece.push_str("</Verts>\n");
     poly_data("", &piece)
+}
+
+/// The start of a piece, up to its vectors: how many points it has, vertices, lines and polygons.
+fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) -> String {
+    format!(
+        "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"{polygons}\">\n<PointData Vectors=\"{vectors}\">\n"
+    )
 }
 
 /// A file of one piece, with the attributes that tell how its arrays are packed.

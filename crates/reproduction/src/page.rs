@@ -8,7 +8,7 @@ use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict as Headline
 
 use super::cases::Motion;
 use super::compare::{Comparison, Verdict, percent};
-use super::results::Results;
+use super::results::{Ran, Results};
 use super::study::Subject;
 use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 
@@ -335,34 +335,30 @@ fn studies(results: &Results) -> Vec<Block> {
 }
 
 fn provenance(results: &Results) -> Vec<(String, String)> {
-    let mut pairs = vec![(
-        "program".to_owned(),
-        format!("barrelstack {}", results.eight.summary.provenance.version),
-    )];
-    for (name, ran) in [
+    let mut pairs = Vec::new();
+    let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));
+    let eight = &results.eight.summary;
+    pair("program", format!("barrelstack {}", eight.provenance.version));
+    for (name, Ran { summary, .. }) in [
         ("six barrels, μ 0.4", &results.six),
         ("six barrels, μ 0.1", &results.slippery),
         ("eight barrels", &results.eight),
         ("eight barrels at half scale", &results.half),
         ("along the barrels", &results.along),
     ] {
-        let summary = &ran.summary;
-        pairs.push((
-            name.to_owned(),
-            format!(
-                "{}, step {} ms, constants per {}, energy residual {}",
-                summary.run.method,
-                significant(1e3 * summary.run.time_step, 3),
-                summary.run.stiffness_basis,
-                summary.energy.as_ref().map_or_else(
-                    || "lost".to_owned(),
-                    |books| format!("{:.0e}", books.residual_ratio)
-                )
-            ),
-        ));
+        let books = summary.energy.as_ref();
+        let residual = books.map(|books| format!("{:.0e}", books.residual_ratio));
+        let told = format!(
+            "{}, step {} ms, constants per {}, energy residual {}",
+            summary.run.method,
+            significant(1e3 * summary.run.time_step, 3),
+            summary.run.stiffness_basis,
+            residual.as_deref().unwrap_or("lost")
+        );
+        pair(name, told);
     }
     for (index, step) in results.six.summary.provenance.motion.iter().enumerate() {
-        pairs.push((format!("motion of the six barrels, step {}", index + 1), step.clone()));
+        pair(&format!("motion of the six barrels, step {}", index + 1), step.clone());
     }
     pairs
 }

@@ -91,31 +91,26 @@ impl Serialize for ElementSummary {
 
 impl Described for Devices {
     fn schema(objects: &mut Objects) -> Value {
-        let (mut properties, number) = (
-            Map::new(),
-            |unit: &str, meaning: String| json!({ "type": "number", "unit": unit, "description": meaning }),
-        );
+        let number = |unit: &str, meaning: &str| json!({ "type": "number", "unit": unit, "description": meaning });
+        let mut properties = Map::new();
         for Words { one, many, force, broken, .. } in all_words() {
-            let mut element = Map::new();
-            let name = json!({ "type": "string", "description": "What it joins, and where." });
-            element.insert("name".into(), name);
-            let peak = number("N", format!("The {force} that is largest in size."));
-            element.insert(format!("peak_{force}"), peak);
-            element.insert(format!("peak_{force}_at"), number("s", "When.".into()));
-            let mut at = number("s", format!("When it was {broken}."));
+            let mut at = number("s", &format!("When it was {broken}."));
             at["type"] = json!(["number", "null"]);
-            element.insert(format!("{broken}_at"), at);
+            let element = json!({
+                "name": { "type": "string", "description": "What it joins, and where." },
+                (format!("peak_{force}")): number("N", &format!("The {force} that is largest in size.")),
+                (format!("peak_{force}_at")): number("s", "When."),
+                (format!("{broken}_at")): at,
+            });
             objects.insert(key(one), closed(&format!("One {one}."), &element));
-            properties.insert(
-                key(many),
-                json!({
-                    "type": "array",
-                    "items": { "$ref": format!("#/$defs/{}", key(one)) },
-                    "description": format!("All {many}."),
-                }),
-            );
+            let list = json!({
+                "type": "array",
+                "items": { "$ref": format!("#/$defs/{}", key(one)) },
+                "description": format!("All {many}."),
+            });
+            properties.insert(key(many), list);
         }
-        objects.insert("Devices".into(), closed("The devices.", &properties));
+        objects.insert("Devices".into(), closed("The devices.", &Value::Object(properties)));
         json!({ "$ref": "#/$defs/Devices" })
     }
 }
@@ -131,8 +126,8 @@ fn key(words: &str) -> String {
 }
 
 /// An object that has these properties, and no other.
-fn closed(meaning: &str, properties: &Map<String, Value>) -> Value {
-    let required: Vec<&String> = properties.keys().collect();
+fn closed(meaning: &str, properties: &Value) -> Value {
+    let required: Vec<&String> = properties.as_object().into_iter().flat_map(Map::keys).collect();
     json!({
         "type": "object",
         "description": meaning,

@@ -171,19 +171,34 @@ fn seen(
     tasks: &[(&Plane, u32)],
     told: &(dyn Fn(Told) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Run>, RunFailure> {
-    let reached = Mutex::new(vec![Progress { time: 0.0, end_time: 0.0 }; tasks.len()]);
-    let indexed: Vec<(usize, &(&Plane, u32))> = tasks.iter().enumerate().collect();
-    let run = |(at, (plane, number)): &(usize, &(&Plane, u32))| {
-        let run = plane.variant(*number).run_watched(&mut |now| {
-            let Ok(mut all) = reached.lock() else { return ControlFlow::Break(()) };
+    let scenarios: Vec<Scenario> =
+        tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
+    let stated = |at: usize, run| Run { stated: Box::new(tasks[at].0.variant(0)), ..run };
+    run_together(&scenarios, 0.0, &mut |now| told(Told::Run(now)), &stated)
+}
+
+/// Runs scenarios on all cores and gives what `seen` makes of each, by its place; the observer hears how far they are
+/// in sum, those that have not begun with an end (s) that is expected of them.
+pub(crate) fn run_together<T: Send>(
+    scenarios: &[Scenario],
+    end_time: f64,
+    observer: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
+    seen: &(dyn Fn(usize, Run) -> T + Sync),
+) -> Result<Vec<T>, RunFailure> {
+    let reached = Mutex::new((vec![Progress { time: 0.0, end_time }; scenarios.len()], observer));
+    let tasks: Vec<(usize, &Scenario)> = scenarios.iter().enumerate().collect();
+    let run = |(at, scenario): &(usize, &Scenario)| {
+        let run = scenario.run_watched(&mut |now| {
+            // Where another run has panicked, this one is of no use any more.
+            let Ok(mut reached) = reached.lock() else { return ControlFlow::Break(()) };
+            let (all, observer) = &mut *reached;
             all[*at] = now;
             let sum = |of: fn(&Progress) -> f64| all.iter().map(of).sum();
-            let (time, end_time) = (sum(|one| one.time), sum(|one| one.end_time));
-            told(Told::Run(Progress { time, end_time }))
+            observer(Progress { time: sum(|one| one.time), end_time: sum(|one| one.end_time) })
         })?;
-        Ok(Run { stated: Box::new(plane.variant(0)), ..run })
+        Ok(seen(*at, run))
     };
-    pool::map(&indexed, run, &|_| ()).into_iter().collect()
+    pool::map(&tasks, run, &|_| ()).into_iter().collect()
 }
 
 /// How bad a plane is: the share that collapses, or whether the one run does, and the share that falls.

@@ -75,6 +75,9 @@ described! {
     }
 }
 
+/// Who hears from several threads how many runs of the change at hand are done, and may stop it.
+type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
+
 /// Looks for the smallest change of height, and of straps, that would have kept a stack up which falls in more
 /// variants than may fall.
 ///
@@ -119,7 +122,7 @@ fn enough(share: f64) -> bool {
 
 fn search(
     scenario: &Scenario,
-    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+    observer: Observer<'_>,
     found: &mut Remedy,
 ) -> Result<ControlFlow<()>, GroundError> {
     let Some(stack) = scenario.stack() else { return Ok(ControlFlow::Continue(())) };
@@ -151,7 +154,7 @@ fn search(
 fn loosest(
     changes: &[Change],
     trials: &mut [Option<Trial>],
-    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+    observer: Observer<'_>,
 ) -> Result<ControlFlow<()>, GroundError> {
     let mut trial = |at: usize, until: u32| -> Result<(ControlFlow<()>, bool, bool), GroundError> {
         let trial = match &mut trials[at] {
@@ -288,11 +291,7 @@ impl Trial {
     }
 
     /// Runs variants until so many are behind it, or too many have failed.
-    fn run(
-        &mut self,
-        until: u32,
-        observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
-    ) -> ControlFlow<()> {
+    fn run(&mut self, until: u32, observer: Observer<'_>) -> ControlFlow<()> {
         let count = self.count();
         let order = order(count);
         let stages = [SCOUTS.min(count), count].map(|stage| stage.min(until.max(self.until)));
@@ -307,12 +306,10 @@ impl Trial {
         ControlFlow::Continue(())
     }
 
-    fn stage(
-        &self,
-        numbers: &[u32],
-        observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
-    ) -> ControlFlow<()> {
-        let done = AtomicUsize::new(self.counts.iter().map(|[ran, _]| count(ran)).sum());
+    fn stage(&self, numbers: &[u32], observer: Observer<'_>) -> ControlFlow<()> {
+        let done = AtomicUsize::new(
+            self.counts.iter().map(|[ran, _]| ran.load(Ordering::Relaxed) as usize).sum(),
+        );
         let stopped = AtomicBool::new(false);
         let asked = || {
             if observer(done.load(Ordering::Relaxed)).is_break() {
@@ -366,10 +363,6 @@ impl Trial {
             interval: [interval.low, interval.high],
         }
     }
-}
-
-fn count(counter: &AtomicU32) -> usize {
-    counter.load(Ordering::Relaxed) as usize
 }
 
 /// Whether so many of a number may fail.

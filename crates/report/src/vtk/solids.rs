@@ -6,7 +6,7 @@ use std::io::Write as _;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use super::{closed_index, index_entry, opened_index, poly_data, role};
+use super::{closed_index, index_entry, opened_index, piece, poly_data};
 use crate::film::sampled_times;
 use crate::{Attachment, Role, base64, escape};
 
@@ -92,17 +92,12 @@ fn file(solids: &Solids, frame: usize) -> String {
         corners.extend(body.triangles.iter().flatten().map(|corner| first + corner));
         of_body.extend(body.triangles.iter().map(|_| at));
     }
-    let mut piece = format!(
-        "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" \
-         NumberOfPolys=\"{}\">\n<PointData Vectors=\"displacement\">\n",
-        points.len(),
-        of_body.len()
-    );
+    let mut piece = piece(points.len(), [0, 0, of_body.len()], "displacement");
     vectors(&mut piece, "displacement", &displacements);
     vectors(&mut piece, "velocity", &velocities);
     piece.push_str("</PointData>\n<CellData Scalars=\"body\">\n");
     whole(&mut piece, "body", of_body.iter().copied());
-    whole(&mut piece, "role", of_body.iter().map(|at| usize::from(role(bodies[*at].role))));
+    whole(&mut piece, "role", of_body.iter().map(|at| bodies[*at].role as usize));
     whole(&mut piece, "level", of_body.iter().map(|at| bodies[*at].level as usize));
     piece.push_str("</CellData>\n<Points>\n");
     vectors(&mut piece, "points", &points);
