@@ -11,7 +11,7 @@ use ttf_parser::{Face, GlyphId, OutlineBuilder};
 pub(crate) struct Font {
     pub(crate) bytes: &'static [u8],
     pub(crate) name: &'static str,
-    face: Face<'static>,
+    pub(crate) face: Face<'static>,
 }
 
 static REGULAR: LazyLock<Font> =
@@ -59,26 +59,10 @@ impl Font {
         self.face.outline_glyph(GlyphId(glyph), pen);
     }
 
-    /// Ascent, descent (negative), cap height and the box around all glyphs, over the size of the
-    /// text.
-    pub(crate) fn metrics(&self) -> Metrics {
-        let share = |value: i16| f64::from(value) / self.units();
-        let bounds = self.face.global_bounding_box();
-        Metrics {
-            ascent: share(self.face.ascender()),
-            descent: share(self.face.descender()),
-            cap_height: self.face.capital_height().map_or(0.7, share),
-            bounds: [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(share),
-        }
+    /// A length in the font's units over the size of the text.
+    pub(crate) fn share(&self, length: i16) -> f64 {
+        f64::from(length) / self.units()
     }
-}
-
-/// Measures of a font over the size of the text.
-pub(crate) struct Metrics {
-    pub(crate) ascent: f64,
-    pub(crate) descent: f64,
-    pub(crate) cap_height: f64,
-    pub(crate) bounds: [f64; 4],
 }
 
 /// Characters that steer and are not seen.

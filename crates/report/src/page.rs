@@ -5,8 +5,8 @@ use std::{collections::HashMap, fmt::Write as _};
 use serde_json::{Value, json};
 
 use crate::{
-    Axis, Plot, Scale, escape, pack,
-    style::{DASHES, PALETTE, page_style, standalone_style},
+    Axis, Band, Mark, Plot, Scale, escape, pack,
+    style::{DASHES, PALETTE, STYLE, standalone_style},
     trial::{self, Trial},
 };
 
@@ -85,16 +85,11 @@ impl Payload {
                 })
             })
             .collect();
-        let marks = |list: &[crate::Mark]| -> Vec<Value> {
-            let finite = list.iter().filter(|m| m.at.is_finite());
-            finite.map(|m| json!({ "at": m.at, "label": m.label })).collect()
+        let marks = |list: &[Mark]| -> Vec<Mark> {
+            list.iter().filter(|mark| mark.at.is_finite()).cloned().collect()
         };
-        let bands: Vec<Value> = plot
-            .bands
-            .iter()
-            .filter(|b| b.from.is_finite() && b.to.is_finite())
-            .map(|b| json!({ "from": b.from, "to": b.to, "label": b.label }))
-            .collect();
+        let shown = |band: &&Band| band.from.is_finite() && band.to.is_finite();
+        let bands: Vec<&Band> = plot.bands.iter().filter(shown).collect();
         self.plots.push(json!({
             "id": id,
             "x": axis(&plot.x),
@@ -193,14 +188,13 @@ pub(crate) fn assemble(
 fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     let title = escape::html(title);
     let palette = palette_css();
-    let figures = page_style();
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <title>{title}</title>\n<link rel=\"icon\" href=\"data:,\">\n\
-         <style>\n{palette}{before}{figures}{REPORT_CSS}{after}</style>\n</head>\n<body>\n"
+         <style>\n{palette}{before}{STYLE}{REPORT_CSS}{after}</style>\n</head>\n<body>\n"
     )
 }
 

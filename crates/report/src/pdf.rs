@@ -182,18 +182,21 @@ impl File {
         let widths = glyphs.numbers.remapped_gids().map(|old| short(1000.0 * font.advance(old)));
         cid.widths().consecutive(0, widths);
         cid.finish();
-        let metrics = font.metrics();
-        let thousandths = |share: f64| short((1000.0 * share).round());
-        let [left, foot, right, top] = metrics.bounds.map(thousandths);
+        let thousandths = |length: i16| short((1000.0 * font.share(length)).round());
+        let bounds = font.face.global_bounding_box();
+        let [left, foot, right, top] =
+            [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(thousandths);
+        // A font that does not tell it has capitals of seven tenths, as most.
+        let cap_height = font.face.capital_height().map_or(700.0, thousandths);
         self.pdf
             .font_descriptor(descriptor)
             .name(base)
             .flags(FontFlags::NON_SYMBOLIC)
             .bbox(Rect::new(left, foot, right, top))
             .italic_angle(0.0)
-            .ascent(thousandths(metrics.ascent))
-            .descent(thousandths(metrics.descent))
-            .cap_height(thousandths(metrics.cap_height))
+            .ascent(thousandths(font.face.ascender()))
+            .descent(thousandths(font.face.descender()))
+            .cap_height(cap_height)
             .stem_v(if strong { 130.0 } else { 90.0 })
             .font_file2(program);
         let bytes_deflated = deflated(&bytes);

@@ -1,5 +1,7 @@
 //! A plot: series over a pair of axes, with marks, levels and bands.
 
+use serde::Serialize;
+
 use crate::{escape, number, style::DASHES};
 
 /// Lines over a pair of axes.
@@ -145,7 +147,7 @@ pub struct SeriesStyle {
 }
 
 /// A place on an axis worth a line and a word.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
     /// Where, in the axis's unit.
     pub at: f64,
@@ -154,7 +156,7 @@ pub struct Mark {
 }
 
 /// A shaded stretch of the horizontal axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Band {
     /// Start, in the axis's unit.
     pub from: f64,

@@ -35,7 +35,8 @@ pub(crate) const PALETTE: &[(&str, &str, &str)] = &[
 /// Dash patterns of the series, by the same index as their colors.
 pub(crate) const DASHES: [&str; 6] = ["", "8 4", "2 3", "9 3 2 3", "14 5", "5 3"];
 
-const STYLE: &str = include_str!("../assets/figure.css");
+/// The rules that figures inside a page share.
+pub(crate) const STYLE: &str = include_str!("../assets/figure.css");
 
 /// What only a document on paper needs.
 const PAPER: &str = include_str!("../assets/paper.css");
@@ -51,11 +52,6 @@ fn on_white(style: &str) -> String {
         style = style.replace(&format!("var(--{name})"), light);
     }
     style
-}
-
-/// The rules that figures inside a page share.
-pub(crate) fn page_style() -> &'static str {
-    STYLE
 }
 
 /// The rules as they are read where no browser reads them.

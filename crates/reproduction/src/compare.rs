@@ -90,54 +90,39 @@ fn sentence(words: &str) -> String {
     format!("{}{end}", capital(words))
 }
 
-/// A number and the words around it.
-pub(super) struct Number {
-    /// Where the paper says it.
-    pub(super) place: &'static str,
-    /// What is compared.
-    pub(super) quantity: &'static str,
-    /// The published number.
-    pub(super) published: f64,
-    /// Ours; none where it did not happen.
-    pub(super) ours: Option<f64>,
-    /// The unit of both.
-    pub(super) unit: &'static str,
-    /// The project's own band, if it has one.
-    pub(super) band: Option<(f64, f64, &'static str)>,
-    /// How it is measured, or why it differs.
-    pub(super) why: String,
-}
+/// The project's own band of a number: from, to, and in words.
+pub(super) type Band = (f64, f64, &'static str);
 
-impl Number {
-    /// Judges the number.
-    pub(super) fn judged(self) -> Comparison {
-        let difference = self.ours.map(|ours| ours / self.published - 1.0);
-        let within = |(low, high, _): (f64, f64, &str)| {
-            self.ours.is_some_and(|ours| (low..=high).contains(&ours))
-        };
-        let verdict = if difference.is_some_and(|d| d.abs() <= CLOSE) {
-            Verdict::Agrees
-        } else if self.band.is_some_and(within) {
-            Verdict::InBand
-        } else {
-            Verdict::Differs
-        };
-        let text = |value: f64| {
-            let value = barrelstack_report::significant(value, 3);
-            if self.unit.is_empty() { value } else { format!("{value} {}", self.unit) }
-        };
+/// A number against the published one, both in a unit; ours is none where it did not happen.
+pub(super) fn number(
+    place: &'static str,
+    quantity: &str,
+    (published, unit): (f64, &str),
+    ours: Option<f64>,
+    band: Option<Band>,
+    why: impl Into<String>,
+) -> Comparison {
+    let difference = ours.map(|ours| ours / published - 1.0);
+    let within = |(low, high, _): Band| ours.is_some_and(|ours| (low..=high).contains(&ours));
+    let verdict = if difference.is_some_and(|d| d.abs() <= CLOSE) {
+        Verdict::Agrees
+    } else if band.is_some_and(within) {
+        Verdict::InBand
+    } else {
+        Verdict::Differs
+    };
+    let text = |value: String| format!("{value} {unit}").trim_end().to_owned();
+    let shown = |ours: f64| text(barrelstack_report::significant(ours, 3));
+    Comparison {
+        place,
+        quantity: quantity.to_owned(),
         // Published numbers have two digits; a third would claim more than the paper says.
-        let published = format!("{} {}", self.published, self.unit).trim_end().to_owned();
-        Comparison {
-            place: self.place,
-            quantity: self.quantity.to_owned(),
-            published,
-            ours: self.ours.map_or_else(|| "does not happen".to_owned(), text),
-            difference,
-            band: self.band.map(|(_, _, words)| words),
-            verdict,
-            why: self.why,
-        }
+        published: text(published.to_string()),
+        ours: ours.map_or_else(|| "does not happen".to_owned(), shown),
+        difference,
+        band: band.map(|(_, _, words)| words),
+        verdict,
+        why: why.into(),
     }
 }
 
@@ -146,37 +131,28 @@ pub(super) fn finding(
     place: &'static str,
     quantity: &str,
     published: &str,
-    ours: String,
+    ours: impl Into<String>,
     same: bool,
-    why: String,
+    why: impl Into<String>,
 ) -> Comparison {
     Comparison {
         place,
         quantity: quantity.to_owned(),
         published: published.to_owned(),
-        ours,
+        ours: ours.into(),
         difference: None,
         band: None,
         verdict: if same { Verdict::Agrees } else { Verdict::Differs },
-        why,
+        why: why.into(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Number, Verdict};
+    use super::{Band, Verdict, number};
 
-    fn judge(ours: Option<f64>, band: Option<(f64, f64, &'static str)>) -> Verdict {
-        let number = Number {
-            place: "",
-            quantity: "",
-            published: 10.0,
-            ours,
-            unit: "s",
-            band,
-            why: String::new(),
-        };
-        number.judged().verdict
+    fn judge(ours: Option<f64>, band: Option<Band>) -> Verdict {
+        number("", "", (10.0, "s"), ours, band, "").verdict
     }
 
     #[test]

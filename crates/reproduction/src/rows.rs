@@ -3,13 +3,13 @@
 use barrelstack::summary::{BodySummary, Summary};
 use barrelstack_report::significant;
 
-use super::compare::{Comparison, Number, Verdict, finding};
+use super::compare::{Band, Comparison, Verdict, finding, number};
 use super::results::Results;
 use super::study::{Study, Subject};
 use super::{ensemble, figures};
 
 /// The project's band of stress amplification.
-const STRESS_BAND: Option<(f64, f64, &str)> = Some((2.5, 3.5, "2.5 to 3.5"));
+const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
 /// All rows, in the order of the paper.
 pub(super) fn all(results: &Results) -> Vec<Comparison> {
@@ -99,21 +99,19 @@ fn six(results: &Results) -> Vec<Comparison> {
             "rocking of the 2 upper levels",
             mode_of(summary),
             outcome.mode == Some("rocking") && outcome.from_level == Some(2),
-            "judged by the first body that leaves its seat".into(),
+            "judged by the first body that leaves its seat",
         ),
-        Number {
-            place: "section 3",
-            quantity: "six barrels, μ 0.4: stands for",
-            published: 10.0,
-            ours: outcome.time,
-            unit: "s",
-            band: Some((8.5, 12.0, "8.5 to 12 s")),
-            why: format!(
+        number(
+            "section 3",
+            "six barrels, μ 0.4: stands for",
+            (10.0, "s"),
+            outcome.time,
+            Some((8.5, 12.0, "8.5 to 12 s")),
+            format!(
                 "Time of the first loss of seat.{}",
                 reasons(results.study(Subject::Six), 10.0)
             ),
-        }
-        .judged(),
+        ),
     ];
     let peak = figures::peak_velocity_time(&results.six.run);
     if let (Some(loss), Some(peak)) = (outcome.time, peak) {
@@ -123,27 +121,23 @@ fn six(results: &Results) -> Vec<Comparison> {
             "right after the peak velocity",
             format!("{} after it ({})", seconds(loss - peak), seconds(peak)),
             (0.0..=2.0).contains(&(loss - peak)),
-            "counted as \"right after\" up to 2 s".into(),
+            "counted as \"right after\" up to 2 s",
         ));
     }
-    rows.push(
-        Number {
-            place: "section 3, Fig. 6b",
-            quantity: "six barrels, μ 0.4: stress amplification",
-            published: 2.9,
-            ours: demands.stress_amplification,
-            unit: "",
-            band: STRESS_BAND,
-            why: format!(
-                "Largest stress while the stack stands over the largest at rest, the greater of both \
-                 bottom barrels; barrel 1 alone {}, barrel 2 alone {}. The paper's text names barrel 1, \
-                 its caption body 2.",
-                stress("B1.1"),
-                stress("B1.2")
-            ),
-        }
-        .judged(),
-    );
+    rows.push(number(
+        "section 3, Fig. 6b",
+        "six barrels, μ 0.4: stress amplification",
+        (2.9, ""),
+        demands.stress_amplification,
+        STRESS_BAND,
+        format!(
+            "Largest stress while the stack stands over the largest at rest, the greater of both \
+             bottom barrels; barrel 1 alone {}, barrel 2 alone {}. The paper's text names barrel 1, \
+             its caption body 2.",
+            stress("B1.1"),
+            stress("B1.2")
+        ),
+    ));
     let top = figures::footprint(&results.six.run, "B1.1", true);
     let bottom = figures::footprint(&results.six.run, "B1.1", false);
     if let (Some([top_rest, top]), Some([bottom_rest, bottom])) = (top, bottom) {
@@ -160,35 +154,30 @@ fn six(results: &Results) -> Vec<Comparison> {
             ),
             top > 1.2 * top_rest && (top - top_rest) > 2.0 * (bottom - bottom_rest),
             "Length of boundary under stress, at rest → at any time while the stack stands; on top \
-             the rack slides. The same if the top gains more than a fifth and more than twice what the bottom gains."
-                .into(),
+             the rack slides. The same if the top gains more than a fifth and more than twice what the bottom gains.",
         ));
     }
-    rows.push(
-        Number {
-            place: "section 3",
-            quantity: "six barrels, μ 0.4: residual slip of R1",
-            published: 2.0,
-            ours: demands.base_slip_residual.map(|slip| 100.0 * slip.abs()),
-            unit: "cm",
-            band: Some((0.0, 5.0, "at most 5 cm")),
-            why: format!(
-                "At the end of the run. While the stack stands the rack slips by {} cm at most, and by \
-                 {} cm up to the loss of seat: the residual comes from the fall of the upper levels, \
-                 whose course small changes alter.",
-                centimeters(demands.base_slip_peak),
-                centimeters(demands.base_slip_at_collapse)
-            ),
-        }
-        .judged(),
-    );
+    rows.push(number(
+        "section 3",
+        "six barrels, μ 0.4: residual slip of R1",
+        (2.0, "cm"),
+        demands.base_slip_residual.map(|slip| 100.0 * slip.abs()),
+        Some((0.0, 5.0, "at most 5 cm")),
+        format!(
+            "At the end of the run. While the stack stands the rack slips by {} cm at most, and by \
+             {} cm up to the loss of seat: the residual comes from the fall of the upper levels, \
+             whose course small changes alter.",
+            centimeters(demands.base_slip_peak),
+            centimeters(demands.base_slip_at_collapse)
+        ),
+    ));
     rows.push(finding(
         "section 3, Fig. 6c",
         "six barrels, μ 0.1: collapse",
         "none",
         mode_of(slippery),
         slippery.outcome.kind == "stable",
-        "the rack slides under the stack and keeps it from rocking".into(),
+        "the rack slides under the stack and keeps it from rocking",
     ));
     rows.push(finding(
         "section 3, Fig. 6c",
@@ -201,7 +190,7 @@ fn six(results: &Results) -> Vec<Comparison> {
         ),
         slippery.demands.base_slip_residual.map(f64::abs)
             > demands.base_slip_residual.map(f64::abs),
-        "at the end of both runs".into(),
+        "at the end of both runs",
     ));
     if !results.motion.is_papers() {
         for row in &mut rows {
@@ -253,28 +242,23 @@ fn eight(results: &Results) -> Vec<Comparison> {
             outcome.mode == Some("ejection") && outcome.from_level == Some(4),
             format!("{} leaves its seat first", outcome.first.as_deref().unwrap_or("nothing")),
         ),
-        Number {
-            place: "section 4",
-            quantity: "eight barrels: first barrel falls",
-            published: 1.5,
-            ours: first,
-            unit: "s",
-            band: Some((1.0, 2.6, "1 to 2.6 s")),
-            why: format!("First barrel of the top level to have fallen.{}", reasons(study, 1.5)),
-        }
-        .judged(),
-        Number {
-            place: "section 4",
-            quantity: "eight barrels: second barrel falls",
-            published: 2.5,
-            ours: second,
-            unit: "s",
-            band: None,
-            why: "Second barrel of the top level. It lies on the way of the first and of a rack that \
-                  turns over, so it is the less certain of the two."
-                .into(),
-        }
-        .judged(),
+        number(
+            "section 4",
+            "eight barrels: first barrel falls",
+            (1.5, "s"),
+            first,
+            Some((1.0, 2.6, "1 to 2.6 s")),
+            format!("First barrel of the top level to have fallen.{}", reasons(study, 1.5)),
+        ),
+        number(
+            "section 4",
+            "eight barrels: second barrel falls",
+            (2.5, "s"),
+            second,
+            None,
+            "Second barrel of the top level. It lies on the way of the first and of a rack that \
+                  turns over, so it is the less certain of the two.",
+        ),
         finding(
             "section 4",
             "eight barrels: which falls first",
@@ -282,14 +266,13 @@ fn eight(results: &Results) -> Vec<Comparison> {
             format!("{}; mirrored {}", order(summary), order(mirrored)),
             order(summary) == "11, then 10" || order(mirrored) == "11, then 10",
             "The paper does not say to which side its sine starts. Stack and motion are symmetric, so \
-             the sides change places with it: mirrored is the run of the opposite sine."
-                .into(),
+             the sides change places with it: mirrored is the run of the opposite sine.",
         ),
         finding(
             "section 4",
             "eight barrels: the top barrels go",
             "to each side of the stack",
-            if sides { "to each side".into() } else { "to the same side".into() },
+            if sides { "to each side" } else { "to the same side" },
             sides,
             format!(
                 "At the end of the run B4.1 lies {} m from its place and B4.2 {} m, negative to the \
@@ -310,30 +293,24 @@ fn eight(results: &Results) -> Vec<Comparison> {
                 alone.unwrap_or_default()
             ),
         ),
-        Number {
-            place: "section 4",
-            quantity: "eight barrels: drift of the top",
-            published: 5.2,
-            ours: demands.top_drift_ratio.map(|d| 100.0 * d),
-            unit: "%",
-            band: Some((4.0, 7.0, "4 to 7 %")),
-            why: "Largest displacement of a top barrel against the ground while the stack stands, over \
-                  the height of the stack."
-                .into(),
-        }
-        .judged(),
-        Number {
-            place: "section 4, Fig. 7c",
-            quantity: "eight barrels: stress amplification",
-            published: 3.0,
-            ours: demands.stress_amplification,
-            unit: "",
-            band: STRESS_BAND,
-            why: "Largest stress while the stack stands over the largest at rest, the greater of both \
-                  bottom barrels."
-                .into(),
-        }
-        .judged(),
+        number(
+            "section 4",
+            "eight barrels: drift of the top",
+            (5.2, "%"),
+            demands.top_drift_ratio.map(|d| 100.0 * d),
+            Some((4.0, 7.0, "4 to 7 %")),
+            "Largest displacement of a top barrel against the ground while the stack stands, over \
+                  the height of the stack.",
+        ),
+        number(
+            "section 4, Fig. 7c",
+            "eight barrels: stress amplification",
+            (3.0, ""),
+            demands.stress_amplification,
+            STRESS_BAND,
+            "Largest stress while the stack stands over the largest at rest, the greater of both \
+                  bottom barrels.",
+        ),
     ]
 }
 
@@ -362,7 +339,7 @@ fn scales(results: &Results) -> Vec<Comparison> {
                 .map(|a| format!("{} g", significant(a / barrelstack_motion::STANDARD_GRAVITY, 3)))
                 .join(" and "),
             (accelerations[0] / accelerations[1] - 1.0).abs() < 1e-9,
-            "half scale and full scale".into(),
+            "half scale and full scale",
         ),
         finding(
             "section 4, Fig. 7b",
@@ -376,23 +353,20 @@ fn scales(results: &Results) -> Vec<Comparison> {
             apart < 1e-3 && full.outcome.first == half.outcome.first,
             "Largest distance of any body at full scale up to the first loss of seat. The paper sets \
              its model beside photographs of the test; here both are the model, which similitude makes \
-             the same but for rounding."
-                .into(),
+             the same but for rounding.",
         ),
-        Number {
-            place: "section 4",
-            quantity: "the test at half scale: top level gone after",
-            published: 2.0,
-            ours: second,
-            unit: "s",
-            band: None,
-            why: format!(
+        number(
+            "section 4",
+            "the test at half scale: top level gone after",
+            (2.0, "s"),
+            second,
+            None,
+            format!(
                 "Second barrel of the top level at half scale. The paper's own model has 2.5/√2 = {}.{}",
                 seconds(2.5 / root),
                 nearest.unwrap_or_default()
             ),
-        }
-        .judged(),
+        ),
     ]
 }
 
@@ -481,21 +455,19 @@ fn along(results: &Results) -> Vec<Comparison> {
                 outcome.first.as_deref().unwrap_or("nothing")
             ),
             outcome.mode == Some("rack-sliding") && outcome.first.as_deref() == Some("R2"),
-            "R2 is the paper's body 4, the rack of the second level.".into(),
+            "R2 is the paper's body 4, the rack of the second level.",
         ),
-        Number {
-            place: "section 4",
-            quantity: "along the barrels: stands for",
-            published: 4.5,
-            ours: outcome.time,
-            unit: "s",
-            band: Some((3.0, 6.0, "3 to 6 s")),
-            why: format!(
+        number(
+            "section 4",
+            "along the barrels: stands for",
+            (4.5, "s"),
+            outcome.time,
+            Some((3.0, 6.0, "3 to 6 s")),
+            format!(
                 "A rail has passed the end of the barrel below.{}{}",
                 fall.unwrap_or_default(),
                 reasons(results.study(Subject::Along), 4.5)
             ),
-        }
-        .judged(),
+        ),
     ]
 }

@@ -7,9 +7,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use barrelstack_reproduction::{
-    Comparison, Motion, Reproduction, Verdict, html, markdown, recognize, reproduce,
-};
+use barrelstack_report::{html, markdown};
+use barrelstack_reproduction::{Comparison, Motion, Reproduction, Verdict, recognize, reproduce};
 
 /// The page without the paper's record and without the studies, made once.
 fn found() -> &'static Reproduction {
@@ -99,7 +98,7 @@ fn what_differs_is_said_to_differ() {
 
 #[test]
 fn every_figure_of_the_paper_is_drawn() {
-    let bundle = markdown(found(), "figures");
+    let bundle = markdown(&found().document, "figures");
     for figure in [
         "figure-6a.svg",
         "figure-6b.svg",
@@ -118,7 +117,10 @@ fn every_figure_of_the_paper_is_drawn() {
         assert!(file.is_some_and(|file| file.bytes.len() > 1000), "{figure}");
         assert!(bundle.text.contains(&format!("figures/{figure}")), "{figure}");
     }
-    assert!(html(found()).contains("under South Napa at 60 cm/s"), "captions must name the motion");
+    assert!(
+        html(&found().document).contains("under South Napa at 60 cm/s"),
+        "captions must name the motion"
+    );
     let drawn = bundle.files.iter().filter(|file| file.bytes.starts_with(b"<svg"));
     assert!(drawn.clone().count() >= 9);
     for file in drawn {
@@ -132,8 +134,8 @@ fn every_figure_of_the_paper_is_drawn() {
 #[cfg_attr(debug_assertions, ignore = "runs every case a second time; run in release")]
 fn the_page_is_the_same_every_time() {
     let again = reproduce(None, false, &|_, _| ControlFlow::Continue(())).unwrap();
-    assert_eq!(html(&again), html(found()));
-    assert_eq!(markdown(&again, "figures"), markdown(found(), "figures"));
+    assert_eq!(html(&again.document), html(&found().document));
+    assert_eq!(markdown(&again.document, "figures"), markdown(&found().document, "figures"));
 }
 
 #[test]

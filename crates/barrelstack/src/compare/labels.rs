@@ -81,14 +81,14 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
         return "without straps".to_owned();
     };
     let others = || runs.iter().filter_map(|(_, other)| of(other)).filter(|other| other.levels > 0);
-    let mut said = "with straps".to_owned();
+    let mut said = vec!["with straps".to_owned()];
     if others().any(|other| other.levels != own.levels) {
-        said += &format!(" on {}", counted(own.levels, "level"));
+        said.push(format!("on {}", counted(own.levels, "level")));
     }
     if others().any(|other| other.pretension != own.pretension) {
-        said += &format!(" at {} kN", 1e-3 * own.pretension);
+        said.push(format!("at {} kN", 1e-3 * own.pretension));
     }
-    said
+    said.join(" ")
 }
 
 /// An input in words: "rack-ground friction 0.1".

@@ -30,19 +30,7 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
         frames: Frames {
             times: frames.times.clone(),
             poses: frames.poses.clone(),
-            forces: frames
-                .forces
-                .iter()
-                .map(|list| {
-                    list.iter()
-                        .map(|&[x, z, fx, fz]| {
-                            // Of the two that push each other, the one that is pushed up.
-                            let sign = if fz < 0.0 { -1.0 } else { 1.0 };
-                            ContactForce { x, z, fx: sign * fx, fz: sign * fz }
-                        })
-                        .collect()
-                })
-                .collect(),
+            forces: frames.forces.iter().map(|list| list.iter().map(pushed).collect()).collect(),
         },
         events: events(run),
         ground: ground_histories(run),
@@ -50,6 +38,12 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
         tint: run.assembly.of_kind(PartKind::Barrel).next().map(|_| tint(run)),
         ghosts: variants.and_then(ghosts),
     })
+}
+
+/// A contact force: of the two that push each other, the one that is pushed up.
+fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
+    let sign = if fz < 0.0 { -1.0 } else { 1.0 };
+    ContactForce { x, z, fx: sign * fx, fz: sign * fz }
 }
 
 /// The scene of bodies as they are put up, before they settle into their contacts.

@@ -35,7 +35,7 @@ const BATCH: usize = 16;
 
 described! {
     /// What would have kept the stack up, as far as it was looked for.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that has to stand in every plane.
         pub required_share: f64 as "1",
@@ -102,14 +102,7 @@ pub fn remedy(
     if scenario.stack().is_none() || scenario.run.duration.is_some_and(|run| run + CUT < end) {
         return Ok(None);
     }
-    let mut found = Remedy {
-        required_share: f64::from(ENOUGH) / 100.0,
-        height: None,
-        straps: None,
-        tried: Vec::new(),
-        complete: false,
-        comparison: None,
-    };
+    let mut found = Remedy { required_share: f64::from(ENOUGH) / 100.0, ..Remedy::default() };
     let searched = search(scenario, observer, &mut found)?;
     found.complete = searched.is_continue();
     Ok(Some(found))
