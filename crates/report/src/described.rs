@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use crate::escape::one_line;
+
 /// The objects of a document, by name: each is described once, wherever it stands, in itself too.
 pub type Objects = Map<String, Value>;
 
@@ -116,7 +118,7 @@ pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]
             words.extend(schema["type"].is_array().then_some(Value::Null));
             schema["enum"] = Value::Array(words);
         }
-        schema["description"] = json!(sentence(field.meaning));
+        schema["description"] = json!(one_line(field.meaning));
         if let Some(unit) = field.unit {
             schema["unit"] = json!(unit);
         }
@@ -125,7 +127,7 @@ pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]
     }
     let described = json!({
         "type": "object",
-        "description": sentence(meaning),
+        "description": one_line(meaning),
         "properties": properties,
         "required": required,
         "additionalProperties": false,
@@ -138,11 +140,6 @@ pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]
 fn resolved<'a>(schema: &'a Value, objects: &'a Objects) -> &'a Value {
     let name = schema["$ref"].as_str().and_then(|at| at.strip_prefix("#/$defs/"));
     name.and_then(|name| objects.get(name)).unwrap_or(schema)
-}
-
-/// A doc comment as one line.
-fn sentence(comment: &str) -> String {
-    comment.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The schema of a whole document under a title.

@@ -90,7 +90,8 @@ pub(crate) fn slug(text: &str) -> String {
     if out.is_empty() { "item".into() } else { out.into() }
 }
 
-fn one_line(text: &str) -> String {
+/// A text on one line, with single spaces between its words.
+pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -5,7 +5,9 @@ use std::{collections::HashMap, fmt::Write as _};
 use serde_json::{Value, json};
 
 use crate::{
-    Axis, Band, Mark, Plot, Scale, escape, pack,
+    Axis, Band, Mark, Plot, Scale,
+    escape::{self, json_in_script},
+    pack,
     style::{DASHES, PALETTE, STYLE, standalone_style},
     trial::{self, Trial},
 };
@@ -157,9 +159,12 @@ pub(crate) fn assemble(
     let mut out = head(title, policy, if live { UPLOT_CSS } else { "" }, style);
     out.push_str(body);
     if scripted {
-        out.push_str("<script type=\"application/json\" id=\"barrelstack-data\">");
-        out.push_str(&escape::json_in_script(&payload.into_json()));
-        out.push_str("</script>\n");
+        hold(
+            &mut out,
+            "application/json",
+            "barrelstack-data",
+            &json_in_script(&payload.into_json()),
+        );
     }
     if live {
         // The license asks that its text goes with every copy.
@@ -167,13 +172,8 @@ pub(crate) fn assemble(
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
     if let Some(Trial { page, start }) = trial {
-        let packed = pack::gzip_letters(page.as_bytes());
-        let start = escape::json_in_script(start);
-        let _ = writeln!(
-            out,
-            "<script type=\"text/plain\" id=\"trial-page\">{packed}</script>\n\
-             <script type=\"application/json\" id=\"trial-start\">{start}</script>"
-        );
+        hold(&mut out, "text/plain", "trial-page", &pack::gzip_letters(page.as_bytes()));
+        hold(&mut out, "application/json", "trial-start", &json_in_script(start));
     }
     if scripted {
         let tried = trial.map(|_| [HELD, trial::SCRIPT]).into_iter().flatten();
@@ -227,17 +227,15 @@ impl Shell<'_> {
         let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
         for (id, bytes) in self.at_hand {
-            hold(&mut out, id, &pack::gzip_letters(bytes));
+            hold(&mut out, "text/plain", id, &pack::gzip_letters(bytes));
         }
-        let worker = lean(self.worker);
-        // Writing to a String cannot fail.
-        let _ = write!(out, "<script type=\"text/plain\" id=\"worker\">\n{worker}</script>\n");
+        hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
         let player: String = PLAYER.into_iter().chain([HELD]).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
         // In a block of their own, so that equal names of constants are no mistake.
         out += &strict(&format!("{player}{{\n{own}}}\n"));
         for (id, packed) in self.held {
-            hold(&mut out, id, &pack::letters(packed));
+            hold(&mut out, "text/plain", id, &pack::letters(packed));
         }
         out.push_str("</body>\n</html>\n");
         out
@@ -249,10 +247,10 @@ fn strict(scripts: &str) -> String {
     format!("<script>\n(() => {{\n\"use strict\";\n{scripts}}})();\n</script>\n")
 }
 
-/// Writes letters into an element.
-fn hold(out: &mut String, id: &str, letters: &str) {
+/// Writes what scripts read into an element of its own.
+fn hold(out: &mut String, kind: &str, id: &str, text: &str) {
     // Writing to a String cannot fail.
-    let _ = writeln!(out, "<script type=\"text/plain\" id=\"{id}\">{letters}</script>");
+    let _ = writeln!(out, "<script type=\"{kind}\" id=\"{id}\">{text}</script>");
 }
 
 /// A script without indents and without lines that only explain: a fifth shorter. None of ours has a text that goes

@@ -32,9 +32,7 @@ impl Writer<'_> {
             self.put("</div>\n");
         }
         self.caption(&player.caption);
-        let events: Vec<(&str, &Event)> =
-            player.scene.events.iter().map(|event| ("", event)).collect();
-        self.events(events);
+        self.events(player.scene.events.iter().map(|event| ("", event)).collect());
         self.put("</figure>\n");
     }
 
@@ -45,14 +43,11 @@ impl Writer<'_> {
         self.put(&format!(
             "<figure class=\"player several\" id=\"figure-{id}\" data-player=\"{place}\">\n"
         ));
-        let mut stages = String::from("<div class=\"panes\">\n");
-        for pane in &players.panes {
-            stages.push_str("<section class=\"pane\">\n");
-            stages.push_str(&pane_head(pane));
-            stages.push_str(STAGE);
-            stages.push_str("</section>\n");
-        }
-        stages.push_str("</div>\n");
+        let stage = |pane: &Pane| {
+            format!("<section class=\"pane\">\n{}{STAGE}</section>\n", pane_head(pane))
+        };
+        let stages: String = players.panes.iter().map(stage).collect();
+        let stages = format!("<div class=\"panes\">\n{stages}</div>\n");
         self.put(&CONTROLS.replace("{stages}", &stages));
         if self.prints {
             self.put("<div class=\"paper\">\n");

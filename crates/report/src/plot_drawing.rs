@@ -305,20 +305,14 @@ impl Plot {
     /// Runs of points between gaps, in pixels.
     fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
-        let mut runs = vec![Vec::new()];
-        for k in 0..series.len() {
-            if self.x.shows(series.x[k]) && self.y.shows(series.y[k]) {
-                if let Some(run) = runs.last_mut() {
-                    // Far outside the window a line needs no exact place, and short numbers suffice.
-                    let point = [x.at(series.x[k]), y.at(series.y[k])];
-                    run.push(point.map(|v: f64| v.clamp(-9999.0, 9999.0)));
-                }
-            } else if runs.last().is_some_and(|run| !run.is_empty()) {
-                runs.push(Vec::new());
-            }
-        }
-        runs.retain(|run| !run.is_empty());
-        runs.iter().map(|run| simplify(run, 0.1)).collect()
+        let shown = |k: &usize| self.x.shows(series.x[*k]) && self.y.shows(series.y[*k]);
+        // Far outside the window a line needs no exact place, and short numbers suffice.
+        let spot = |k: &usize| -> [f64; 2] {
+            [x.at(series.x[*k]), y.at(series.y[*k])].map(|v| v.clamp(-9999.0, 9999.0))
+        };
+        let known: Vec<usize> = (0..series.len()).filter(shown).collect();
+        let runs = known.chunk_by(|a, b| b - a == 1);
+        runs.map(|run| simplify(&run.iter().map(spot).collect::<Vec<_>>(), 0.1)).collect()
     }
 
     /// Marks in sight from left to right, their labels each in the lowest row that has room.

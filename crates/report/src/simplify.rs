@@ -17,11 +17,7 @@ pub(crate) fn simplify(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
 fn by_column(run: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
     let column = |p: &[f64; 2]| (p[0] / width).floor();
     let mut out = Vec::new();
-    let mut at = 0;
-    while at < run.len() {
-        let here = column(&run[at]);
-        let end = run[at..].iter().position(|p| column(p) != here).map_or(run.len(), |n| at + n);
-        let group = &run[at..end];
+    for group in run.chunk_by(|a, b| column(a) == column(b)) {
         let extreme = |sign: f64| {
             (0..group.len())
                 .max_by(|&a, &b| (sign * group[a][1]).total_cmp(&(sign * group[b][1])))
@@ -29,12 +25,7 @@ fn by_column(run: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
         };
         let mut keep = [0, extreme(1.0), extreme(-1.0), group.len() - 1];
         keep.sort_unstable();
-        for (place, &index) in keep.iter().enumerate() {
-            if place == 0 || index != keep[place - 1] {
-                out.push(group[index]);
-            }
-        }
-        at = end;
+        out.extend(keep.chunk_by(|a, b| a == b).map(|same| group[same[0]]));
     }
     out
 }

@@ -72,14 +72,10 @@ impl Case {
             Ended::Invalid { reason } => Ok(Outcome::Invalid { reason }),
             Ended::Refused { reason } => Err(reason),
         };
-        let mut result = CaseResult::failed(String::new());
-        result.outcome = outcome;
-        result.first_fall = self.first_fall;
-        result.barrels = self.barrels;
-        result.falls = self.falls;
+        let Self { first_fall, barrels, falls, cut, end_time, .. } = self;
+        let known = CaseResult::failed(String::new());
+        let mut result = CaseResult { outcome, first_fall, barrels, falls, cut, end_time, ..known };
         result.demands.top_drift_ratio = self.drift;
-        result.cut = self.cut;
-        result.end_time = self.end_time;
         Ok(result)
     }
 }

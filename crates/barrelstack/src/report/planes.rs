@@ -21,13 +21,12 @@ pub(super) fn players(
 ) -> Players {
     let pane = |run: &Run, summary: &Summary, scene: Arc<Scene>| {
         let alone = Summary { ensemble: None, other_plane: None, ..summary.clone() };
+        let verdict = words::alone(run, summary);
         Pane {
-            mark: mark(&run.assembly).to_owned(),
-            name: run.assembly.view.map_or_else(String::new, |view| capital(view.words())),
-            verdict: words::alone(run, summary),
             tone: tone(run, &alone),
-            scene,
             traces: sections::traces(run),
+            verdict,
+            ..of(&run.assembly, scene)
         }
     };
     let mut both = [
@@ -59,14 +58,7 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
         let scene = Arc::new(drawing::still(alone));
         return Block::Player(Player { id: "player".into(), caption, scene, traces: Vec::new() });
     }
-    let pane = |assembly: &Assembly| Pane {
-        mark: mark(assembly).to_owned(),
-        name: assembly.view.map_or_else(String::new, |view| capital(view.words())),
-        verdict: String::new(),
-        tone: Tone::Neutral,
-        scene: Arc::new(drawing::still(assembly)),
-        traces: Vec::new(),
-    };
+    let pane = |assembly: &Assembly| of(assembly, Arc::new(drawing::still(assembly)));
     Block::Players(Players {
         id: "players".into(),
         caption,
@@ -76,13 +68,15 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
     })
 }
 
-/// A letter that stands for a plane.
-fn mark(assembly: &Assembly) -> &'static str {
-    match assembly.view {
-        Some(View::Transverse) => "X",
-        Some(View::Longitudinal) => "Y",
-        None => "",
-    }
+/// A plane by its letter and its name, without a verdict.
+fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
+    let (mark, name) = match assembly.view {
+        Some(view @ View::Transverse) => ("X", capital(view.words())),
+        Some(view @ View::Longitudinal) => ("Y", capital(view.words())),
+        None => ("", String::new()),
+    };
+    let (verdict, tone, traces) = (String::new(), Tone::Neutral, Vec::new());
+    Pane { mark: mark.to_owned(), name, verdict, tone, scene, traces }
 }
 
 /// The acceleration of the ground in a plane.
