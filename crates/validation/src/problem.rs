@@ -67,6 +67,12 @@ impl Outcome {
     }
 }
 
+impl From<f64> for Outcome {
+    fn from(value: f64) -> Self {
+        Self::of(value)
+    }
+}
+
 /// Why there is no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -91,7 +97,7 @@ pub enum Failure {
 }
 
 /// What a problem runs.
-pub type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
+type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
 
 /// A question with an exact answer.
 pub struct Problem {
@@ -130,6 +136,103 @@ impl Problem {
     }
 }
 
+/// What a problem looks at, made by [`setting`].
+#[derive(Clone)]
+pub struct Setting {
+    id: String,
+    title: String,
+    source: String,
+}
+
+/// What is looked at: an [id](Problem::id), the scene in a few words, and the source of the theory.
+pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) -> Setting {
+    Setting { id: id.into(), title: title.into(), source: source.into() }
+}
+
+impl Setting {
+    /// The same as one of several, by what is asked of it.
+    #[must_use]
+    pub fn named(&self, what: &str) -> Self {
+        Self { id: format!("{}-{what}", self.id), ..self.clone() }
+    }
+
+    /// What is asked for, its unit (empty for pure numbers), and the exact answer.
+    pub fn asks(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
+        Question { setting: self, quantity, unit, answer }
+    }
+}
+
+/// The exact or published answer, and how near ours has to come.
+#[derive(Clone, Copy)]
+pub struct Answer {
+    exact: f64,
+    tolerance: Tolerance,
+    fast: Option<Tolerance>,
+}
+
+/// An answer and how far from it ours may be, as a share of it.
+pub fn relative(exact: f64, limit: f64) -> Answer {
+    Answer { exact, tolerance: Tolerance::Relative(limit), fast: None }
+}
+
+/// An answer and how far from it ours may be, in its unit.
+pub fn absolute(exact: f64, limit: f64) -> Answer {
+    Answer { exact, tolerance: Tolerance::Absolute(limit), fast: None }
+}
+
+impl Answer {
+    /// The same with another limit, of the same kind, for the fast form.
+    #[must_use]
+    pub fn fast(self, limit: f64) -> Self {
+        let fast = match self.tolerance {
+            Tolerance::Relative(_) => Tolerance::Relative(limit),
+            Tolerance::Absolute(_) => Tolerance::Absolute(limit),
+        };
+        Self { fast: Some(fast), ..self }
+    }
+}
+
+/// A problem that does not say yet how the code is made to answer.
+pub struct Question {
+    setting: Setting,
+    quantity: &'static str,
+    unit: &'static str,
+    answer: Answer,
+}
+
+impl Question {
+    /// How the code is made to answer.
+    pub fn by<A: Into<Outcome>>(
+        self,
+        answer: impl Fn(Effort) -> Result<A, Failure> + Send + Sync + 'static,
+    ) -> Problem {
+        let Self { setting: Setting { id, title, source }, quantity, unit, answer: wanted } = self;
+        let Answer { exact, tolerance, fast } = wanted;
+        let run: Run = Box::new(move |effort| answer(effort).map(Into::into));
+        Problem { id, title, source, quantity, unit, exact, tolerance, fast, run }
+    }
+
+    /// The same by what the code answers at a refinement, see [`refine`].
+    pub fn refined(
+        self,
+        answer: impl Fn(Effort, i32) -> Result<f64, Failure> + Send + Sync + 'static,
+    ) -> Problem {
+        let exact = self.answer.exact;
+        self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
+    }
+
+    /// The same by bisection within a share of the exact answer to either side, see [`border`].
+    pub fn at_border(
+        self,
+        share: f64,
+        above: impl Fn(f64) -> Result<bool, Failure> + Send + Sync + 'static,
+    ) -> Problem {
+        let exact = self.answer.exact;
+        let bracket = ((1.0 - share) * exact, (1.0 + share) * exact);
+        self.by(move |effort| border(bracket, halvings(effort), &above))
+    }
+}
+
 /// Answers of successive refinements (0, 1, 2) in full, the coarsest alone in the fast form.
 ///
 /// # Errors
@@ -152,6 +255,14 @@ pub fn refine(
         order,
         note: format!("errors {:.1e}, {:.1e}, {:.1e}", errors[0], errors[1], errors[2]),
     })
+}
+
+/// How many halvings a bisection takes.
+pub fn halvings(effort: Effort) -> u32 {
+    match effort {
+        Effort::Fast => 2,
+        Effort::Full => 11,
+    }
 }
 
 /// The border between `false` below and `true` above, by bisection between two brackets.

@@ -18,10 +18,11 @@ use barrelstack_dynamics::{
 };
 
 use crate::drive::Shake;
+use crate::problem::{absolute, setting};
 use crate::scene::{
     DOWN, Scene, centered, coulomb, disc, floor, interface, points, pose, rectangle,
 };
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, Outcome, Problem};
 
 const SOURCE: &str = "MuJoCo (penalty), YADE, Drake, PyBullet (spring) and a plain penalty code";
 
@@ -54,24 +55,16 @@ pub(super) fn problems() -> Vec<Problem> {
 }
 
 fn first_fall() -> Problem {
-    Problem {
-        id: "consensus/a-bodies".into(),
-        title: "scene A (±20°) from bodies".into(),
-        source: SOURCE.into(),
-        quantity: "first fall of a barrel",
-        unit: "s",
+    setting("consensus/a-bodies", "scene A (±20°) from bodies", SOURCE)
         // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half
         // of it.
-        exact: 1.82,
-        tolerance: Tolerance::Absolute(0.18),
-        fast: None,
-        run: Box::new(move |_| match bodies(20.0, 3.0)? {
+        .asks("first fall of a barrel", "s", absolute(1.82, 0.18))
+        .by(move |_| match bodies(20.0, 3.0)? {
             [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
                 "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is passed at {earlier:.2} s"
             ))),
             _ => Err(Failure::Absent("nothing falls in 3 s".into())),
-        }),
-    }
+        })
 }
 
 /// The same scene from a file: a free scene whose racks carry chosen nodes.
@@ -101,23 +94,19 @@ fn verdict(
     falls: bool,
     run: fn(f64) -> Result<Option<f64>, Failure>,
 ) -> Problem {
-    Problem {
-        id: format!("consensus/{id}"),
-        title: title.into(),
-        source: SOURCE.into(),
-        quantity: "whether a barrel falls in 10 s, 0 or 1",
-        unit: "",
-        exact: f64::from(u8::from(falls)),
-        tolerance: Tolerance::Absolute(0.0),
-        fast: None,
-        run: Box::new(move |effort| {
+    setting(format!("consensus/{id}"), title, SOURCE)
+        .asks(
+            "whether a barrel falls in 10 s, 0 or 1",
+            "",
+            absolute(f64::from(u8::from(falls)), 0.0),
+        )
+        .by(move |effort| {
             let end = if effort == Effort::Full { END } else { 3.0 };
             Ok(match run(end)? {
                 None => Outcome::of(0.0).noted(format!("nothing falls in {end} s")),
                 Some(time) => Outcome::of(1.0).noted(format!("falls at {time:.2} s")),
             })
-        }),
-    }
+        })
 }
 
 /// A rack: a beam whose underside the crowns below touch, feet, and two points for each barrel.

@@ -10,11 +10,9 @@ use barrelstack_dynamics::math::{cos, exp, sin, tan};
 use barrelstack_dynamics::{Body, Guide, Link, Model, Still, Strap, Vec2};
 use barrelstack_motion::GroundMotion;
 
-use crate::problem::border;
+use crate::problem::{relative, setting};
 use crate::scene::{Scene, disc, floor};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
-
-use super::housner::halvings;
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -27,27 +25,6 @@ pub(super) fn problems() -> Vec<Problem> {
         list.extend(den_hartog(share));
     }
     list
-}
-
-pub(super) fn problem(
-    id: &str,
-    title: String,
-    source: &str,
-    (quantity, unit): (&'static str, &'static str),
-    (exact, tolerance, fast): (f64, f64, f64),
-    run: crate::problem::Run,
-) -> Problem {
-    Problem {
-        id: format!("devices/{id}"),
-        title,
-        source: source.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance: Tolerance::Relative(tolerance),
-        fast: Some(Tolerance::Relative(fast)),
-        run,
-    }
 }
 
 /// A stack of one level on a rack so wide, so heavy and on contacts so stiff that nothing but what the device does
@@ -110,20 +87,16 @@ fn chocks(angle: f64) -> Vec<String> {
 fn rolls_out(degrees: f64) -> Problem {
     let angle = degrees.to_radians();
     let exact = tan(angle);
-    problem(
-        &format!("chock-{degrees}"),
+    setting(
+        format!("devices/chock-{degrees}"),
         format!("barrels between chocks at {degrees}°, pushed for good"),
         "statics: roll-out at a/g = tan φ",
-        ("push from which a barrel rolls out", "g"),
-        (exact, 1e-2, 2e-2),
-        Box::new(move |effort| {
-            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
-                let run = pressed(&chocks(angle), amplitude)?;
-                Ok(run.fates.collapse_time().is_some())
-            })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push from which a barrel rolls out", "g", relative(exact, 1e-2).fast(2e-2))
+    .at_border(0.05, move |amplitude| {
+        let run = pressed(&chocks(angle), amplitude)?;
+        Ok(run.fates.collapse_time().is_some())
+    })
 }
 
 /// How long (s) the blow takes.
@@ -158,53 +131,48 @@ fn over_the_hill(angle: f64) -> f64 {
 fn hill() -> Problem {
     let angle = 40.0_f64.to_radians();
     let exact = over_the_hill(angle);
-    problem(
-        "chock-hill",
-        "barrels between chocks at 40°, pushed for 0.05 s".into(),
+    setting(
+        "devices/chock-hill",
+        "barrels between chocks at 40°, pushed for 0.05 s",
         "energy: m g r (1 − cos φ) over the end of a chock",
-        ("push from which a barrel rolls out", "g"),
-        (exact, 2e-2, 3e-2),
-        Box::new(move |effort| {
-            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
-                let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
-                // Beyond the hill it comes down on the beam.
-                let drops = run.assembly.of_kind(PartKind::Barrel).map(|b| run.fates.fate(b).drop);
-                Ok(drops.fold(0.0, f64::max) > 0.05)
-            })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
+    .at_border(0.05, move |amplitude| {
+        let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
+        // Beyond the hill it comes down on the beam.
+        let drops = run.assembly.of_kind(PartKind::Barrel).map(|b| run.fates.fate(b).drop);
+        Ok(drops.fold(0.0, f64::max) > 0.05)
+    })
 }
 
 fn dish(radius: f64) -> Problem {
-    problem(
-        &format!("dish-{radius}"),
+    setting(
+        format!("devices/dish-{radius}"),
         format!("a stack on an isolator in dishes of {radius} m after a short push"),
         "pendulum: T = 2π √(R/g)",
-        ("period", "s"),
-        (TAU * (radius / GRAVITY).sqrt(), 5e-3, 5e-3),
-        Box::new(move |_| {
-            let settings = [
-                "stack.isolator.path=\"dish\"".to_owned(),
-                "stack.isolator.friction=0".into(),
-                format!("stack.isolator.dish_radius=\"{radius} m\""),
-                "interface.barrel-rack.friction.coefficient=0.6".into(),
-            ];
-            let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
-            let ways = way(&run, "platform of R1", "x")?;
-            let crossings: Vec<f64> = ways
-                .windows(2)
-                .filter(|w| w[0].0 > 0.3 && w[0].1 * w[1].1 < 0.0)
-                .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
-                .collect();
-            match (crossings.first(), crossings.last()) {
-                (Some(first), Some(last)) if crossings.len() > 2 => {
-                    Ok(Outcome::of(2.0 * (last - first) / (crossings.len() - 1) as f64))
-                }
-                _ => Err(Failure::Absent("the platform does not swing".into())),
-            }
-        }),
     )
+    .asks("period", "s", relative(TAU * (radius / GRAVITY).sqrt(), 5e-3).fast(5e-3))
+    .by(move |_| {
+        let settings = [
+            "stack.isolator.path=\"dish\"".to_owned(),
+            "stack.isolator.friction=0".into(),
+            format!("stack.isolator.dish_radius=\"{radius} m\""),
+            "interface.barrel-rack.friction.coefficient=0.6".into(),
+        ];
+        let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
+        let ways = way(&run, "platform of R1", "x")?;
+        let crossings: Vec<f64> = ways
+            .windows(2)
+            .filter(|w| w[0].0 > 0.3 && w[0].1 * w[1].1 < 0.0)
+            .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
+            .collect();
+        match (crossings.first(), crossings.last()) {
+            (Some(first), Some(last)) if crossings.len() > 2 => {
+                Ok(2.0 * (last - first) / (crossings.len() - 1) as f64)
+            }
+            _ => Err(Failure::Absent("the platform does not swing".into())),
+        }
+    })
 }
 
 fn slides() -> Problem {
@@ -212,24 +180,23 @@ fn slides() -> Problem {
     let (push_g, seconds, friction) = (0.15, 0.4, 0.05);
     let over: f64 = push_g - friction;
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
-    problem(
-        "sheet",
-        "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s".into(),
+    setting(
+        "devices/sheet",
+        "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s",
         "Newmark 1965",
-        ("residual displacement", "m"),
-        (exact, 1e-2, 1e-2),
-        Box::new(move |_| {
-            let settings = [
-                "stack.isolator.path=\"flat\"".to_owned(),
-                format!("stack.isolator.friction={friction}"),
-                "stack.isolator.stroke=\"5 m\"".into(),
-                "interface.barrel-rack.friction.coefficient=0.6".into(),
-            ];
-            let run = one_level(&settings, &push(push_g, seconds), 4.0)?;
-            let last = way(&run, "platform of R1", "x")?.last().map(|last| last.1.abs());
-            last.map(Outcome::of).ok_or_else(|| Failure::Absent("nothing was recorded".into()))
-        }),
     )
+    .asks("residual displacement", "m", relative(exact, 1e-2).fast(1e-2))
+    .by(move |_| {
+        let settings = [
+            "stack.isolator.path=\"flat\"".to_owned(),
+            format!("stack.isolator.friction={friction}"),
+            "stack.isolator.stroke=\"5 m\"".into(),
+            "interface.barrel-rack.friction.coefficient=0.6".into(),
+        ];
+        let run = one_level(&settings, &push(push_g, seconds), 4.0)?;
+        let last = way(&run, "platform of R1", "x")?.last().map(|last| last.1.abs());
+        last.ok_or_else(|| Failure::Absent("nothing was recorded".into()))
+    })
 }
 
 fn pads() -> Problem {
@@ -237,13 +204,9 @@ fn pads() -> Problem {
     let (stiffness, angle) = (4e5, 28.0_f64.to_radians());
     let mass = 46.0 + 990.0 * 0.225;
     let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
-    problem(
-        "pads",
-        "a full barrel on pads of 400 kN/m without friction".into(),
-        "statics",
-        ("how far it sinks into its cradle", "m"),
-        (exact, 1e-2, 1e-2),
-        Box::new(move |_| {
+    setting("devices/pads", "a full barrel on pads of 400 kN/m without friction", "statics")
+        .asks("how far it sinks into its cradle", "m", relative(exact, 1e-2).fast(1e-2))
+        .by(move |_| {
             let settings = [
                 format!("stack.pad.stiffness=\"{stiffness} N/m\""),
                 "stack.pad.friction=0".into(),
@@ -257,9 +220,8 @@ fn pads() -> Problem {
             let bodies = run.assembly.model.bodies();
             let drawn = bodies[barrel].pose.position.z - bodies[rack].pose.position.z;
             let rest = run.fates.rest(barrel).z - run.fates.rest(rack).z;
-            Ok(Outcome::of(drawn - rest))
-        }),
-    )
+            Ok(drawn - rest)
+        })
 }
 
 const MASS: f64 = 100.0;
@@ -283,37 +245,32 @@ fn joined(from: Vec2) -> Link<barrelstack_dynamics::Planar> {
 fn yields() -> Problem {
     let (stiffness, force, speed) = (1e5, 2e3, 1.2);
     let exact = (0.5 * MASS * speed * speed - 0.5 * force * force / stiffness) / force;
-    problem(
-        "tie-yields",
-        "a weight caught by a slack tie that yields at 2 kN".into(),
+    setting(
+        "devices/tie-yields",
+        "a weight caught by a slack tie that yields at 2 kN",
         "energy: ½ m v² = F²/2k + F Δ",
-        ("how much longer the tie is for good", "m"),
-        (exact, 1e-5, 1e-4),
-        Box::new(move |effort| {
-            let tie = Strap {
-                link: joined(Vec2::new(-1.0, 3.0)),
-                length: 1.05,
-                stiffness,
-                damping: 0.0,
-                yields_at: force,
-                strength: f64::INFINITY,
-            };
-            let mut scene = flying(speed, tie.into())?;
-            scene.run(&Still, if effort == Effort::Full { 1e-5 } else { 1e-4 }, 0.4)?;
-            Ok(Outcome::of(scene.state.memory[0].plastic))
-        }),
     )
+    .asks("how much longer the tie is for good", "m", relative(exact, 1e-5).fast(1e-4))
+    .by(move |effort| {
+        let tie = Strap {
+            link: joined(Vec2::new(-1.0, 3.0)),
+            length: 1.05,
+            stiffness,
+            damping: 0.0,
+            yields_at: force,
+            strength: f64::INFINITY,
+        };
+        let mut scene = flying(speed, tie.into())?;
+        scene.run(&Still, if effort == Effort::Full { 1e-5 } else { 1e-4 }, 0.4)?;
+        Ok(scene.state.memory[0].plastic)
+    })
 }
 
 fn between_stops() -> Problem {
     let (gap, speed, omega) = (0.02, 0.3, 60.0);
-    problem(
-        "stops",
-        "a weight between two elastic stops at ±2 cm".into(),
-        "4 δ/v + 2π/ω",
-        ("period", "s"),
-        (4.0 * gap / speed + TAU / omega, 1e-6, 1e-5),
-        Box::new(move |effort| {
+    setting("devices/stops", "a weight between two elastic stops at ±2 cm", "4 δ/v + 2π/ω")
+        .asks("period", "s", relative(4.0 * gap / speed + TAU / omega, 1e-6).fast(1e-5))
+        .by(move |effort| {
             let spring = Guide::spring(joined(Vec2::new(0.0, 3.0)), Vec2::new(1.0, 0.0), 0.0, 0.0);
             let guide = Guide { gap, stop_stiffness: MASS * omega * omega, ..spring };
             let mut scene = flying(speed, guide.into())?;
@@ -328,9 +285,8 @@ fn between_stops() -> Problem {
                 before = (t, x);
                 ControlFlow::Continue(())
             })?;
-            found.map(Outcome::of).ok_or_else(|| Failure::Absent("it does not come back".into()))
-        }),
-    )
+            found.ok_or_else(|| Failure::Absent("it does not come back".into()))
+        })
 }
 
 /// Frequency of the structure that a mass is tuned to (rad/s), and its stiffness over its mass.
@@ -385,21 +341,20 @@ fn den_hartog(share: f64) -> [Problem; 2] {
     let source = "Den Hartog 1956, section 3.3";
     let title = format!("undamped structure with a tuned mass of {share} of its mass");
     let step = 0.01;
-    let peak = problem(
-        &format!("tuned-mass-peak-{share}"),
-        title.clone(),
-        source,
-        ("largest displacement over that at rest", ""),
-        ((1.0 + 2.0 / share).sqrt(), 1e-2, 1e-2),
-        Box::new(move |_| largest_answer(share, exact, step).map(Outcome::of)),
-    );
-    let frequency = problem(
-        &format!("tuned-mass-frequency-{share}"),
-        title,
-        source,
-        ("best frequency of the mass over that of the structure", ""),
-        (exact.frequency, 1e-2, 1e-2),
-        Box::new(move |_| {
+    let peak = setting(format!("devices/tuned-mass-peak-{share}"), title.clone(), source)
+        .asks(
+            "largest displacement over that at rest",
+            "",
+            relative((1.0 + 2.0 / share).sqrt(), 1e-2).fast(1e-2),
+        )
+        .by(move |_| largest_answer(share, exact, step));
+    let frequency = setting(format!("devices/tuned-mass-frequency-{share}"), title, source)
+        .asks(
+            "best frequency of the mass over that of the structure",
+            "",
+            relative(exact.frequency, 1e-2).fast(1e-2),
+        )
+        .by(move |_| {
             let mut best = (f64::INFINITY, exact);
             let mut reach = 0.1;
             let mut middle = Tuning { frequency: 1.0, damping_ratio: 0.2 };
@@ -421,7 +376,6 @@ fn den_hartog(share: f64) -> [Problem; 2] {
             }
             let note = format!("with a damping of {:.3}, peak {:.3}", best.1.damping_ratio, best.0);
             Ok(Outcome::of(best.1.frequency).noted(note))
-        }),
-    );
+        });
     [peak, frequency]
 }

@@ -6,11 +6,10 @@ use barrelstack::device::Tuning;
 use barrelstack::{Run, assemble::Assembly};
 use barrelstack_dynamics::math::{cos, sin, tan};
 
-use crate::problem::border;
-use crate::{Failure, GRAVITY, Outcome, Problem};
+use crate::problem::{relative, setting};
+use crate::{Failure, GRAVITY, Problem};
 
-use super::devices::{one_level, pressed, problem, push, way};
-use super::housner::halvings;
+use super::devices::{one_level, pressed, push, way};
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -58,51 +57,45 @@ fn largest(run: &Run) -> f64 {
 
 fn lid() -> Problem {
     let exact = holding(0.9);
-    problem(
-        "lid",
-        "a barrel in a cradle of 28° under a lid without a gap, pushed with 0.9 g".into(),
+    setting(
+        "devices/lid",
+        "a barrel in a cradle of 28° under a lid without a gap, pushed with 0.9 g",
         HELD,
-        ("force on the lid", "N"),
-        (exact, 5e-3, 5e-3),
-        Box::new(|_| Ok(Outcome::of(largest(&pressed(&lids(), 0.9)?)))),
     )
+    .asks("force on the lid", "N", relative(exact, 5e-3).fast(5e-3))
+    .by(|_| Ok(largest(&pressed(&lids(), 0.9)?)))
 }
 
 fn lid_breaks() -> Problem {
     let strength = 1000.0;
     let exact = held_at(strength);
-    problem(
-        "lid-breaks",
-        "a barrel in a cradle of 28° under a lid that breaks at 1 kN".into(),
+    setting(
+        "devices/lid-breaks",
+        "a barrel in a cradle of 28° under a lid that breaks at 1 kN",
         HELD,
-        ("push from which the barrel rolls out", "g"),
-        (exact, 5e-3, 2e-2),
-        Box::new(move |effort| {
-            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
-                let mut settings = lids();
-                settings.push(format!("stack.lid.strength=\"{strength} N\""));
-                Ok(pressed(&settings, amplitude)?.fates.collapse_time().is_some())
-            })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push from which the barrel rolls out", "g", relative(exact, 5e-3).fast(2e-2))
+    .at_border(0.05, move |amplitude| {
+        let mut settings = lids();
+        settings.push(format!("stack.lid.strength=\"{strength} N\""));
+        Ok(pressed(&settings, amplitude)?.fates.collapse_time().is_some())
+    })
 }
 
 fn strap() -> Problem {
     // A strap down each side of the barrel; without friction it turns until both pull alike.
     let exact = 0.5 * holding(0.9);
-    problem(
-        "strap",
-        "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g".into(),
+    setting(
+        "devices/strap",
+        "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g",
         HELD,
-        ("tension of one of its two straps", "N"),
-        (exact, 5e-3, 5e-3),
-        Box::new(|_| {
-            let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
-            let settings = settings.map(str::to_owned);
-            Ok(Outcome::of(largest(&pressed(&settings, 0.9)?)))
-        }),
     )
+    .asks("tension of one of its two straps", "N", relative(exact, 5e-3).fast(5e-3))
+    .by(|_| {
+        let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
+        let settings = settings.map(str::to_owned);
+        Ok(largest(&pressed(&settings, 0.9)?))
+    })
 }
 
 /// The period (s) with which a quantity crosses zero after a time (s).
@@ -148,22 +141,16 @@ fn walking_stop() -> [Problem; 2] {
     };
     let title = || "a rack that slides between stops of ±1 cm on the barrels below".to_owned();
     [
-        problem(
-            "walking-stop-period",
-            title(),
-            "4 δ/v + 2π/ω",
-            ("period", "s"),
-            (4.0 * gap / speed + TAU / omega, 5e-3, 5e-3),
-            Box::new(move |_| period(&way(&run()?, "R2", "x")?, seconds).map(Outcome::of)),
-        ),
-        problem(
-            "walking-stop-force",
-            title(),
-            "energy: ½ m v² = F²/2k on two stops",
-            ("largest force in one of two stops", "N"),
-            (0.5 * mass * omega * speed, 5e-3, 5e-3),
-            Box::new(move |_| Ok(Outcome::of(largest(&run()?)))),
-        ),
+        setting("devices/walking-stop-period", title(), "4 δ/v + 2π/ω")
+            .asks("period", "s", relative(4.0 * gap / speed + TAU / omega, 5e-3).fast(5e-3))
+            .by(move |_| period(&way(&run()?, "R2", "x")?, seconds)),
+        setting("devices/walking-stop-force", title(), "energy: ½ m v² = F²/2k on two stops")
+            .asks(
+                "largest force in one of two stops",
+                "N",
+                relative(0.5 * mass * omega * speed, 5e-3).fast(5e-3),
+            )
+            .by(move |_| Ok(largest(&run()?))),
     ]
 }
 
@@ -186,23 +173,22 @@ fn tie() -> Problem {
     let (push_g, seconds) = (0.1, 0.15);
     let speed = push_g * GRAVITY * seconds;
     let omega = (stiffness / ABOARD).sqrt();
-    problem(
-        "tie",
-        "a stack that glides between ties to both walls, each with 2 cm of slack".into(),
+    setting(
+        "devices/tie",
+        "a stack that glides between ties to both walls, each with 2 cm of slack",
         "4 δ/v + 2π/ω",
-        ("period", "s"),
-        (4.0 * slack / speed + TAU / omega, 5e-3, 5e-3),
-        Box::new(move |_| {
-            let mut settings = platform(0.0);
-            settings.extend([
-                "stack.tie.levels=1".into(),
-                format!("stack.tie.slack=\"{slack} m\""),
-                format!("stack.tie.stiffness=\"{stiffness} N/m\""),
-            ]);
-            let run = one_level(&settings, &push(push_g, seconds), 6.0)?;
-            period(&way(&run, "R1", "x")?, seconds).map(Outcome::of)
-        }),
     )
+    .asks("period", "s", relative(4.0 * slack / speed + TAU / omega, 5e-3).fast(5e-3))
+    .by(move |_| {
+        let mut settings = platform(0.0);
+        settings.extend([
+            "stack.tie.levels=1".into(),
+            format!("stack.tie.slack=\"{slack} m\""),
+            format!("stack.tie.stiffness=\"{stiffness} N/m\""),
+        ]);
+        let run = one_level(&settings, &push(push_g, seconds), 6.0)?;
+        period(&way(&run, "R1", "x")?, seconds)
+    })
 }
 
 /// Stiffness (N/m) of the springs of a platform on which a mass is tuned.
@@ -236,24 +222,26 @@ fn frequency(upper: usize) -> Problem {
     let root = (0.25 * sum * sum - whole * own).sqrt();
     let square = 0.5 * sum + if upper == 1 { root } else { -root };
     let name = ["lower", "upper"][upper];
-    problem(
-        &format!("tuned-mass-{name}"),
-        "a stack on a sprung platform with a mass of 150 kg on its rack, undamped".into(),
+    setting(
+        format!("devices/tuned-mass-{name}"),
+        "a stack on a sprung platform with a mass of 150 kg on its rack, undamped",
         "two degrees of freedom",
-        (["lower frequency", "upper frequency"][upper], "Hz"),
-        (square.sqrt() / TAU, 2e-3, 2e-3),
-        Box::new(move |_| {
-            let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
-            let (platform, other) =
-                (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
-            // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
-            let shape = own / (own - square);
-            let seen =
-                |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
-            let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(seen).collect();
-            period(&mode, 0.1).map(|period| Outcome::of(1.0 / period))
-        }),
     )
+    .asks(
+        ["lower frequency", "upper frequency"][upper],
+        "Hz",
+        relative(square.sqrt() / TAU, 2e-3).fast(2e-3),
+    )
+    .by(move |_| {
+        let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
+        let (platform, other) = (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
+        // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
+        let shape = own / (own - square);
+        let seen =
+            |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
+        let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(seen).collect();
+        period(&mode, 0.1).map(|period| 1.0 / period)
+    })
 }
 
 /// The frequencies (rad/s) at which answers are looked for.
@@ -283,29 +271,28 @@ fn tuned(share: f64) -> Problem {
     };
     let exact = frequencies().map(closed).fold(0.0, f64::max);
     let (blow, seconds) = (0.5, 0.02);
-    problem(
-        &format!("tuned-mass-{share}"),
+    setting(
+        format!("devices/tuned-mass-{share}"),
         format!("a stack on a sprung platform with a mass tuned by Den Hartog, {share} of its own"),
         "two degrees of freedom",
-        ("largest displacement over that at rest", ""),
-        (exact, 1e-2, 1e-2),
-        Box::new(move |_| {
-            let run = with_mass(share * ABOARD, tuning, (blow, seconds), 16.0)?;
-            let ways = way(&run, "platform of R1", "x")?;
-            let answer = |omega: f64| {
-                let (mut re, mut im) = (0.0, 0.0);
-                for pair in ways.windows(2) {
-                    let step = 0.5 * (pair[1].0 - pair[0].0);
-                    for (t, x) in pair {
-                        re += step * x * cos(omega * t);
-                        im += step * x * sin(omega * t);
-                    }
-                }
-                // The blow holds a v sin(ωT/2)/(ωT/2) of every frequency.
-                let held = blow * GRAVITY * sin(0.5 * omega * seconds) / (0.5 * omega);
-                (re * re + im * im).sqrt() * whole / held
-            };
-            Ok(Outcome::of(frequencies().map(answer).fold(0.0, f64::max)))
-        }),
     )
+    .asks("largest displacement over that at rest", "", relative(exact, 1e-2).fast(1e-2))
+    .by(move |_| {
+        let run = with_mass(share * ABOARD, tuning, (blow, seconds), 16.0)?;
+        let ways = way(&run, "platform of R1", "x")?;
+        let answer = |omega: f64| {
+            let (mut re, mut im) = (0.0, 0.0);
+            for pair in ways.windows(2) {
+                let step = 0.5 * (pair[1].0 - pair[0].0);
+                for (t, x) in pair {
+                    re += step * x * cos(omega * t);
+                    im += step * x * sin(omega * t);
+                }
+            }
+            // The blow holds a v sin(ωT/2)/(ωT/2) of every frequency.
+            let held = blow * GRAVITY * sin(0.5 * omega * seconds) / (0.5 * omega);
+            (re * re + im * im).sqrt() * whole / held
+        };
+        Ok(frequencies().map(answer).fold(0.0, f64::max))
+    })
 }

@@ -8,8 +8,9 @@ use barrelstack::watch::{Fates, Thresholds};
 use barrelstack_dynamics::Still;
 use barrelstack_dynamics::math::pow;
 
+use crate::problem::{relative, setting};
 use crate::scene::Scene;
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, GRAVITY, Problem};
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -32,18 +33,11 @@ fn largest_force(height: f64) -> f64 {
 fn stopped(height: f64) -> Problem {
     let [mass, radius, hardness] = BARREL;
     let exact = largest_force(height);
-    Problem {
-        id: format!("falls/force-{height}"),
-        title: format!(
+    setting(format!("falls/force-{height}"), format!(
             "a barrel that falls {height} m on ground as hard as that of the default law of impacts"
-        ),
-        source: "energy: m g (h + δ) = ⅖ k δ^2.5".into(),
-        quantity: "largest force on it",
-        unit: "N",
-        exact,
-        tolerance: Tolerance::Relative(1e-4),
-        fast: Some(Tolerance::Relative(1e-4)),
-        run: Box::new(move |_: Effort| {
+        ), "energy: m g (h + δ) = ⅖ k δ^2.5")
+.asks("largest force on it", "N", relative(exact, 1e-4).fast(1e-4))
+.by(move |_: Effort| {
             let text = format!(
                 "schema = 1\nkind = \"free\"\n[[body]]\nname = \"barrel\"\n\
                  shape = {{ type = \"circle\", radius = \"{radius} m\" }}\nmass = \"{mass} kg\"\n\
@@ -62,9 +56,8 @@ fn stopped(height: f64) -> Problem {
             })?;
             let body = assembly.model.body_named("barrel");
             let force = body.and_then(|body| fates.fate(body).fall_force);
-            force.map(Outcome::of).ok_or_else(|| Failure::Absent("nothing fell".into()))
-        }),
-    }
+            force.ok_or_else(|| Failure::Absent("nothing fell".into()))
+        })
 }
 
 /// A body that is 20 cm down has fallen; it has no seat to lose.

@@ -6,8 +6,9 @@ use barrelstack_fragility::{
     Dispersion, Fit, Hazard, Interval, Lognormal, Stripe, evidence, fit, profile_band, simulate,
 };
 
+use crate::problem::{absolute, relative, setting};
 use crate::tumble::Random;
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, Outcome, Problem};
 
 const BAKER: &str = "Baker 2015, eqs. 8 to 11";
 
@@ -31,17 +32,9 @@ fn number(
     half_digit: f64,
     of: impl Fn(&Fit) -> f64 + Send + Sync + 'static,
 ) -> Problem {
-    Problem {
-        id: format!("fragility/{id}"),
-        title: "eight stripes of twenty cases".into(),
-        source: BAKER.into(),
-        quantity,
-        unit: "",
-        exact,
-        tolerance: Tolerance::Absolute(half_digit),
-        fast: None,
-        run: Box::new(move |_| Ok(Outcome::of(of(&fitted(&stripes())?)))),
-    }
+    setting(format!("fragility/{id}"), "eight stripes of twenty cases", BAKER)
+        .asks(quantity, "", absolute(exact, half_digit))
+        .by(move |_| Ok(of(&fitted(&stripes())?)))
 }
 
 const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
@@ -82,18 +75,14 @@ fn covered(
     source: &str,
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
 ) -> Problem {
-    Problem {
-        id: format!("fragility/{id}"),
-        title: title.into(),
-        source: source.into(),
-        quantity: "share of 95 % bands that hold the true curve, mean of five intensities",
-        unit: "",
-        exact: 0.95,
-        tolerance: Tolerance::Absolute(0.02),
+    setting(format!("fragility/{id}"), title, source)
         // Sixty campaigns of five places that go together scatter by some 0.02.
-        fast: Some(Tolerance::Absolute(0.05)),
-        run: Box::new(move |effort| coverage(effort, band)),
-    }
+        .asks(
+            "share of 95 % bands that hold the true curve, mean of five intensities",
+            "",
+            absolute(0.95, 0.02).fast(0.05),
+        )
+        .by(move |effort| coverage(effort, band))
 }
 
 fn absent(error: &impl ToString) -> Failure {
@@ -104,23 +93,22 @@ fn absent(error: &impl ToString) -> Failure {
 fn power_law() -> Problem {
     let (k0, k, ln_median) = (1e-4, 2.5, -0.7);
     let curve = Lognormal { median: exp(ln_median), dispersion: 0.45 };
-    Problem {
-        id: "fragility/annual-rate".into(),
-        title: "lognormal fragility under a power-law hazard".into(),
-        source: "Cornell et al. 2002: λ = k₀ θ⁻ᵏ exp(k²β²/2)".into(),
-        quantity: "annual rate of failure",
-        unit: "1/a",
-        exact: k0 * exp(-k * ln_median + 0.5 * (k * curve.dispersion).powi(2)),
-        tolerance: Tolerance::Relative(1e-6),
-        fast: None,
-        run: Box::new(move |_| {
-            let row = |i: i32| -12.0 + 0.6 * f64::from(i);
-            let rows: Vec<(f64, f64)> =
-                (0..=40).map(row).map(|u| (exp(u), k0 * exp(-k * u))).collect();
-            let hazard = Hazard::new(&rows).map_err(|error| absent(&error))?;
-            Ok(Outcome::of(hazard.rate_of(|x| curve.probability(x)).low))
-        }),
-    }
+    setting(
+        "fragility/annual-rate",
+        "lognormal fragility under a power-law hazard",
+        "Cornell et al. 2002: λ = k₀ θ⁻ᵏ exp(k²β²/2)",
+    )
+    .asks(
+        "annual rate of failure",
+        "1/a",
+        relative(k0 * exp(-k * ln_median + 0.5 * (k * curve.dispersion).powi(2)), 1e-6),
+    )
+    .by(move |_| {
+        let row = |i: i32| -12.0 + 0.6 * f64::from(i);
+        let rows: Vec<(f64, f64)> = (0..=40).map(row).map(|u| (exp(u), k0 * exp(-k * u))).collect();
+        let hazard = Hazard::new(&rows).map_err(|error| absent(&error))?;
+        Ok(hazard.rate_of(|x| curve.probability(x)).low)
+    })
 }
 
 /// The problems of this theory.

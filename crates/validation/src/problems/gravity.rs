@@ -7,12 +7,12 @@ use barrelstack_dynamics::math::{atan2, cos, sin};
 use barrelstack_dynamics::shape::Polygon;
 use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Planar, Shape, Still, Vec2, settle};
 
-use crate::problem::border;
+use crate::problem::{absolute, border, relative, setting};
 use crate::scene::{
     DOWN, Scene, block, centered, coulomb, disc, fixed, floor, ground_of, interface, points, pose,
     rectangle,
 };
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 
 const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
@@ -73,94 +73,74 @@ fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
 
 fn level_force(level: usize) -> Problem {
     let exact = (6 - level) as f64 * MASS * GRAVITY;
-    Problem {
-        id: format!("gravity/level-{level}"),
-        title: format!("five bricks in a column, force under level {level}"),
-        source: SOURCE.into(),
-        quantity: "normal force",
-        unit: "N",
-        exact,
-        tolerance: Tolerance::Relative(1e-8), // measured 9e-10
-        fast: None,
-        run: Box::new(move |_| Ok(Outcome::of(force_between(&column(5)?, level - 1, level)))),
-    }
+    setting(
+        format!("gravity/level-{level}"),
+        format!("five bricks in a column, force under level {level}"),
+        SOURCE,
+    )
+    .asks("normal force", "N", relative(exact, 1e-8)) // measured 9e-10
+    .by(move |_| Ok(force_between(&column(5)?, level - 1, level)))
 }
 
 fn sink() -> Problem {
     let exact = 5.0 * MASS * GRAVITY / (2.0 * STIFFNESS);
-    Problem {
-        id: "gravity/sink".into(),
-        title: "five bricks in a column, the lowest on two nodes".into(),
-        source: SOURCE.into(),
-        quantity: "sinking of the lowest",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(1e-8), // measured 3e-10
-        fast: None,
-        run: Box::new(|_| Ok(Outcome::of(0.1 - column(5)?.state.poses[1].position.z))),
-    }
+    setting("gravity/sink", "five bricks in a column, the lowest on two nodes", SOURCE)
+        .asks("sinking of the lowest", "m", relative(exact, 1e-8)) // measured 3e-10
+        .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
 fn cradle(angle: f64) -> Problem {
     let mass = 275.0;
     let exact = mass * GRAVITY / (2.0 * cos(angle));
-    Problem {
-        id: format!("gravity/cradle-{angle}"),
-        title: format!("disc of 275 kg on two smooth points at ±{angle} rad"),
-        source: SOURCE.into(),
-        quantity: "normal force of one",
-        unit: "N",
-        exact,
-        // The points lie a little higher on the sunken disc; stiffness decides.
-        tolerance: Tolerance::Relative(1e-4),
-        fast: None,
-        run: Box::new(move |_| {
-            let (radius, stiffness) = (0.35, 1e9);
-            let mut ground = ground_of(vec![]);
-            let point = |side: f64| Vec2::new(side * radius * sin(angle), -radius * cos(angle));
-            ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
-            let mut barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
-            barrel.nodes = vec![];
-            let damping = restitution::damping(stiffness, 0.5, mass);
-            let normal = NormalLaw::SpeedGap { stiffness, damping };
-            let laws = interface(normal, FrictionLaw::Frictionless);
-            let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-10)?;
-            let found = scene.scratch.contacts.iter().map(|c| c.normal_force).fold(0.0, f64::max);
-            let sunk = -scene.state.poses[1].position.z;
-            let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
-            let there = mass * GRAVITY / (2.0 * cos(steeper));
-            Ok(Outcome::of(found).noted(format!(
-                "of the force at the sunken place: {:.1e}",
-                (found / there - 1.0).abs()
-            )))
-        }),
-    }
+    setting(
+        format!("gravity/cradle-{angle}"),
+        format!("disc of 275 kg on two smooth points at ±{angle} rad"),
+        SOURCE,
+    )
+    // The points lie a little higher on the sunken disc; stiffness decides.
+    .asks("normal force of one", "N", relative(exact, 1e-4))
+    .by(move |_| {
+        let (radius, stiffness) = (0.35, 1e9);
+        let mut ground = ground_of(vec![]);
+        let point = |side: f64| Vec2::new(side * radius * sin(angle), -radius * cos(angle));
+        ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
+        let mut barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
+        barrel.nodes = vec![];
+        let damping = restitution::damping(stiffness, 0.5, mass);
+        let normal = NormalLaw::SpeedGap { stiffness, damping };
+        let laws = interface(normal, FrictionLaw::Frictionless);
+        let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-10)?;
+        let found = scene.scratch.contacts.iter().map(|c| c.normal_force).fold(0.0, f64::max);
+        let sunk = -scene.state.poses[1].position.z;
+        let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);
+        let there = mass * GRAVITY / (2.0 * cos(steeper));
+        Ok(Outcome::of(found).noted(format!(
+            "of the force at the sunken place: {:.1e}",
+            (found / there - 1.0).abs()
+        )))
+    })
 }
 
 fn rest() -> Problem {
-    Problem {
-        id: "gravity/rest".into(),
-        title: "five bricks in a column, one minute (six seconds in the fast form)".into(),
-        source: SOURCE.into(),
-        quantity: "largest drift",
-        unit: "m",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-6), // measured 1.2e-13
-        fast: None,
-        run: Box::new(|effort| {
-            let mut scene = column(5)?;
-            let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
-            let mut drift = 0.0_f64;
-            let end = if effort == Effort::Full { 60.0 } else { 6.0 };
-            scene.watch(&Still, 2e-4, end, |state, _, _| {
-                for (pose, start) in state.poses.iter().zip(&start) {
-                    drift = drift.max((pose.position - *start).length());
-                }
-                ControlFlow::Continue(())
-            })?;
-            Ok(Outcome::of(drift))
-        }),
-    }
+    setting(
+        "gravity/rest",
+        "five bricks in a column, one minute (six seconds in the fast form)",
+        SOURCE,
+    )
+    .asks("largest drift", "m", absolute(0.0, 1e-6)) // measured 1.2e-13
+    .by(|effort| {
+        let mut scene = column(5)?;
+        let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
+        let mut drift = 0.0_f64;
+        let end = if effort == Effort::Full { 60.0 } else { 6.0 };
+        scene.watch(&Still, 2e-4, end, |state, _, _| {
+            for (pose, start) in state.poses.iter().zip(&start) {
+                drift = drift.max((pose.position - *start).length());
+            }
+            ControlFlow::Continue(())
+        })?;
+        Ok(drift)
+    })
 }
 
 /// The harmonic stack: the topmost of `n` bricks hangs out by a share of the farthest overhang.
@@ -185,22 +165,18 @@ fn stands(n: u32, share: f64) -> Result<bool, Failure> {
 
 fn overhang(n: u32) -> Problem {
     let exact = theory::overhang(n, 1.0);
-    Problem {
-        id: format!("gravity/overhang-{n}"),
-        title: match n {
+    setting(
+        format!("gravity/overhang-{n}"),
+        match n {
             1 => "a brick of 1 m over the end of a table".into(),
             _ => format!("{n} equal bricks of 1 m over the end of a table"),
         },
-        source: "the harmonic stack".into(),
-        quantity: "farthest overhang",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let halvings = if effort == Effort::Full { 6 } else { 0 };
-            let found = border((0.99, 1.01), halvings, |share| Ok(!stands(n, share)?))?;
-            Ok(Outcome::of(found * exact))
-        }),
-    }
+        "the harmonic stack",
+    )
+    .asks("farthest overhang", "m", relative(exact, 5e-3).fast(1.2e-2))
+    .by(move |effort| {
+        let halvings = if effort == Effort::Full { 6 } else { 0 };
+        let found = border((0.99, 1.01), halvings, |share| Ok(!stands(n, share)?))?;
+        Ok(found * exact)
+    })
 }

@@ -3,9 +3,9 @@
 use barrelstack_dynamics::math::{cos, tan};
 
 use crate::drive::{Both, Shake};
-use crate::problem::{border, refine};
+use crate::problem::{border, halvings, refine, relative, setting};
 use crate::rocking::{Corner, RockingBlock, contact_frequency};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::{Effort, Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "Housner 1963";
 
@@ -30,14 +30,6 @@ pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     }
 }
 
-/// How many halvings a bisection takes.
-pub(super) fn halvings(effort: Effort) -> u32 {
-    match effort {
-        Effort::Fast => 2,
-        Effort::Full => 11,
-    }
-}
-
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
@@ -59,43 +51,31 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn quarter_period(alpha: f64, share: f64) -> Problem {
     let exact = theory::quarter_period(alpha, share);
-    Problem {
-        id: format!("housner/quarter-period-{alpha:.2}-{share:.2}"),
-        title: format!("block of α = {alpha} let go at φ = {share}"),
-        source: SOURCE.into(),
-        quantity: "p times the quarter period",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-3), // measured 1e-6
-        fast: Some(Tolerance::Relative(5e-3)),
-        run: Box::new(move |effort| {
-            let block = firm(effort, 1.0, alpha);
-            let slender = theory::slender_quarter_period(share);
-            let mut outcome =
-                refine(effort, exact, |level| block.refined(level - 1).quarter_period(share))?;
-            outcome.note = format!("{}; slender block {slender:.5}", outcome.note);
-            Ok(outcome)
-        }),
-    }
+    setting(
+        format!("housner/quarter-period-{alpha:.2}-{share:.2}"),
+        format!("block of α = {alpha} let go at φ = {share}"),
+        SOURCE,
+    )
+    .asks("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
+    .by(move |effort| {
+        let block = firm(effort, 1.0, alpha);
+        let slender = theory::slender_quarter_period(share);
+        let mut outcome =
+            refine(effort, exact, |level| block.refined(level - 1).quarter_period(share))?;
+        outcome.note = format!("{}; slender block {slender:.5}", outcome.note);
+        Ok(outcome)
+    })
 }
 
 fn ratio(alpha: f64) -> Problem {
     let exact = theory::housner_restitution(alpha);
-    Problem {
-        id: format!("housner/impact-{alpha:.2}"),
-        title: format!("first impact of a block of α = {alpha} let go at φ = 0.5"),
-        source: SOURCE.into(),
-        quantity: "ratio of angular velocities η",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-3),
-        fast: Some(Tolerance::Relative(5e-3)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5)
-            })
-        }),
-    }
+    setting(
+        format!("housner/impact-{alpha:.2}"),
+        format!("first impact of a block of α = {alpha} let go at φ = 0.5"),
+        SOURCE,
+    )
+    .asks("ratio of angular velocities η", "", relative(exact, 1e-3).fast(5e-3))
+    .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
 /// Lean over α after impacts, exact for any α, from φ = ½.
@@ -106,27 +86,23 @@ fn peaks(alpha: f64, impacts: usize) -> f64 {
 
 fn decay(alpha: f64, impacts: usize) -> Problem {
     let exact = peaks(alpha, impacts);
-    Problem {
-        id: format!("housner/decay-{alpha:.2}-{impacts}"),
-        title: format!("block of α = {alpha} let go at φ = 0.5"),
-        source: SOURCE.into(),
-        quantity: "lean over α after the impacts counted in the name",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(3e-2)),
-        run: Box::new(move |effort| {
-            let ratio = theory::housner_restitution(alpha).powi(2);
-            let n = i32::try_from(impacts).unwrap_or(i32::MAX);
-            let slender = 1.0 - (1.0 - ratio.powi(n) * 0.75).sqrt();
-            let mut outcome = refine(effort, exact, |level| {
-                let block = firm(effort, 1.0, alpha).refined(level - 1);
-                nth(&block.timed_swings(0.5, impacts, 10.0)?, impacts).map(|swing| swing.1)
-            })?;
-            outcome.note = format!("{}; slender block {slender:.4}", outcome.note);
-            Ok(outcome)
-        }),
-    }
+    setting(
+        format!("housner/decay-{alpha:.2}-{impacts}"),
+        format!("block of α = {alpha} let go at φ = 0.5"),
+        SOURCE,
+    )
+    .asks("lean over α after the impacts counted in the name", "", relative(exact, 1e-2).fast(3e-2))
+    .by(move |effort| {
+        let ratio = theory::housner_restitution(alpha).powi(2);
+        let n = i32::try_from(impacts).unwrap_or(i32::MAX);
+        let slender = 1.0 - (1.0 - ratio.powi(n) * 0.75).sqrt();
+        let mut outcome = refine(effort, exact, |level| {
+            let block = firm(effort, 1.0, alpha).refined(level - 1);
+            nth(&block.timed_swings(0.5, impacts, 10.0)?, impacts).map(|swing| swing.1)
+        })?;
+        outcome.note = format!("{}; slender block {slender:.4}", outcome.note);
+        Ok(outcome)
+    })
 }
 
 /// The swing after a number of impacts.
@@ -139,24 +115,18 @@ fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
 
 fn half_period(alpha: f64, impacts: usize) -> Problem {
     let exact = 2.0 * theory::quarter_period(alpha, peaks(alpha, impacts));
-    Problem {
-        id: format!("housner/half-period-{alpha:.2}-{impacts}"),
-        title: format!("block of α = {alpha} let go at φ = 0.5"),
-        source: SOURCE.into(),
-        quantity: "p times the time to the next impact",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(2.5e-2)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let block = firm(effort, 1.0, alpha).refined(level - 1);
-                let swings = block.timed_swings(0.5, impacts + 1, 12.0)?;
-                let way = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
-                Ok(way * block.rate())
-            })
-        }),
-    }
+    setting(
+        format!("housner/half-period-{alpha:.2}-{impacts}"),
+        format!("block of α = {alpha} let go at φ = 0.5"),
+        SOURCE,
+    )
+    .asks("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
+    .refined(move |effort, level| {
+        let block = firm(effort, 1.0, alpha).refined(level - 1);
+        let swings = block.timed_swings(0.5, impacts + 1, 12.0)?;
+        let way = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
+        Ok(way * block.rate())
+    })
 }
 
 /// Uplift under a ground acceleration that comes slowly; `vertical` (g) acts all the while.
@@ -167,77 +137,59 @@ fn uplift(alpha: f64, vertical: f64) -> Problem {
     } else {
         format!("{alpha:.2}-vertical-{vertical:+.1}")
     };
-    Problem {
-        id: format!("housner/uplift-{name}"),
-        title: format!("block of α = {alpha}, vertical ground acceleration {vertical} g"),
-        source: SOURCE.into(),
-        quantity: "ground acceleration that lifts a corner",
-        unit: "g",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let block = firm(effort, 1.0, alpha);
-            let bracket = (0.98 * exact, 1.02 * exact);
-            let found = border(bracket, halvings(effort), |push| {
-                let ramped = |acceleration| Shake::Ramped { acceleration, ramp: 0.2 };
-                let drive = Both { x: ramped(push * GRAVITY), z: ramped(vertical * GRAVITY) };
-                let mut scene = block.scene(0.0)?;
-                scene.run(&drive, block.step(), 0.6)?;
-                Ok(scene.state.poses[1].orientation.abs() > 2e-4)
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+    setting(
+        format!("housner/uplift-{name}"),
+        format!("block of α = {alpha}, vertical ground acceleration {vertical} g"),
+        SOURCE,
+    )
+    .asks("ground acceleration that lifts a corner", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .by(move |effort| {
+        let block = firm(effort, 1.0, alpha);
+        let bracket = (0.98 * exact, 1.02 * exact);
+        border(bracket, halvings(effort), |push| {
+            let ramped = |acceleration| Shake::Ramped { acceleration, ramp: 0.2 };
+            let drive = Both { x: ramped(push * GRAVITY), z: ramped(vertical * GRAVITY) };
+            let mut scene = block.scene(0.0)?;
+            scene.run(&drive, block.step(), 0.6)?;
+            Ok(scene.state.poses[1].orientation.abs() > 2e-4)
+        })
+    })
 }
 
 fn rectangular(product: f64) -> Problem {
     let exact = theory::rectangular_overturning(product);
-    Problem {
-        id: format!("housner/rectangular-{product}"),
-        title: format!("slender block (α = 0.03), constant push of p t₁ = {product}"),
-        source: SOURCE.into(),
-        quantity: "strength over g tan α that overturns",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2.5e-2)),
-        run: Box::new(move |effort| {
-            // The jump of the push sets the springs swinging, by less the stiffer they are.
-            refine(effort, exact, |level| {
-                let softer = if effort == Effort::Full { 2 } else { 0 };
-                let block = slender(effort, 1.0).refined(level - softer);
-                let duration = product / block.rate();
-                border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
-                    let acceleration = strength * block.uplift();
-                    let push = Shake::Rectangular { acceleration, duration };
-                    block.overturns(&push, duration)
-                })
+    setting(
+        format!("housner/rectangular-{product}"),
+        format!("slender block (α = 0.03), constant push of p t₁ = {product}"),
+        SOURCE,
+    )
+    .asks("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .by(move |effort| {
+        // The jump of the push sets the springs swinging, by less the stiffer they are.
+        refine(effort, exact, |level| {
+            let softer = if effort == Effort::Full { 2 } else { 0 };
+            let block = slender(effort, 1.0).refined(level - softer);
+            let duration = product / block.rate();
+            border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
+                let acceleration = strength * block.uplift();
+                let push = Shake::Rectangular { acceleration, duration };
+                block.overturns(&push, duration)
             })
-        }),
-    }
+        })
+    })
 }
 
 fn impulse() -> Problem {
     let (radius, alpha) = (1.0, 0.25);
     let exact = (8.0 * GRAVITY * radius * (1.0 - cos(alpha)) / 3.0).sqrt() / cos(alpha);
-    Problem {
-        id: "housner/impulse".into(),
-        title: "block of α = 0.25, ground velocity reached within 2 ms".into(),
-        source: SOURCE.into(),
-        quantity: "sudden ground velocity that overturns",
-        unit: "m/s",
-        exact,
-        tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2.5e-2)),
-        run: Box::new(move |effort| {
+    setting("housner/impulse", "block of α = 0.25, ground velocity reached within 2 ms", SOURCE)
+        .asks("sudden ground velocity that overturns", "m/s", relative(exact, 1e-2).fast(2.5e-2))
+        .by(move |effort| {
             let block = firm(effort, radius, alpha);
             let duration = 2e-3;
-            let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |velocity| {
+            border((0.97 * exact, 1.03 * exact), halvings(effort), |velocity| {
                 let push = Shake::Rectangular { acceleration: velocity / duration, duration };
                 block.overturns(&push, duration)
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+            })
+        })
 }

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 use barrelstack_dynamics::math::{exp, sin};
 use barrelstack_motion::{IntensityMeasure, STANDARD_GRAVITY, Sampled, response};
 
-use crate::{Failure, Outcome, Problem, Tolerance};
+use crate::problem::{relative, setting};
+use crate::{Failure, Problem};
 
 const SOURCE: &str = "integrals of a harmonic";
 const STEP: &str = "oscillator pushed by a constant force";
@@ -54,17 +55,13 @@ fn of_harmonic(
     unit: &'static str,
     exact: f64,
 ) -> Problem {
-    Problem {
-        id: format!("intensity/harmonic-{name}"),
-        title: format!("A sin 2πt/T with A = 0.3 g, T = {PERIOD} s, {CYCLES} cycles"),
-        source: SOURCE.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance: Tolerance::Relative(1e-6), // measured 2.1e-7
-        fast: None,
-        run: Box::new(move |_| Ok(Outcome::of(measured(&measure, &harmonic()?)?))),
-    }
+    setting(
+        format!("intensity/harmonic-{name}"),
+        format!("A sin 2πt/T with A = 0.3 g, T = {PERIOD} s, {CYCLES} cycles"),
+        SOURCE,
+    )
+    .asks(quantity, unit, relative(exact, 1e-6)) // measured 2.1e-7
+    .by(move |_| Ok(measured(&measure, &harmonic()?)?))
 }
 
 /// A push of 1 m/s² that stays for 4 s.
@@ -80,60 +77,43 @@ fn overshoot() -> f64 {
 }
 
 fn of_push(period: f64) -> Problem {
-    Problem {
-        id: format!("intensity/push-{period}"),
-        title: format!("oscillator of {period} s and 5 % under a push that stays"),
-        source: STEP.into(),
-        quantity: "pseudo-acceleration over the push",
-        unit: "",
-        exact: overshoot(),
-        tolerance: Tolerance::Relative(1e-5), // measured 1.3e-6
-        fast: None,
-        run: Box::new(move |_| {
-            let motion = push(period / 1000.0)?;
-            let found = response(motion.time_step(), motion.acceleration(), period, DAMPING)
-                .map_err(|error| Failure::Absent(error.to_string()))?;
-            Ok(Outcome::of(found.pseudo_acceleration))
-        }),
-    }
+    setting(
+        format!("intensity/push-{period}"),
+        format!("oscillator of {period} s and 5 % under a push that stays"),
+        STEP,
+    )
+    .asks("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
+    .by(move |_| {
+        let motion = push(period / 1000.0)?;
+        let found = response(motion.time_step(), motion.acceleration(), period, DAMPING)
+            .map_err(|error| Failure::Absent(error.to_string()))?;
+        Ok(found.pseudo_acceleration)
+    })
 }
 
 fn short_period() -> Problem {
-    Problem {
-        id: "intensity/short-period".into(),
-        title: "the harmonic in twelve samples a cycle, at a period of a twentieth of their step"
-            .into(),
-        source: SOURCE.into(),
-        quantity: "Sa over PGA",
-        unit: "",
-        exact: 1.0,
-        tolerance: Tolerance::Relative(1e-3), // measured 1.0e-4
-        fast: None,
-        run: Box::new(|_| {
-            // Twelve samples a cycle are steps of 42 ms, interpolated between them by the recursion itself.
-            let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
-            let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
-            let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
-            Ok(Outcome::of(measured(&short, &motion)? / measured(&IntensityMeasure::Pga, &motion)?))
-        }),
-    }
+    setting(
+        "intensity/short-period",
+        "the harmonic in twelve samples a cycle, at a period of a twentieth of their step",
+        SOURCE,
+    )
+    .asks("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
+    .by(|_| {
+        // Twelve samples a cycle are steps of 42 ms, interpolated between them by the recursion itself.
+        let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
+        let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
+        let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
+        Ok(measured(&short, &motion)? / measured(&IntensityMeasure::Pga, &motion)?)
+    })
 }
 
 /// `∫ PSV dT` from 0.1 s to 2.5 s with `PSV = S_a T/2π` and `S_a` the same at all periods.
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
-    Problem {
-        id: "intensity/housner".into(),
-        title: "Housner intensity of a push of 1 m/s² that stays".into(),
-        source: STEP.into(),
-        quantity: "Housner intensity",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(1e-3), // measured 6.7e-7
-        fast: None,
-        run: Box::new(|_| {
+    setting("intensity/housner", "Housner intensity of a push of 1 m/s² that stays", STEP)
+        .asks("Housner intensity", "m", relative(exact, 1e-3)) // measured 6.7e-7
+        .by(|_| {
             let measure = IntensityMeasure::Housner { damping: DAMPING };
-            Ok(Outcome::of(measured(&measure, &push(0.001)?)?))
-        }),
-    }
+            Ok(measured(&measure, &push(0.001)?)?)
+        })
 }

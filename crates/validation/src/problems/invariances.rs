@@ -5,9 +5,10 @@ use barrelstack_dynamics::{
 };
 
 use crate::drive::Shake;
+use crate::problem::{absolute, relative, setting};
 use crate::scene::{DOWN, Scene, all_pairs, coulomb, disc, floor, interface, points};
 use crate::tumble::{self, rough};
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, Outcome, Problem};
 
 const SOURCE: &str = "symmetry of mechanics";
 const BOOKS: &str = "balance of energy";
@@ -68,24 +69,16 @@ fn invariance(
     limit: f64,
     difference: fn(u64) -> Result<f64, Failure>,
 ) -> Problem {
-    Problem {
-        id: format!("invariances/{name}"),
-        title: title.into(),
-        source: SOURCE.into(),
-        quantity: "largest difference in m, rad, m/s, rad/s",
-        unit: "",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(limit),
-        fast: None,
-        run: Box::new(move |effort| {
+    setting(format!("invariances/{name}"), title, SOURCE)
+        .asks("largest difference in m, rad, m/s, rad/s", "", absolute(0.0, limit))
+        .by(move |effort| {
             let mut worst = 0.0_f64;
             for seed in 0..seeds(effort) {
                 let found = difference(seed)?;
                 worst = if found.is_nan() { f64::NAN } else { worst.max(found) };
             }
             Ok(Outcome::of(worst).noted(format!("worst of {} heaps", seeds(effort))))
-        }),
-    }
+        })
 }
 
 /// Time step (s) and end (s) of the heaps.
@@ -238,16 +231,9 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
 }
 
 fn books() -> Problem {
-    Problem {
-        id: "invariances/energy-books".into(),
-        title: "heap on shaking ground, one second".into(),
-        source: BOOKS.into(),
-        quantity: "what the books miss over what went through",
-        unit: "",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-4),
-        fast: Some(Tolerance::Absolute(1e-3)),
-        run: Box::new(|effort| {
+    setting("invariances/energy-books", "heap on shaking ground, one second", BOOKS)
+        .asks("what the books miss over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
+        .by(|effort| {
             let worst = |step: f64| -> Result<f64, Failure> {
                 let mut worst = 0.0_f64;
                 for seed in 0..seeds(effort) {
@@ -269,44 +255,39 @@ fn books() -> Problem {
                     errors[0], errors[1], errors[2]
                 ),
             })
-        }),
-    }
+        })
 }
 
 /// Newton's cradle with elastic contacts, on a frictionless line.
 fn elastic_row() -> Problem {
-    Problem {
-        id: "invariances/elastic-row".into(),
-        title: "disc that strikes a row of four, elastic contacts, no gravity".into(),
-        source: BOOKS.into(),
-        quantity: "kinetic energy after over before",
-        unit: "",
-        exact: 1.0,
-        tolerance: Tolerance::Relative(1e-6),
-        fast: Some(Tolerance::Relative(1e-4)),
-        run: Box::new(|effort| {
-            let energy = |step: f64| -> Result<f64, Failure> {
-                let mut bodies = vec![floor()];
-                bodies[0].surfaces.clear();
-                bodies[0].nodes = vec![points(&[])];
-                for i in 0..5 {
-                    let x = if i == 0 { -0.3 } else { 0.2 * f64::from(i) };
-                    let mut ball = disc(&format!("ball {i}"), 0.1, 1.0, 0.005, Vec2::new(x, 0.0));
-                    if i == 0 {
-                        ball.twist.linear.x = 1.0;
-                    }
-                    bodies.push(ball);
+    setting(
+        "invariances/elastic-row",
+        "disc that strikes a row of four, elastic contacts, no gravity",
+        BOOKS,
+    )
+    .asks("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4))
+    .by(|effort| {
+        let energy = |step: f64| -> Result<f64, Failure> {
+            let mut bodies = vec![floor()];
+            bodies[0].surfaces.clear();
+            bodies[0].nodes = vec![points(&[])];
+            for i in 0..5 {
+                let x = if i == 0 { -0.3 } else { 0.2 * f64::from(i) };
+                let mut ball = disc(&format!("ball {i}"), 0.1, 1.0, 0.005, Vec2::new(x, 0.0));
+                if i == 0 {
+                    ball.twist.linear.x = 1.0;
                 }
-                let law = NormalLaw::SpeedGap { stiffness: 1e5, damping: 0.0 };
-                let laws = interface(law, coulomb(0.0, 1e5, 0.0));
-                let mut scene = Scene::new(bodies, laws, Vec2::default())?;
-                scene.run(&Still, step, 1.0)?;
-                Ok(scene.state.twists.iter().map(|t| t.linear.length().powi(2)).sum())
-            };
-            crate::problem::refine(effort, 1.0, |level| {
-                let coarse = if effort == Effort::Full { 1e-5 } else { 4e-5 };
-                energy(coarse / 2.0_f64.powi(level))
-            })
-        }),
-    }
+                bodies.push(ball);
+            }
+            let law = NormalLaw::SpeedGap { stiffness: 1e5, damping: 0.0 };
+            let laws = interface(law, coulomb(0.0, 1e5, 0.0));
+            let mut scene = Scene::new(bodies, laws, Vec2::default())?;
+            scene.run(&Still, step, 1.0)?;
+            Ok(scene.state.twists.iter().map(|t| t.linear.length().powi(2)).sum())
+        };
+        crate::problem::refine(effort, 1.0, |level| {
+            let coarse = if effort == Effort::Full { 1e-5 } else { 4e-5 };
+            energy(coarse / 2.0_f64.powi(level))
+        })
+    })
 }

@@ -6,8 +6,9 @@
 
 use barrelstack_dynamics::math::atan;
 
+use crate::problem::{relative, setting};
 use crate::rocking::RockingBlock;
-use crate::{Effort, Failure, Outcome, Problem, Tolerance, theory};
+use crate::{Effort, Failure, Outcome, Problem, theory};
 
 use super::housner::firm;
 
@@ -35,54 +36,46 @@ fn dimensions(width: f64, height: f64) -> (f64, f64) {
 fn period(name: &str, width: f64, height: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = theory::quarter_period(alpha, 0.5) / theory::rocking_rate(radius);
-    Problem {
-        id: format!("measured/{name}-quarter-period"),
-        title: format!("granite block {width} m by {height} m let go at φ = 0.5"),
-        source: SOURCE.into(),
-        quantity: "time to be upright",
-        unit: "s",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)), // measured 9.6e-6
-        run: Box::new(move |effort| {
-            let block = firm(effort, radius, alpha);
-            Ok(Outcome::of(block.quarter_period(0.5)? / block.rate()))
-        }),
-    }
+    setting(
+        format!("measured/{name}-quarter-period"),
+        format!("granite block {width} m by {height} m let go at φ = 0.5"),
+        SOURCE,
+    )
+    .asks("time to be upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
+    .by(move |effort| {
+        let block = firm(effort, radius, alpha);
+        Ok(block.quarter_period(0.5)? / block.rate())
+    })
 }
 
 /// The lean after three impacts of a block whose contact was calibrated at the first.
 fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));
-    Problem {
-        id: format!("measured/{name}-decay"),
-        title: format!("the same, damping chosen at the first impact for the measured η = {ratio}"),
-        source: SOURCE.into(),
-        quantity: "lean over α after three impacts",
-        unit: "",
-        exact,
-        // A share of the loss at an impact hangs on the lean; the least of the three shows it most.
-        tolerance: Tolerance::Relative(3e-2),  // measured 5.8e-3
-        fast: Some(Tolerance::Relative(6e-2)), // measured 9.6e-4
-        run: Box::new(move |effort| {
-            let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };
-            let block = RockingBlock {
-                contact_frequency: 3000.0 * stiffer,
-                ..RockingBlock::new(radius, alpha)
-            };
-            let Some(block) = block.calibrated(ratio)? else {
-                return Err(Failure::Absent(format!("no damping ratio shows η = {ratio}")));
-            };
-            let peaks = block.swings(0.5, 3, 20.0 / block.rate())?.1;
-            let Some(last) = peaks.get(2) else {
-                return Err(Failure::Absent("fewer than three impacts".into()));
-            };
-            Ok(Outcome::of(*last).noted(format!(
-                "ζ = {:.3}; Housner's own ratio is {:.4}",
-                block.damping_ratio,
-                theory::housner_restitution(alpha)
-            )))
-        }),
-    }
+    setting(
+        format!("measured/{name}-decay"),
+        format!("the same, damping chosen at the first impact for the measured η = {ratio}"),
+        SOURCE,
+    )
+    // A share of the loss at an impact hangs on the lean; the least of the three shows it most.
+    .asks("lean over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
+    .by(move |effort| {
+        let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };
+        let block = RockingBlock {
+            contact_frequency: 3000.0 * stiffer,
+            ..RockingBlock::new(radius, alpha)
+        };
+        let Some(block) = block.calibrated(ratio)? else {
+            return Err(Failure::Absent(format!("no damping ratio shows η = {ratio}")));
+        };
+        let peaks = block.swings(0.5, 3, 20.0 / block.rate())?.1;
+        let Some(last) = peaks.get(2) else {
+            return Err(Failure::Absent("fewer than three impacts".into()));
+        };
+        Ok(Outcome::of(*last).noted(format!(
+            "ζ = {:.3}; Housner's own ratio is {:.4}",
+            block.damping_ratio,
+            theory::housner_restitution(alpha)
+        )))
+    })
 }

@@ -11,12 +11,12 @@ use barrelstack_dynamics::{FrictionLaw, NormalLaw, Shape, Still, Vec2};
 use crate::drive::{Both, Shake};
 use crate::ode::solution;
 use crate::oracle::Rocker;
-use crate::problem::refine;
+use crate::problem::{relative, setting};
 use crate::rocking::{Corner, RockingBlock};
 use crate::scene::{
     DOWN, Scene, block, centered, coulomb, disc, floor, ground_of, interface, points, pose,
 };
-use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::{Failure, GRAVITY, Problem, theory};
 
 use super::housner::firm;
 
@@ -39,27 +39,6 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-fn problem(
-    name: &str,
-    title: String,
-    (quantity, unit): (&'static str, &'static str),
-    exact: f64,
-    (full, fast): (f64, f64),
-    run: crate::problem::Run,
-) -> Problem {
-    Problem {
-        id: format!("ode/{name}"),
-        title,
-        source: SOURCE.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance: Tolerance::Relative(full),
-        fast: Some(Tolerance::Relative(fast)),
-        run,
-    }
-}
-
 /// Acceleration `a sin ωt` of ground that starts at rest: velocity (m/s) and displacement (m).
 fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
     let velocity = a / omega * (1.0 - cos(omega * t));
@@ -77,25 +56,22 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
         [y[1], -0.75 / radius * moment]
     };
     let exact = solution(rates, [0.5 * alpha, 0.0], (0.0, until))[0];
-    problem(
-        &format!("rocking-{name}"),
+    setting(
+        format!("ode/rocking-{name}"),
         format!(
             "block of α = {alpha} let go at φ = 0.5, ground in a sine of {push} g, {omega} rad/s"
         ),
-        ("lean after 1 s, without impact", "rad"),
-        exact,
-        (1e-4, 1e-3), // measured 2.1e-6 and 1.3e-4
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let block = firm(effort, radius, alpha).refined(level - 1);
-                let acceleration = -push * GRAVITY;
-                let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
-                let mut scene = block.scene(0.5 * alpha)?;
-                scene.run(&drive, block.step(), until)?;
-                Ok(-scene.state.poses[1].orientation)
-            })
-        }),
+        SOURCE,
     )
+    .asks("lean after 1 s, without impact", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.1e-6 and 1.3e-4
+    .refined(move |effort, level| {
+        let block = firm(effort, radius, alpha).refined(level - 1);
+        let acceleration = -push * GRAVITY;
+        let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
+        let mut scene = block.scene(0.5 * alpha)?;
+        scene.run(&drive, block.step(), until)?;
+        Ok(-scene.state.poses[1].orientation)
+    })
 }
 
 /// The same block on a soft corner: normal spring and damper, stick with spring and damper, in full.
@@ -125,22 +101,19 @@ fn corner() -> Problem {
     let lean = 0.5 * alpha;
     let start = cos(alpha - lean) - GRAVITY / k;
     let exact = solution(rates, [0.0, start, -lean, 0.0, 0.0, 0.0, 0.0], (0.0, until))[2];
-    problem(
-        "corner-springs",
-        "block of α = 0.25 at φ = 0.5 on a soft, lightly damped corner (200 rad/s, ζ = 0.1)".into(),
-        ("angle after 0.8 s of a sine of 0.3 g, 6 rad/s", "rad"),
-        exact,
-        (1e-6, 1e-4), // measured 1.5e-7 and 2.5e-6
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let acceleration = -push * GRAVITY;
-                let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
-                let mut scene = block.scene(lean)?;
-                scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
-                Ok(scene.state.poses[1].orientation)
-            })
-        }),
+    setting(
+        "ode/corner-springs",
+        "block of α = 0.25 at φ = 0.5 on a soft, lightly damped corner (200 rad/s, ζ = 0.1)",
+        SOURCE,
     )
+    .asks("angle after 0.8 s of a sine of 0.3 g, 6 rad/s", "rad", relative(exact, 1e-6).fast(1e-4)) // measured 1.5e-7 and 2.5e-6
+    .refined(move |_, level| {
+        let acceleration = -push * GRAVITY;
+        let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
+        let mut scene = block.scene(lean)?;
+        scene.run(&drive, 4e-4 / 2.0_f64.powi(level), until)?;
+        Ok(scene.state.poses[1].orientation)
+    })
 }
 
 /// A block that bounces and pitches on two springs, never leaving them, while the floor goes up and down.
@@ -173,15 +146,9 @@ fn springs() -> Problem {
     let depth = move |z: f64, angle: f64| ground(push, omega, until).1 - z - corner(-1.0, angle).1;
     let [z, angle, ..] = solution(rates, [start, tilt, 0.0, 0.0], (0.0, until));
     let exact = depth(z, angle);
-    problem(
-        "two-springs",
-        "tilted block on two smooth springs (60 rad/s, ζ = 0.02) on a floor that shakes up and down"
-            .into(),
-        ("penetration of the left corner after 1 s", "m"),
-        exact,
-        (1e-4, 1e-3), // measured 2.3e-6 and 3.6e-5
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
+    setting("ode/two-springs", "tilted block on two smooth springs (60 rad/s, ζ = 0.02) on a floor that shakes up and down", SOURCE)
+.asks("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
+.refined(move |_, level| {
                 let size = (2.0 * half_width, 2.0 * half_height);
                 let body = block("block", size, MASS, pose(0.0, start, tilt));
                 let law = NormalLaw::KelvinVoigt { stiffness, damping };
@@ -193,8 +160,6 @@ fn springs() -> Problem {
                 let there = scene.state.poses[1];
                 Ok(depth(there.position.z, there.orientation))
             })
-        }),
-    )
 }
 
 /// Radii (m) of the cradle and of the disc in it.
@@ -227,20 +192,17 @@ fn pendulum() -> Problem {
     let length = 1.5 * (CRADLE - DISC);
     let rates = move |_: f64, y: &[f64; 2]| [y[1], -GRAVITY / length * sin(y[0])];
     let exact = solution(rates, [1.0, 0.0], (0.0, until))[0];
-    problem(
-        "cradle-pendulum",
-        "solid disc let go at 1 rad in a round cradle of 0.6 m, rolling".into(),
-        ("angle after 1.1 s", "rad"),
-        exact,
-        (1e-4, 1e-3), // measured 2.4e-5 and 3.9e-4
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let (mut scene, step) = cradled(1.0, 0.9, level)?;
-                scene.run(&Still, step, until)?;
-                Ok(angle_in_cradle(&scene))
-            })
-        }),
+    setting(
+        "ode/cradle-pendulum",
+        "solid disc let go at 1 rad in a round cradle of 0.6 m, rolling",
+        SOURCE,
     )
+    .asks("angle after 1.1 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.4e-5 and 3.9e-4
+    .refined(move |_, level| {
+        let (mut scene, step) = cradled(1.0, 0.9, level)?;
+        scene.run(&Still, step, until)?;
+        Ok(angle_in_cradle(&scene))
+    })
 }
 
 /// A disc that spins so fast that it slips one way all the while and climbs its cradle.
@@ -254,21 +216,18 @@ fn bowl() -> Problem {
         [y[1], (-GRAVITY * sin(y[0]) - drag) / arm, -2.0 * drag / DISC]
     };
     let exact = solution(rates, [0.0, 0.0, spin], (0.0, until))[0];
-    problem(
-        "cradle-slip",
-        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m at 40 rad/s, slipping".into(),
-        ("angle after 0.6 s", "rad"),
-        exact,
-        (1e-4, 1e-3), // measured 2.7e-6 and 4.4e-5
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let (mut scene, step) = cradled(0.0, friction, level)?;
-                scene.state.twists[1].angular = spin;
-                scene.run(&Still, step, until)?;
-                Ok(angle_in_cradle(&scene))
-            })
-        }),
+    setting(
+        "ode/cradle-slip",
+        "solid disc, μ = 0.4, set down in a round cradle of 0.6 m at 40 rad/s, slipping",
+        SOURCE,
     )
+    .asks("angle after 0.6 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.7e-6 and 4.4e-5
+    .refined(move |_, level| {
+        let (mut scene, step) = cradled(0.0, friction, level)?;
+        scene.state.twists[1].angular = spin;
+        scene.run(&Still, step, until)?;
+        Ok(angle_in_cradle(&scene))
+    })
 }
 
 /// A thrown body whose drag couples flight and spin, seen from ground that shakes.
@@ -284,29 +243,26 @@ fn flight() -> Problem {
     };
     let [x, ..] = solution(rates, [0.0, start[0], start[1], start[2]], (0.0, until));
     let exact = x - ground(push, omega, until).1;
-    problem(
-        "flight",
-        "thrown body with a full matrix of viscous drag, seen from ground that shakes".into(),
-        ("place along the ground after 1 s", "m"),
-        exact,
-        (1e-6, 1e-4), // measured 2.8e-9 and 4.6e-8
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let mut body = block("body", (0.5, 0.5), MASS, pose(0.0, 50.0, 0.0));
-                body.inertia = inertia;
-                body.damping = Some(drag);
-                body.nodes = vec![points(&[])];
-                let law = NormalLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 };
-                let laws = interface(law, FrictionLaw::Frictionless);
-                let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
-                let twist = &mut scene.state.twists[1];
-                (twist.linear, twist.angular) = (Vec2::new(start[0], start[1]), start[2]);
-                let drive = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
-                scene.run(&drive, 2e-3 / 2.0_f64.powi(level), until)?;
-                Ok(scene.relative(1))
-            })
-        }),
+    setting(
+        "ode/flight",
+        "thrown body with a full matrix of viscous drag, seen from ground that shakes",
+        SOURCE,
     )
+    .asks("place along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
+    .refined(move |_, level| {
+        let mut body = block("body", (0.5, 0.5), MASS, pose(0.0, 50.0, 0.0));
+        body.inertia = inertia;
+        body.damping = Some(drag);
+        body.nodes = vec![points(&[])];
+        let law = NormalLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 };
+        let laws = interface(law, FrictionLaw::Frictionless);
+        let mut scene = Scene::new(vec![floor(), body], laws, DOWN)?;
+        let twist = &mut scene.state.twists[1];
+        (twist.linear, twist.angular) = (Vec2::new(start[0], start[1]), start[2]);
+        let drive = Shake::Sine { acceleration: push, omega, half_waves: 100.0 };
+        scene.run(&drive, 2e-3 / 2.0_f64.powi(level), until)?;
+        Ok(scene.relative(1))
+    })
 }
 
 /// The block of the ensembles, as the integrator of this crate has it.
@@ -328,20 +284,12 @@ fn own_lean() -> Problem {
     };
     let start = 0.5 * rigid.alpha;
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
-    problem(
-        "own-integrator-lean",
-        "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less"
-            .into(),
-        ("lean after 1 s, without impact", "rad"),
-        exact,
-        (1e-8, 1e-6), // measured 6.6e-11 and 1.7e-8
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
+    setting("ode/own-integrator-lean", "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
+.asks("lean after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
+.refined(move |_, level| {
                 let steps = 100 << level;
                 Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
             })
-        }),
-    )
 }
 
 /// The same from rest: uplift, one swing under a half-sine, and the peak that it has left to reach.
@@ -362,17 +310,11 @@ fn own_peak() -> Problem {
     // Energy from there on: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
     let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);
     let exact = rigid.alpha - acos(left);
-    problem(
-        "own-integrator-peak",
-        "the block at rest under a half-sine of 1.7 g tan α, by the same, in the steps of the ensembles"
-            .into(),
-        ("largest lean", "rad"),
-        exact,
-        (1e-5, 1e-5), // measured 1.9e-7
-        Box::new(move |_| {
+    setting("ode/own-integrator-peak", "the block at rest under a half-sine of 1.7 g tan α, by the same, in the steps of the ensembles", SOURCE)
+.asks("largest lean", "rad", relative(exact, 1e-5).fast(1e-5)) // measured 1.9e-7
+.by(move |_| {
             let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
             let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);
-            Ok(Outcome::of(ride.peak))
-        }),
-    )
+            Ok(ride.peak)
+        })
 }

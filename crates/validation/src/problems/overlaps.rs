@@ -2,23 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+use crate::problem::{absolute, setting};
+use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
 /// Stacks of all kinds under strong shaking, all frames until rest: how deep bodies stand in each other
 /// that are no seat of each other.
 pub(super) fn problem() -> Problem {
-    Problem {
-        id: "solids/overlap-of-falling-stacks".into(),
-        title: "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames".into(),
-        source: "bodies are solid".into(),
-        quantity: "deepest overlap but at seats",
-        unit: "m",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(0.015),
-        fast: None,
-        run: Box::new(|effort| {
+    setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
+.asks("deepest overlap but at seats", "m", absolute(0.0, 0.015))
+.by(|effort| {
             let (count, records) =
                 if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };
             let mut worst = Survey::default();
@@ -50,8 +44,7 @@ pub(super) fn problem() -> Problem {
                 worst.books
             );
             Ok(Outcome::of(worst.loose).noted(note))
-        }),
-    }
+        })
 }
 
 /// The deepest overlaps (m) seen.

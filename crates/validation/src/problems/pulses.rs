@@ -1,10 +1,10 @@
 //! Overturning by pulses: without impact, after an impact, and the safe strengths between.
 
 use crate::drive::Shake;
-use crate::problem::border;
-use crate::{Effort, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::problem::{border, halvings, relative, setting};
+use crate::{Effort, GRAVITY, Outcome, Problem, theory};
 
-use super::housner::{firm, halvings, slender};
+use super::housner::{firm, slender};
 
 const CLOSED: &str = "Makris and Roussos 2000, Zhang and Makris 2001";
 const TABLE: &str = "Zhang and Makris 2001, event-driven integration";
@@ -86,32 +86,28 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn closed(form: Form, ratio: f64) -> Problem {
     let exact = form.closed_form(ratio);
-    Problem {
-        id: format!("pulses/slender-{}-{ratio}", form.name()),
-        title: format!("slender block (α = 0.03), {} of ω/p = {ratio}, no impact", form.name()),
-        source: CLOSED.into(),
-        quantity: "strength over g tan α that overturns",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2.5e-2)),
-        run: Box::new(move |effort| {
-            let block = slender(effort, 1.0);
-            let omega = ratio * block.rate();
-            let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
-                let pulse = form.pulse(strength * block.uplift(), omega);
-                block.overturns_at_once(&pulse, pulse.end())
-            })?;
-            let outcome = Outcome::of(found);
-            Ok(match form {
-                Form::HalfSine => outcome.noted(format!(
-                    "Housner's √(1 + ρ²) = {:.4} is unconservative",
-                    (1.0 + ratio * ratio).sqrt()
-                )),
-                Form::OneSine | Form::OneCosine => outcome,
-            })
-        }),
-    }
+    setting(
+        format!("pulses/slender-{}-{ratio}", form.name()),
+        format!("slender block (α = 0.03), {} of ω/p = {ratio}, no impact", form.name()),
+        CLOSED,
+    )
+    .asks("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .by(move |effort| {
+        let block = slender(effort, 1.0);
+        let omega = ratio * block.rate();
+        let found = border((0.97 * exact, 1.03 * exact), halvings(effort), |strength| {
+            let pulse = form.pulse(strength * block.uplift(), omega);
+            block.overturns_at_once(&pulse, pulse.end())
+        })?;
+        let outcome = Outcome::of(found);
+        Ok(match form {
+            Form::HalfSine => outcome.noted(format!(
+                "Housner's √(1 + ρ²) = {:.4} is unconservative",
+                (1.0 + ratio * ratio).sqrt()
+            )),
+            Form::OneSine | Form::OneCosine => outcome,
+        })
+    })
 }
 
 fn tabulated(
@@ -123,36 +119,32 @@ fn tabulated(
 ) -> Problem {
     // Between impacts the block falls below the border of being safe again, above the others.
     let falls_below = which == BORDERS[1];
-    Problem {
-        id: format!("pulses/{}-{ratio}-{which}", form.name()),
-        title: format!("block of p = 2.14 /s, α = 0.25, {} of ω/p = {ratio}", form.name()),
-        source: TABLE.into(),
-        quantity: "strength over g tan α at the border in the name",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(1e-2),
-        fast: Some(Tolerance::Relative(2.5e-2)),
-        run: Box::new(move |effort| {
-            let radius = 0.75 * GRAVITY / (RATE * RATE);
-            let block = match effort {
-                Effort::Fast => firm(effort, radius, ALPHA),
-                Effort::Full => firm(effort, radius, ALPHA).refined(1),
-            };
-            let pulse = |strength: f64| form.pulse(strength * block.uplift(), ratio * RATE);
-            let found = border(bracket, halvings(effort), |strength| {
-                let pulse = pulse(strength);
-                Ok(block.overturns(&pulse, pulse.end())? != falls_below)
-            })?;
-            if effort == Effort::Fast {
-                return Ok(Outcome::of(found));
-            }
-            let rigid = block.rigid(theory::housner_restitution(ALPHA));
-            let own = border(bracket, halvings(effort), |strength| {
-                let pulse = pulse(strength);
-                let ride = rigid.ride(|t| pulse.acceleration(t), pulse.end(), 5e-4, 15.0);
-                Ok(ride.overturned != falls_below)
-            })?;
-            Ok(Outcome::of(found).noted(format!("rigid-block integrator of this crate {own:.4}")))
-        }),
-    }
+    setting(
+        format!("pulses/{}-{ratio}-{which}", form.name()),
+        format!("block of p = 2.14 /s, α = 0.25, {} of ω/p = {ratio}", form.name()),
+        TABLE,
+    )
+    .asks("strength over g tan α at the border in the name", "", relative(exact, 1e-2).fast(2.5e-2))
+    .by(move |effort| {
+        let radius = 0.75 * GRAVITY / (RATE * RATE);
+        let block = match effort {
+            Effort::Fast => firm(effort, radius, ALPHA),
+            Effort::Full => firm(effort, radius, ALPHA).refined(1),
+        };
+        let pulse = |strength: f64| form.pulse(strength * block.uplift(), ratio * RATE);
+        let found = border(bracket, halvings(effort), |strength| {
+            let pulse = pulse(strength);
+            Ok(block.overturns(&pulse, pulse.end())? != falls_below)
+        })?;
+        if effort == Effort::Fast {
+            return Ok(Outcome::of(found));
+        }
+        let rigid = block.rigid(theory::housner_restitution(ALPHA));
+        let own = border(bracket, halvings(effort), |strength| {
+            let pulse = pulse(strength);
+            let ride = rigid.ride(|t| pulse.acceleration(t), pulse.end(), 5e-4, 15.0);
+            Ok(ride.overturned != falls_below)
+        })?;
+        Ok(Outcome::of(found).noted(format!("rigid-block integrator of this crate {own:.4}")))
+    })
 }

@@ -8,11 +8,10 @@ use barrelstack_dynamics::Vec2;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_motion::GroundMotion;
 
-use crate::problem::border;
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
+use crate::problem::{border, halvings, relative, setting};
+use crate::{Effort, Failure, GRAVITY, Problem};
 
-use super::devices::{problem, push};
-use super::housner::halvings;
+use super::devices::push;
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -71,23 +70,21 @@ fn towers() -> Vec<String> {
 fn posts() -> Problem {
     // A rack is uniform over its tubes and posts: its center is taken from the drawing, as are those of its barrels.
     let exact = EDGE / height_of_upper_levels().unwrap_or(f64::NAN);
-    problem(
-        "posts-along",
-        "two levels on the posts of a heavy rack, pushed along the barrels".into(),
+    setting(
+        "devices/posts-along",
+        "two levels on the posts of a heavy rack, pushed along the barrels",
         "statics: uplift at a/g = c/h",
-        ("push from which they rise from their posts", "g"),
-        (exact, 5e-3, 1e-2),
-        Box::new(move |effort| {
-            height_of_upper_levels()?;
-            let found =
-                border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
-                    let run = pushed(&towers(), amplitude)?;
-                    let rack = named(&run.assembly, "R2")?;
-                    Ok(run.fates.fate(rack).peak_tilt > 5e-3)
-                })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push from which they rise from their posts", "g", relative(exact, 5e-3).fast(1e-2))
+    .by(move |effort| {
+        height_of_upper_levels()?;
+        let found = border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
+            let run = pushed(&towers(), amplitude)?;
+            let rack = named(&run.assembly, "R2")?;
+            Ok(run.fates.fate(rack).peak_tilt > 5e-3)
+        })?;
+        Ok(found)
+    })
 }
 
 /// Height (m) of the center of mass of the upper levels over the posts that bear them.
@@ -156,23 +153,21 @@ fn slides(degrees: f64, side: f64) -> Problem {
         (true, true) => ("up", "towards the end that its rails raise by 3.5°"),
         (true, false) => ("down", "from the end that its rails raise by 3.5°"),
     };
-    problem(
-        &format!("incline-{name}"),
+    setting(
+        format!("devices/incline-{name}"),
         format!("a barrel pushed {words}, μ = {FRICTION}"),
         "statics: two contacts under Coulomb friction on an arc",
-        ("push from which the barrel slides", "g"),
-        (exact, 1e-2, 2e-2),
-        Box::new(move |effort: Effort| {
-            let found = border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
-                let settings = [
-                    format!("interface.barrel-rack.friction.coefficient={FRICTION}"),
-                    format!("stack.rack.incline=\"{degrees} deg\""),
-                ];
-                // What the ground does to the left pushes the barrel to the right.
-                let run = pushed(&settings, -side * amplitude)?;
-                Ok(run.fates.fate(named(&run.assembly, "B1.1")?).peak_slip > 1e-3)
-            })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push from which the barrel slides", "g", relative(exact, 1e-2).fast(2e-2))
+    .by(move |effort: Effort| {
+        border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
+            let settings = [
+                format!("interface.barrel-rack.friction.coefficient={FRICTION}"),
+                format!("stack.rack.incline=\"{degrees} deg\""),
+            ];
+            // What the ground does to the left pushes the barrel to the right.
+            let run = pushed(&settings, -side * amplitude)?;
+            Ok(run.fates.fate(named(&run.assembly, "B1.1")?).peak_slip > 1e-3)
+        })
+    })
 }

@@ -4,11 +4,9 @@ use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{Drive, NormalLaw, Planar};
 
 use crate::drive::Shake;
-use crate::problem::{border, refine};
+use crate::problem::{border, halvings, relative, setting};
 use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
-
-use super::housner::halvings;
+use crate::{Effort, Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002";
 const MASS: f64 = 100.0;
@@ -59,74 +57,63 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn least_friction(s: f64, share: f64) -> Problem {
     let exact = theory::least_friction_for_rocking(share * s, s);
-    Problem {
-        id: format!("regimes/friction-for-rocking-{s}-{share}"),
-        title: format!("block of s = {s} on ground that accelerates at {share} s g"),
-        source: SOURCE.into(),
-        quantity: "friction coefficient from which it rocks without sliding",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(4e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                border((0.98 * exact, 1.02 * exact), halvings(effort), |friction| {
-                    Ok(!start(s, share * s, friction, level)?.0)
-                })
-            })
-        }),
-    }
+    setting(
+        format!("regimes/friction-for-rocking-{s}-{share}"),
+        format!("block of s = {s} on ground that accelerates at {share} s g"),
+        SOURCE,
+    )
+    .asks(
+        "friction coefficient from which it rocks without sliding",
+        "",
+        relative(exact, 4e-3).fast(1.2e-2),
+    )
+    .refined(move |effort, level| {
+        border((0.98 * exact, 1.02 * exact), halvings(effort), |friction| {
+            Ok(!start(s, share * s, friction, level)?.0)
+        })
+    })
 }
 
 fn slide(friction: f64) -> Problem {
-    Problem {
-        id: format!("regimes/slide-{friction}"),
-        title: "low block on ground whose acceleration grows".into(),
-        source: SOURCE.into(),
-        quantity: "ground acceleration from which it slides",
-        unit: "g",
-        exact: friction,
-        tolerance: Tolerance::Relative(2e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let found = border((0.98 * friction, 1.02 * friction), halvings(effort), |beta| {
-                let mut scene = standing((2.0, 0.2), friction, 1e9)?;
-                let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 0.2 };
-                scene.run(&drive, 2e-5, 0.5)?;
-                Ok(scene.relative(1).abs() > 2e-5)
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+    setting(
+        format!("regimes/slide-{friction}"),
+        "low block on ground whose acceleration grows",
+        SOURCE,
+    )
+    .asks("ground acceleration from which it slides", "g", relative(friction, 2e-3).fast(1.2e-2))
+    .at_border(0.02, move |beta| {
+        let mut scene = standing((2.0, 0.2), friction, 1e9)?;
+        let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 0.2 };
+        scene.run(&drive, 2e-5, 0.5)?;
+        Ok(scene.relative(1).abs() > 2e-5)
+    })
 }
 
 fn first_spin(s: f64, beta: f64) -> Problem {
     // Half-height 1 m: R² = 1 + s².
     let exact = 3.0 * GRAVITY * (beta - s) / (4.0 * (1.0 + s * s));
-    Problem {
-        id: format!("regimes/first-spin-{s}-{beta}"),
-        title: format!("block of s = {s} under {beta} g from the start, no sliding"),
-        source: SOURCE.into(),
-        quantity: "angular acceleration at the start of rocking",
-        unit: "rad/s2",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(2e-2)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let finer = 2.0_f64.powi(level);
-                let mut scene = standing((2.0 * s, 2.0), 10.0, 1e10 * finer * finer)?;
-                let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 1e-9 };
-                // The spin between two instants, when the springs have come to rest and the block has
-                // hardly turned.
-                let step = 5e-6 / finer;
-                scene.run(&drive, step, 0.004)?;
-                let before = scene.state.twists[1].angular;
-                scene.run(&drive, step, 0.008)?;
-                Ok((scene.state.twists[1].angular - before).abs() / 0.004)
-            })
-        }),
-    }
+    setting(
+        format!("regimes/first-spin-{s}-{beta}"),
+        format!("block of s = {s} under {beta} g from the start, no sliding"),
+        SOURCE,
+    )
+    .asks(
+        "angular acceleration at the start of rocking",
+        "rad/s2",
+        relative(exact, 5e-3).fast(2e-2),
+    )
+    .refined(move |_, level| {
+        let finer = 2.0_f64.powi(level);
+        let mut scene = standing((2.0 * s, 2.0), 10.0, 1e10 * finer * finer)?;
+        let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 1e-9 };
+        // The spin between two instants, when the springs have come to rest and the block has
+        // hardly turned.
+        let step = 5e-6 / finer;
+        scene.run(&drive, step, 0.004)?;
+        let before = scene.state.twists[1].angular;
+        scene.run(&drive, step, 0.008)?;
+        Ok((scene.state.twists[1].angular - before).abs() / 0.004)
+    })
 }
 
 /// A flat block, too low to rock, after a ride on the ground.

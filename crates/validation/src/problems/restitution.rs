@@ -6,12 +6,10 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
 
-use crate::problem::{border, refine};
+use crate::problem::{refine, relative, setting};
 use crate::rocking::{Corner, RockingBlock, contact_frequency};
 use crate::scene::{DOWN, Scene, disc, floor, ground_of, interface};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
-
-use super::housner::halvings;
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 
 const SOURCE: &str = "damped oscillator on approach";
 const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021";
@@ -51,34 +49,29 @@ pub(super) fn problems() -> Vec<Problem> {
 /// Five equal discs in a row that touch, the first of which is struck: an elastic contact must neither
 /// gain nor lose.
 fn newtons_cradle() -> Problem {
-    Problem {
-        id: "restitution/newtons-cradle".into(),
-        title: "one disc at 1 m/s against four that touch, no damping, no friction".into(),
-        source: "balance of energy".into(),
-        quantity: "kinetic energy after over before",
-        unit: "",
-        exact: 1.0,
-        tolerance: Tolerance::Relative(1e-6),
-        fast: Some(Tolerance::Relative(1e-4)), // measured 1.9e-10
-        run: Box::new(|effort| {
-            let mut bodies = vec![ground_of(vec![])];
-            for at in 0..5 {
-                let x = 2.0 * RADIUS * f64::from(at);
-                bodies.push(disc(&format!("disc {at}"), RADIUS, 1.0, 0.005, Vec2::new(x, 0.0)));
-            }
-            bodies[1].twist = Twist { linear: Vec2::new(1.0, 0.0), angular: 0.0 };
-            let normal = NormalLaw::SpeedGap { stiffness: OMEGA * OMEGA, damping: 0.0 };
-            let laws = interface(normal, FrictionLaw::Frictionless);
-            let mut scene = Scene::new(bodies, laws, Vec2::default())?;
-            let finer = if effort == Effort::Full { 1e-4 } else { 1e-3 };
-            scene.run(&Still, finer / OMEGA, 40.0 / OMEGA)?;
-            let speeds: Vec<f64> =
-                scene.state.twists[1..].iter().map(|twist| twist.linear.x).collect();
-            let energy: f64 = speeds.iter().map(|speed| speed * speed).sum();
-            let said: Vec<String> = speeds.iter().map(|speed| format!("{speed:.3}")).collect();
-            Ok(Outcome::of(energy).noted(format!("speeds after: {} m/s", said.join(", "))))
-        }),
-    }
+    setting(
+        "restitution/newtons-cradle",
+        "one disc at 1 m/s against four that touch, no damping, no friction",
+        "balance of energy",
+    )
+    .asks("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4)) // measured 1.9e-10
+    .by(|effort| {
+        let mut bodies = vec![ground_of(vec![])];
+        for at in 0..5 {
+            let x = 2.0 * RADIUS * f64::from(at);
+            bodies.push(disc(&format!("disc {at}"), RADIUS, 1.0, 0.005, Vec2::new(x, 0.0)));
+        }
+        bodies[1].twist = Twist { linear: Vec2::new(1.0, 0.0), angular: 0.0 };
+        let normal = NormalLaw::SpeedGap { stiffness: OMEGA * OMEGA, damping: 0.0 };
+        let laws = interface(normal, FrictionLaw::Frictionless);
+        let mut scene = Scene::new(bodies, laws, Vec2::default())?;
+        let finer = if effort == Effort::Full { 1e-4 } else { 1e-3 };
+        scene.run(&Still, finer / OMEGA, 40.0 / OMEGA)?;
+        let speeds: Vec<f64> = scene.state.twists[1..].iter().map(|twist| twist.linear.x).collect();
+        let energy: f64 = speeds.iter().map(|speed| speed * speed).sum();
+        let said: Vec<String> = speeds.iter().map(|speed| format!("{speed:.3}")).collect();
+        Ok(Outcome::of(energy).noted(format!("speeds after: {} m/s", said.join(", "))))
+    })
 }
 
 /// A mass of 1 kg that meets the floor at a speed (m/s).
@@ -125,173 +118,137 @@ fn rebound(law: Corner, zeta: f64, exact: f64) -> Problem {
         Corner::SpeedGap => "speed-gap",
         Corner::KelvinVoigt => "kelvin-voigt",
     };
-    Problem {
-        id: format!("restitution/{name}-{zeta}"),
-        title: format!("mass on one node, {name} law, ζ = {zeta}, no gravity"),
-        source: SOURCE.into(),
-        quantity: "restitution",
-        unit: "",
-        exact,
-        // The published values have five digits.
-        tolerance: Tolerance::Relative(2e-4),
-        fast: Some(Tolerance::Relative(5e-4)),
-        run: Box::new(move |effort| {
-            let true_value = match law {
-                Corner::SpeedGap => restitution::speed_gap(zeta),
-                Corner::KelvinVoigt => restitution::kelvin_voigt(zeta),
-            };
-            refine(effort, true_value, |level| {
-                let mut scene = striking(law, zeta, 1.0, Vec2::default())?;
-                // The Kelvin–Voigt node lets go before the mass is back at the surface; by then it
-                // flies at the speed with which it left.
-                Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1)
-            })
-        }),
-    }
+    setting(
+        format!("restitution/{name}-{zeta}"),
+        format!("mass on one node, {name} law, ζ = {zeta}, no gravity"),
+        SOURCE,
+    )
+    // The published values have five digits.
+    .asks("restitution", "", relative(exact, 2e-4).fast(5e-4))
+    .by(move |effort| {
+        let true_value = match law {
+            Corner::SpeedGap => restitution::speed_gap(zeta),
+            Corner::KelvinVoigt => restitution::kelvin_voigt(zeta),
+        };
+        refine(effort, true_value, |level| {
+            let mut scene = striking(law, zeta, 1.0, Vec2::default())?;
+            // The Kelvin–Voigt node lets go before the mass is back at the surface; by then it
+            // flies at the speed with which it left.
+            Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1)
+        })
+    })
 }
 
 fn contact_time(zeta: f64) -> Problem {
     let exact = theory::contact_phase(zeta);
-    Problem {
-        id: format!("restitution/contact-time-{zeta}"),
-        title: format!("mass on one node, speed-gap law, ζ = {zeta}, no gravity"),
-        source: SOURCE.into(),
-        quantity: "ω times the time of contact",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(2e-4),
-        fast: Some(Tolerance::Relative(5e-4)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
-                Ok(OMEGA * gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.0)
-            })
-        }),
-    }
+    setting(
+        format!("restitution/contact-time-{zeta}"),
+        format!("mass on one node, speed-gap law, ζ = {zeta}, no gravity"),
+        SOURCE,
+    )
+    .asks("ω times the time of contact", "", relative(exact, 2e-4).fast(5e-4))
+    .refined(move |_, level| {
+        let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
+        Ok(OMEGA * gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.0)
+    })
 }
 
 fn inverted(e: f64, published: f64) -> Problem {
-    Problem {
-        id: format!("restitution/damping-for-{e}"),
-        title: format!("damping ratio of the speed-gap law for e = {e}, checked by a drop"),
-        source: SOURCE.into(),
-        quantity: "damping ratio ζ",
-        unit: "",
-        exact: published,
-        // The published values have three or four digits.
-        tolerance: Tolerance::Relative(2e-3),
-        fast: None,
-        run: Box::new(move |_| {
-            let zeta = restitution::speed_gap_damping_ratio(e)
-                .ok_or_else(|| Failure::Absent(format!("no damping ratio for e = {e}")))?;
-            let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
-            let shown = gone(leaving(&mut scene, step(0), 1.0)?)?.1;
-            Ok(Outcome::of(zeta).noted(format!("a mass that meets this node shows e = {shown:.4}")))
-        }),
-    }
+    setting(
+        format!("restitution/damping-for-{e}"),
+        format!("damping ratio of the speed-gap law for e = {e}, checked by a drop"),
+        SOURCE,
+    )
+    // The published values have three or four digits.
+    .asks("damping ratio ζ", "", relative(published, 2e-3))
+    .by(move |_| {
+        let zeta = restitution::speed_gap_damping_ratio(e)
+            .ok_or_else(|| Failure::Absent(format!("no damping ratio for e = {e}")))?;
+        let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
+        let shown = gone(leaving(&mut scene, step(0), 1.0)?)?.1;
+        Ok(Outcome::of(zeta).noted(format!("a mass that meets this node shows e = {shown:.4}")))
+    })
 }
 
 fn under_gravity(zeta: f64, gamma: f64) -> Problem {
     let exact = theory::rebound_under_gravity(zeta, gamma).0.unwrap_or(f64::NAN);
-    Problem {
-        id: format!("restitution/gravity-{zeta}-{gamma}"),
-        title: format!("mass on one speed-gap node, ζ = {zeta}, Γ = g/ωv = {gamma}"),
-        source: SOURCE.into(),
-        quantity: "restitution",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(5e-4),
-        fast: Some(Tolerance::Relative(1e-3)),
-        run: Box::new(move |effort| {
-            let speed = GRAVITY / (OMEGA * gamma);
-            refine(effort, exact, |level| {
-                let mut scene = striking(Corner::SpeedGap, zeta, speed, DOWN)?;
-                Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1 / speed)
-            })
-        }),
-    }
+    setting(
+        format!("restitution/gravity-{zeta}-{gamma}"),
+        format!("mass on one speed-gap node, ζ = {zeta}, Γ = g/ωv = {gamma}"),
+        SOURCE,
+    )
+    .asks("restitution", "", relative(exact, 5e-4).fast(1e-3))
+    .by(move |effort| {
+        let speed = GRAVITY / (OMEGA * gamma);
+        refine(effort, exact, |level| {
+            let mut scene = striking(Corner::SpeedGap, zeta, speed, DOWN)?;
+            Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1 / speed)
+        })
+    })
 }
 
 fn stays(zeta: f64) -> Problem {
     let exact = theory::lift_off_lost(zeta);
-    Problem {
-        id: format!("restitution/stays-{zeta}"),
-        title: format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
-        source: SOURCE.into(),
-        quantity: "Γ = g/ωv from which it does not lift off",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(2e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |gamma| {
-                let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
-                // Every later swing is lower than the first.
-                Ok(leaving(&mut scene, step(0), 8.0 / OMEGA)?.is_none())
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+    setting(
+        format!("restitution/stays-{zeta}"),
+        format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
+        SOURCE,
+    )
+    .asks("Γ = g/ωv from which it does not lift off", "", relative(exact, 2e-3).fast(1.2e-2))
+    .at_border(0.02, move |gamma| {
+        let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
+        // Every later swing is lower than the first.
+        Ok(leaving(&mut scene, step(0), 8.0 / OMEGA)?.is_none())
+    })
 }
 
 /// The longest step at which symplectic Euler keeps a mass quiet on its node.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
-    Problem {
-        id: format!("restitution/stable-step-{zeta}"),
-        title: format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
-        source: "root of the step's polynomial at −1".into(),
-        quantity: "ω times the longest stable step",
-        unit: "",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |step| {
-                let mut scene = striking(Corner::KelvinVoigt, zeta, 0.0, DOWN)?;
-                scene.method = Method::SemiImplicitEuler;
-                let sunk = GRAVITY / (OMEGA * OMEGA);
-                scene.state.poses[1].position.z = RADIUS - sunk * (1.0 + 1e-6);
-                let mut swing = 0.0_f64;
-                scene.watch(&Still, step / OMEGA, 3000.0 * step / OMEGA, |state, _, _| {
-                    swing = swing.max((state.poses[1].position.z - RADIUS + sunk).abs());
-                    ControlFlow::Continue(())
-                })?;
-                Ok(swing > 0.1 * sunk)
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+    setting(
+        format!("restitution/stable-step-{zeta}"),
+        format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
+        "root of the step's polynomial at −1",
+    )
+    .asks("ω times the longest stable step", "", relative(exact, 5e-3).fast(1.2e-2))
+    .at_border(0.02, move |step| {
+        let mut scene = striking(Corner::KelvinVoigt, zeta, 0.0, DOWN)?;
+        scene.method = Method::SemiImplicitEuler;
+        let sunk = GRAVITY / (OMEGA * OMEGA);
+        scene.state.poses[1].position.z = RADIUS - sunk * (1.0 + 1e-6);
+        let mut swing = 0.0_f64;
+        scene.watch(&Still, step / OMEGA, 3000.0 * step / OMEGA, |state, _, _| {
+            swing = swing.max((state.poses[1].position.z - RADIUS + sunk).abs());
+            ControlFlow::Continue(())
+        })?;
+        Ok(swing > 0.1 * sunk)
+    })
 }
 
 /// A damping chosen at one swing shows the target at another.
 fn calibrated(target: f64) -> Problem {
     let alpha = 0.25;
-    Problem {
-        id: format!("restitution/rocking-target-{target}"),
-        title: format!("block of α = {alpha}, damping chosen at φ = 0.5, shown at φ = 0.75"),
-        source: ROCKING.into(),
-        quantity: "ratio of angular velocities η",
-        unit: "",
-        exact: target,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let block = RockingBlock {
-                contact_frequency: contact_frequency(effort),
-                ..RockingBlock::new(1.0, alpha)
-            };
-            let Some(block) = block.calibrated(target)? else {
-                return Err(Failure::Absent(format!("no damping ratio shows η = {target}")));
-            };
-            let mut note = format!("ζ = {:.4}", block.damping_ratio);
-            if effort == Effort::Full {
-                for share in [0.1, 0.25, 0.9] {
-                    let shown = block.restitution(share)?;
-                    let _ = write!(note, "; at φ = {share}: {shown:.4}");
-                }
+    setting(
+        format!("restitution/rocking-target-{target}"),
+        format!("block of α = {alpha}, damping chosen at φ = 0.5, shown at φ = 0.75"),
+        ROCKING,
+    )
+    .asks("ratio of angular velocities η", "", relative(target, 5e-3).fast(1.2e-2))
+    .by(move |effort| {
+        let block = RockingBlock {
+            contact_frequency: contact_frequency(effort),
+            ..RockingBlock::new(1.0, alpha)
+        };
+        let Some(block) = block.calibrated(target)? else {
+            return Err(Failure::Absent(format!("no damping ratio shows η = {target}")));
+        };
+        let mut note = format!("ζ = {:.4}", block.damping_ratio);
+        if effort == Effort::Full {
+            for share in [0.1, 0.25, 0.9] {
+                let shown = block.restitution(share)?;
+                let _ = write!(note, "; at φ = {share}: {shown:.4}");
             }
-            Ok(Outcome::of(block.restitution(0.75)?).noted(note))
-        }),
-    }
+        }
+        Ok(Outcome::of(block.restitution(0.75)?).noted(note))
+    })
 }

@@ -9,13 +9,11 @@ use barrelstack_dynamics::shape::Cradle;
 use barrelstack_dynamics::{Drive, FrictionLaw, NormalLaw, Planar, Shape, Still, Vec2};
 
 use crate::drive::Shake;
-use crate::problem::{border, refine};
+use crate::problem::{absolute, relative, setting};
 use crate::scene::{
     DOWN, Scene, centered, coulomb, disc, floor, gravity_on_slope, ground_of, interface, points,
 };
-use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
-
-use super::housner::halvings;
+use crate::{Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "rigid-body dynamics of rolling";
 const MASS: f64 = 100.0;
@@ -78,157 +76,116 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-fn problem(
-    id: String,
-    title: String,
-    (quantity, unit): (&'static str, &'static str),
-    exact: f64,
-    tolerance: f64,
-    run: crate::problem::Run,
-) -> Problem {
-    Problem {
-        id,
-        title,
-        source: SOURCE.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance: Tolerance::Relative(tolerance),
-        // Borders are searched in fewer steps.
-        fast: (tolerance > 4e-3).then_some(Tolerance::Relative(1.2e-2)),
-        run,
-    }
-}
-
 fn base(ratio: f64) -> Problem {
     let exact = theory::rolling_share(ratio);
-    problem(
+    setting(
         format!("rolling/base-{ratio}"),
         format!("disc of k²/r² = {ratio} on a base that accelerates at 1.5 m/s²"),
-        ("its acceleration over that of the base", ""),
-        exact,
-        1e-4,
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let drive = Shake::Rectangular { acceleration: 1.5, duration: 1e9 };
-                Ok(acceleration(&mut roller(ratio, 0.5, DOWN, level)?, &drive, level)? / 1.5)
-            })
-        }),
+        SOURCE,
     )
+    .asks("its acceleration over that of the base", "", relative(exact, 1e-4))
+    .refined(move |_, level| {
+        let drive = Shake::Rectangular { acceleration: 1.5, duration: 1e9 };
+        Ok(acceleration(&mut roller(ratio, 0.5, DOWN, level)?, &drive, level)? / 1.5)
+    })
 }
 
 fn base_slip(ratio: f64) -> Problem {
     let exact = 0.2 * (1.0 + 1.0 / ratio);
-    problem(
+    setting(
         format!("rolling/base-slip-{ratio}"),
         format!("disc of k²/r² = {ratio}, μ = 0.2, base acceleration grows"),
-        ("base acceleration from which it slips", "g"),
-        exact,
-        5e-3,
-        Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
-                let mut scene = roller(ratio, 0.2, DOWN, 0)?;
-                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.1 };
-                scene.run(&drive, step(0), 1.0)?;
-                Ok(slip(&scene) > 1e-3)
-            })?;
-            Ok(Outcome::of(found))
-        }),
+        SOURCE,
     )
+    .asks("base acceleration from which it slips", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .at_border(0.02, move |push| {
+        let mut scene = roller(ratio, 0.2, DOWN, 0)?;
+        let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.1 };
+        scene.run(&drive, step(0), 1.0)?;
+        Ok(slip(&scene) > 1e-3)
+    })
 }
 
 fn slipping() -> Problem {
     let exact = 0.2 * GRAVITY;
-    problem(
-        "rolling/base-slipping".into(),
-        "solid disc, μ = 0.2, on a base that accelerates at 1 g".into(),
-        ("its acceleration", "m/s2"),
-        exact,
-        1e-10, // measured 9.5e-13
-        Box::new(move |_| {
-            let drive = Shake::Rectangular { acceleration: GRAVITY, duration: 1e9 };
-            Ok(Outcome::of(acceleration(&mut roller(0.5, 0.2, DOWN, 0)?, &drive, 0)?))
-        }),
+    setting(
+        "rolling/base-slipping",
+        "solid disc, μ = 0.2, on a base that accelerates at 1 g",
+        SOURCE,
     )
+    .asks("its acceleration", "m/s2", relative(exact, 1e-10)) // measured 9.5e-13
+    .by(move |_| {
+        let drive = Shake::Rectangular { acceleration: GRAVITY, duration: 1e9 };
+        Ok(acceleration(&mut roller(0.5, 0.2, DOWN, 0)?, &drive, 0)?)
+    })
 }
 
 fn slope(ratio: f64) -> Problem {
     let exact = GRAVITY * sin(0.3) / (1.0 + ratio);
-    problem(
+    setting(
         format!("rolling/slope-{ratio}"),
         format!("disc of k²/r² = {ratio} on a slope of 0.3 rad"),
-        ("its acceleration", "m/s2"),
-        exact,
-        1e-4,
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let mut scene = roller(ratio, 0.6, gravity_on_slope(0.3), level)?;
-                acceleration(&mut scene, &Still, level)
-            })
-        }),
+        SOURCE,
     )
+    .asks("its acceleration", "m/s2", relative(exact, 1e-4))
+    .refined(move |_, level| {
+        let mut scene = roller(ratio, 0.6, gravity_on_slope(0.3), level)?;
+        acceleration(&mut scene, &Still, level)
+    })
 }
 
 fn slope_slip(ratio: f64) -> Problem {
     let exact = 0.1 * (1.0 + 1.0 / ratio);
-    problem(
+    setting(
         format!("rolling/slope-slip-{ratio}"),
         format!("disc of k²/r² = {ratio}, μ = 0.1, on a slope"),
-        ("tangent of the slope from which it slips", ""),
-        exact,
-        1e-2,
-        Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |tangent| {
-                let mut scene = roller(ratio, 0.1, gravity_on_slope(atan(tangent)), 0)?;
-                scene.run(&Still, step(0), 1.0)?;
-                let start = slip(&scene);
-                scene.run(&Still, step(0), 2.0)?;
-                // Rolling on springs it slips at a steady speed; beyond the limit the slip grows.
-                Ok(slip(&scene) - start > 2e-3)
-            })?;
-            Ok(Outcome::of(found))
-        }),
+        SOURCE,
     )
+    .asks("tangent of the slope from which it slips", "", relative(exact, 1e-2).fast(1.2e-2))
+    .at_border(0.02, move |tangent| {
+        let mut scene = roller(ratio, 0.1, gravity_on_slope(atan(tangent)), 0)?;
+        scene.run(&Still, step(0), 1.0)?;
+        let start = slip(&scene);
+        scene.run(&Still, step(0), 2.0)?;
+        // Rolling on springs it slips at a steady speed; beyond the limit the slip grows.
+        Ok(slip(&scene) - start > 2e-3)
+    })
 }
 
 fn swing(ratio: f64) -> Problem {
     let cradle_radius = 0.6;
     let exact = TAU / theory::swing_in_cradle(cradle_radius, RADIUS, ratio);
-    problem(
+    setting(
         format!("rolling/cradle-{ratio}"),
         format!("disc of k²/r² = {ratio} in a round cradle of 0.6 m, swings of 0.01 rad"),
-        ("period", "s"),
-        exact,
-        1e-3,
-        Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let arm = cradle_radius - RADIUS + MASS * GRAVITY / stiffness(level);
-                let angle = 0.01;
-                let center = Vec2::new(arm * sin(angle), -arm * cos(angle));
-                let body = disc("roller", RADIUS, MASS, ratio * RADIUS * RADIUS, center);
-                let cradle =
-                    ground_of(vec![centered(Shape::Cradle(Cradle::new(cradle_radius, 1.2)))]);
-                let laws = interface(firm(level), stick(0.9, level));
-                let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
-                let (mut crossings, mut before) = (vec![], (0.0, angle));
-                scene.watch(&Still, step(level), 8.0, |state, _, _| {
-                    let x = state.poses[1].position.x;
-                    if x < 0.0 && before.1 >= 0.0 {
-                        let part = before.1 / (before.1 - x);
-                        crossings.push(before.0 + part * (state.time - before.0));
-                    }
-                    before = (state.time, x);
-                    ControlFlow::Continue(())
-                })?;
-                match (crossings.first(), crossings.last()) {
-                    (Some(first), Some(last)) if crossings.len() > 3 => {
-                        Ok((last - first) / (crossings.len() - 1) as f64)
-                    }
-                    _ => Err(Failure::Absent("the disc does not swing".into())),
-                }
-            })
-        }),
+        SOURCE,
     )
+    .asks("period", "s", relative(exact, 1e-3))
+    .refined(move |_, level| {
+        let arm = cradle_radius - RADIUS + MASS * GRAVITY / stiffness(level);
+        let angle = 0.01;
+        let center = Vec2::new(arm * sin(angle), -arm * cos(angle));
+        let body = disc("roller", RADIUS, MASS, ratio * RADIUS * RADIUS, center);
+        let cradle = ground_of(vec![centered(Shape::Cradle(Cradle::new(cradle_radius, 1.2)))]);
+        let laws = interface(firm(level), stick(0.9, level));
+        let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
+        let (mut crossings, mut before) = (vec![], (0.0, angle));
+        scene.watch(&Still, step(level), 8.0, |state, _, _| {
+            let x = state.poses[1].position.x;
+            if x < 0.0 && before.1 >= 0.0 {
+                let part = before.1 / (before.1 - x);
+                crossings.push(before.0 + part * (state.time - before.0));
+            }
+            before = (state.time, x);
+            ControlFlow::Continue(())
+        })?;
+        match (crossings.first(), crossings.last()) {
+            (Some(first), Some(last)) if crossings.len() > 3 => {
+                Ok((last - first) / (crossings.len() - 1) as f64)
+            }
+            _ => Err(Failure::Absent("the disc does not swing".into())),
+        }
+    })
 }
 
 /// A disc on two points of the ground at ± an angle (rad) from straight down.
@@ -243,44 +200,36 @@ fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
 
 fn leaves(angle: f64) -> Problem {
     let exact = tan(angle);
-    problem(
+    setting(
         format!("rolling/leaves-cradle-{angle}"),
         format!("disc on two smooth points at ±{angle} rad, ground acceleration grows"),
-        ("ground acceleration at which it leaves one", "g"),
-        exact,
-        5e-3,
-        Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
-                let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
-                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };
-                let mut left = false;
-                scene.watch(&drive, step(0), 2.0, |state, _, _| {
-                    let place = state.poses[1].position.x - state.poses[0].position.x;
-                    left = place.abs() > 1e-3;
-                    if left { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-                })?;
-                Ok(left)
-            })?;
-            Ok(Outcome::of(found))
-        }),
+        SOURCE,
     )
+    .asks("ground acceleration at which it leaves one", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .at_border(0.02, move |push| {
+        let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
+        let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };
+        let mut left = false;
+        scene.watch(&drive, step(0), 2.0, |state, _, _| {
+            let place = state.poses[1].position.x - state.poses[0].position.x;
+            left = place.abs() > 1e-3;
+            if left { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        Ok(left)
+    })
 }
 
 fn no_turn() -> Problem {
-    Problem {
-        id: "rolling/cradle-holds".into(),
-        title: "disc on two rough points at ±0.5 rad, spun at 0.2 rad/s".into(),
-        source: SOURCE.into(),
-        quantity: "spin after two seconds",
-        unit: "rad/s",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-6),
-        fast: None,
-        run: Box::new(|_| {
-            let mut scene = two_points(0.5, stick(0.5, 0))?;
-            scene.state.twists[1].angular = 0.2;
-            scene.run(&Still, step(0), 2.0)?;
-            Ok(Outcome::of(scene.state.twists[1].angular))
-        }),
-    }
+    setting(
+        "rolling/cradle-holds",
+        "disc on two rough points at ±0.5 rad, spun at 0.2 rad/s",
+        SOURCE,
+    )
+    .asks("spin after two seconds", "rad/s", absolute(0.0, 1e-6))
+    .by(|_| {
+        let mut scene = two_points(0.5, stick(0.5, 0))?;
+        scene.state.twists[1].angular = 0.2;
+        scene.run(&Still, step(0), 2.0)?;
+        Ok(scene.state.twists[1].angular)
+    })
 }

@@ -7,9 +7,9 @@ use barrelstack_dynamics::math::{atan, cos, sin};
 use barrelstack_dynamics::{FrictionLaw, NormalLaw, Still, Twist, Vec2};
 
 use crate::drive::Shake;
-use crate::problem::refine;
+use crate::problem::{absolute, relative, setting};
 use crate::scene::{Scene, block, coulomb, floor, gravity_on_slope, interface, pose};
-use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::{Failure, GRAVITY, Problem, theory};
 
 use super::regimes::{base, ridden, standing};
 
@@ -49,70 +49,42 @@ pub(super) fn problems() -> Vec<Problem> {
 }
 
 fn slide(name: &str, title: &str, drive: Shake, exact: f64) -> Problem {
-    Problem {
-        id: format!("sliding/{name}"),
-        title: title.into(),
-        source: SOURCE.into(),
-        quantity: "way of the block on the ground",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(2e-4),
-        fast: Some(Tolerance::Relative(1e-3)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                Ok(-ridden(0.2, &drive, 3.0, base(effort) + level)?.relative(1))
-            })
-        }),
-    }
+    setting(format!("sliding/{name}"), title, SOURCE)
+        .asks("way of the block on the ground", "m", relative(exact, 2e-4).fast(1e-3))
+        .refined(move |effort, level| {
+            Ok(-ridden(0.2, &drive, 3.0, base(effort) + level)?.relative(1))
+        })
 }
 
 fn ride_along() -> Problem {
-    Problem {
-        id: "sliding/below-yield".into(),
-        title: "half-sine of 0.19 g and 0.4 s, μ = 0.2".into(),
-        source: SOURCE.into(),
-        quantity: "way of the block on the ground",
-        unit: "m",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-9), // measured 1.2e-12
-        fast: None,
-        run: Box::new(|effort| {
+    setting("sliding/below-yield", "half-sine of 0.19 g and 0.4 s, μ = 0.2", SOURCE)
+        .asks("way of the block on the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
+        .by(|effort| {
             let drive =
                 Shake::Sine { acceleration: 0.19 * GRAVITY, omega: PI / 0.4, half_waves: 1.0 };
-            Ok(Outcome::of(ridden(0.2, &drive, 2.0, base(effort))?.relative(1)))
-        }),
-    }
+            Ok(ridden(0.2, &drive, 2.0, base(effort))?.relative(1))
+        })
 }
 
 fn steady() -> Problem {
     let (a, n, omega) = (0.5, 0.2, TAU);
     let exact = theory::steady_slide_amplitude(a, n, omega);
-    Problem {
-        id: "sliding/steady".into(),
-        title: "block on ground that shakes with 0.5 g at 1 Hz, μ = 0.2".into(),
-        source: STEADY.into(),
-        quantity: "relative amplitude",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(1e-3),
-        fast: Some(Tolerance::Relative(3e-3)),
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| {
-                let finer = 2.0_f64.powi(base(effort) + level);
-                let mut scene = standing((2.0, 0.2), n, 1e9 * finer * finer)?;
-                let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-                let drive = Shake::Harmonic { acceleration: a * GRAVITY, omega };
-                scene.watch(&drive, 2e-5 / finer, 9.0, |state, _, _| {
-                    if state.time > 8.0 {
-                        let place = state.poses[1].position.x - state.poses[0].position.x;
-                        (low, high) = (low.min(place), high.max(place));
-                    }
-                    ControlFlow::Continue(())
-                })?;
-                Ok(0.5 * (high - low))
-            })
-        }),
-    }
+    setting("sliding/steady", "block on ground that shakes with 0.5 g at 1 Hz, μ = 0.2", STEADY)
+        .asks("relative amplitude", "m", relative(exact, 1e-3).fast(3e-3))
+        .refined(move |effort, level| {
+            let finer = 2.0_f64.powi(base(effort) + level);
+            let mut scene = standing((2.0, 0.2), n, 1e9 * finer * finer)?;
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            let drive = Shake::Harmonic { acceleration: a * GRAVITY, omega };
+            scene.watch(&drive, 2e-5 / finer, 9.0, |state, _, _| {
+                if state.time > 8.0 {
+                    let place = state.poses[1].position.x - state.poses[0].position.x;
+                    (low, high) = (low.min(place), high.max(place));
+                }
+                ControlFlow::Continue(())
+            })?;
+            Ok(0.5 * (high - low))
+        })
 }
 
 /// A low block on its lower corners, sunk to rest, on a slope of an angle (rad).
@@ -127,85 +99,65 @@ fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Result<Scene, Failur
 }
 
 fn no_creep() -> Problem {
-    Problem {
-        id: "sliding/no-creep".into(),
-        title: "block on a slope of 90 % of the friction angle, one minute".into(),
-        source: COULOMB.into(),
-        quantity: "way downhill after the first two seconds",
-        unit: "m",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-12), // measured 0
-        fast: None,
-        run: Box::new(|_| {
-            let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), atan(0.45), 0.0)?;
-            scene.run(&Still, 5e-4, 2.0)?;
-            let start = scene.state.poses[1].position.x;
-            scene.run(&Still, 5e-4, 60.0)?;
-            Ok(Outcome::of(scene.state.poses[1].position.x - start))
-        }),
-    }
+    setting(
+        "sliding/no-creep",
+        "block on a slope of 90 % of the friction angle, one minute",
+        COULOMB,
+    )
+    .asks("way downhill after the first two seconds", "m", absolute(0.0, 1e-12)) // measured 0
+    .by(|_| {
+        let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), atan(0.45), 0.0)?;
+        scene.run(&Still, 5e-4, 2.0)?;
+        let start = scene.state.poses[1].position.x;
+        scene.run(&Still, 5e-4, 60.0)?;
+        Ok(scene.state.poses[1].position.x - start)
+    })
 }
 
 fn creep(share: f64) -> Problem {
     let law = FrictionLaw::Regularized { coefficient: 0.5, velocity: 0.01 };
     let exact = 0.01 * share / (1.0 - share * share).sqrt();
-    Problem {
-        id: format!("sliding/regularized-creep-{share}"),
-        title: format!("regularized friction, slope of {share} of the friction angle"),
-        source: "equilibrium of the smooth law".into(),
-        quantity: "creep speed",
-        unit: "m/s",
-        exact,
-        tolerance: Tolerance::Relative(1e-12), // measured 3e-15
-        fast: None,
-        run: Box::new(move |_| {
-            let mut scene = sledge(law, atan(0.5 * share), 0.0)?;
-            scene.run(&Still, 5e-4, 2.0)?;
-            Ok(Outcome::of(scene.state.twists[1].linear.x))
-        }),
-    }
+    setting(
+        format!("sliding/regularized-creep-{share}"),
+        format!("regularized friction, slope of {share} of the friction angle"),
+        "equilibrium of the smooth law",
+    )
+    .asks("creep speed", "m/s", relative(exact, 1e-12)) // measured 3e-15
+    .by(move |_| {
+        let mut scene = sledge(law, atan(0.5 * share), 0.0)?;
+        scene.run(&Still, 5e-4, 2.0)?;
+        Ok(scene.state.twists[1].linear.x)
+    })
 }
 
 fn slope_slide(friction: f64, slope: f64) -> Problem {
     let exact = GRAVITY * (sin(slope) - friction * cos(slope));
-    Problem {
-        id: format!("sliding/slope-{friction}-{slope}"),
-        title: format!("block on a slope of {slope} rad, μ = {friction}"),
-        source: COULOMB.into(),
-        quantity: "acceleration",
-        unit: "m/s2",
-        exact,
-        tolerance: Tolerance::Relative(1e-10), // measured 1.4e-12
-        fast: None,
-        run: Box::new(move |_| {
-            let mut scene = sledge(coulomb(friction, STIFFNESS, 1e4), slope, 0.0)?;
-            scene.run(&Still, 2e-4, 1.0)?;
-            let before = scene.state.twists[1].linear.x;
-            scene.run(&Still, 2e-4, 2.0)?;
-            Ok(Outcome::of(scene.state.twists[1].linear.x - before))
-        }),
-    }
+    setting(
+        format!("sliding/slope-{friction}-{slope}"),
+        format!("block on a slope of {slope} rad, μ = {friction}"),
+        COULOMB,
+    )
+    .asks("acceleration", "m/s2", relative(exact, 1e-10)) // measured 1.4e-12
+    .by(move |_| {
+        let mut scene = sledge(coulomb(friction, STIFFNESS, 1e4), slope, 0.0)?;
+        scene.run(&Still, 2e-4, 1.0)?;
+        let before = scene.state.twists[1].linear.x;
+        scene.run(&Still, 2e-4, 2.0)?;
+        Ok(scene.state.twists[1].linear.x - before)
+    })
 }
 
 fn thrown() -> Problem {
     let exact = 1.0 / (2.0 * 0.3 * GRAVITY);
-    Problem {
-        id: "sliding/thrown".into(),
-        title: "block thrown at 1 m/s, μ = 0.3".into(),
-        source: COULOMB.into(),
-        quantity: "sliding distance v²/2μg",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(1e-6), // measured 7.7e-8
-        fast: None,
-        run: Box::new(|_| {
+    setting("sliding/thrown", "block thrown at 1 m/s, μ = 0.3", COULOMB)
+        .asks("sliding distance v²/2μg", "m", relative(exact, 1e-6)) // measured 7.7e-8
+        .by(|_| {
             let mut scene = sledge(coulomb(0.3, STIFFNESS, 1e4), 0.0, 1.0)?;
             let mut farthest = 0.0_f64;
             scene.watch(&Still, 2e-4, 3.0, |state, _, _| {
                 farthest = farthest.max(state.poses[1].position.x);
                 ControlFlow::Continue(())
             })?;
-            Ok(Outcome::of(farthest))
-        }),
-    }
+            Ok(farthest)
+        })
 }

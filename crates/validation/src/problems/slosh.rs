@@ -5,7 +5,8 @@ use barrelstack::slosh::{across, along, filled_to};
 use barrelstack::{Run, Scenario};
 use barrelstack_dynamics::math::{acos, sin_cos};
 
-use crate::{Failure, GRAVITY, Outcome, Problem, Tolerance};
+use crate::problem::{relative, setting};
+use crate::{Failure, GRAVITY, Problem};
 
 const HALF_FULL: &str = "Budiansky 1960; McIver 1989";
 const NEARLY_EMPTY: &str = "a particle in a round trough";
@@ -27,54 +28,31 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-fn problem(
-    id: &str,
-    title: String,
-    source: &str,
-    (quantity, unit): (&'static str, &'static str),
-    (exact, tolerance): (f64, f64),
-    answer: impl Fn() -> Result<f64, Failure> + Send + Sync + 'static,
-) -> Problem {
-    Problem {
-        id: format!("slosh/{id}"),
-        title,
-        source: source.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance: Tolerance::Relative(tolerance),
-        fast: None,
-        run: Box::new(move |_| answer().map(Outcome::of)),
-    }
-}
-
 /// `ω² R/g` of a cylinder of radius 1 m that is filled to a depth (m).
 fn number(depth: f64) -> f64 {
     1.0 / across(1.0, filled_to(depth)).length
 }
 
 fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance: f64) -> Problem {
-    problem(
+    setting(
         name,
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         source,
-        ("ω² R/g", ""),
-        (exact, tolerance),
-        move || Ok(number(depth)),
     )
+    .asks("ω² R/g", "", relative(exact, tolerance))
+    .by(move |_| Ok(number(depth)))
 }
 
 fn nearly_full() -> Problem {
     let depth: f64 = 2.0 - 1e-6;
     let half_width = (1.0 - (depth - 1.0) * (depth - 1.0)).sqrt();
-    problem(
-        "nearly-full",
-        "horizontal cylinder full but for a slit, first wave across".into(),
+    setting(
+        "slosh/nearly-full",
+        "horizontal cylinder full but for a slit, first wave across",
         NEARLY_FULL,
-        ("ω² b/g with half the width b of the slit", ""),
-        (2.006_119, 1e-3),
-        move || Ok(number(depth) * half_width),
     )
+    .asks("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
+    .by(move |_| Ok(number(depth) * half_width))
 }
 
 /// Elements to a side, by which the answers of finite elements are off by some 0.1 %.
@@ -82,26 +60,24 @@ const SIDE: usize = 28;
 
 fn by_elements(depth: f64) -> Problem {
     let (exact, _) = finite_elements(depth, SIDE);
-    problem(
-        &format!("frequency-{depth}"),
+    setting(
+        format!("slosh/frequency-{depth}"),
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
-        ("ω² R/g", ""),
-        (exact, 4e-3),
-        move || Ok(number(depth)),
     )
+    .asks("ω² R/g", "", relative(exact, 4e-3))
+    .by(move |_| Ok(number(depth)))
 }
 
 fn mass(depth: f64) -> Problem {
     let (_, exact) = finite_elements(depth, SIDE);
-    problem(
-        &format!("mass-{depth}"),
+    setting(
+        format!("slosh/mass-{depth}"),
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
-        ("share of the mass that goes with the wave", ""),
-        (exact, 4e-3),
-        move || Ok(across(1.0, filled_to(depth)).share),
     )
+    .asks("share of the mass that goes with the wave", "", relative(exact, 4e-3))
+    .by(move |_| Ok(across(1.0, filled_to(depth)).share))
 }
 
 /// The first antisymmetric wave in a segment of the unit circle, `ω²/g` and its share of the mass, by bilinear
@@ -212,18 +188,16 @@ fn long() -> Problem {
     // A tank of 2 m by 0.5 m, as deep as half of a cylinder of that mean depth.
     let (length, depth) = (2.0, 0.5);
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
-    problem(
-        "rectangular",
-        "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis"
-            .into(),
+    setting(
+        "slosh/rectangular",
+        "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis",
         "Ibrahim 2005, section 5",
-        ("ω²/g", "1/m"),
-        (exact, 1e-9),
-        move || {
-            let radius = 4.0 * depth / std::f64::consts::PI;
-            Ok(1.0 / along(radius, length, 0.5).length)
-        },
     )
+    .asks("ω²/g", "1/m", relative(exact, 1e-9))
+    .by(move |_| {
+        let radius = 4.0 * depth / std::f64::consts::PI;
+        Ok(1.0 / along(radius, length, 0.5).length)
+    })
 }
 
 /// The wine of a barrel in its cradle, set in motion by a short push.
@@ -233,35 +207,32 @@ fn in_a_stack(filled: f64) -> Problem {
         .and_then(|scenario| scenario.stack().and_then(|stack| stack.barrel.wave(stack.view)));
     let exact =
         wave.map_or(f64::NAN, |wave| (GRAVITY / wave.length).sqrt() / std::f64::consts::TAU);
-    problem(
-        &format!("barrel-{filled}"),
+    setting(
+        format!("slosh/barrel-{filled}"),
         format!("barrels of 225 L filled to {filled} on their rack after a short push"),
         "the pendulum of its wave",
-        ("frequency of the wine", "Hz"),
-        (exact, 3e-3),
-        move || {
-            let run: Run = scenario(filled)?.run()?;
-            let recording = &run.recording;
-            let name = "wine in B1.1 displacement x";
-            let wine = recording.channel(name).ok_or_else(|| Failure::Absent(name.into()))?;
-            let held = recording.channel("B1.1 displacement x");
-            let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
-            let way = |i: usize| wine.values[i] - held.values[i];
-            let times = &recording.times;
-            let crossings: Vec<f64> = (1..times.len())
-                .filter(|i| times[*i] > 1.0 && way(i - 1) * way(*i) < 0.0)
-                .map(|i| {
-                    times[i - 1] + way(i - 1) / (way(i - 1) - way(i)) * (times[i] - times[i - 1])
-                })
-                .collect();
-            match (crossings.first(), crossings.last()) {
-                (Some(first), Some(last)) if crossings.len() > 4 => {
-                    Ok(0.5 * (crossings.len() - 1) as f64 / (last - first))
-                }
-                _ => Err(Failure::Absent("the wine does not swing".into())),
-            }
-        },
     )
+    .asks("frequency of the wine", "Hz", relative(exact, 3e-3))
+    .by(move |_| {
+        let run: Run = scenario(filled)?.run()?;
+        let recording = &run.recording;
+        let name = "wine in B1.1 displacement x";
+        let wine = recording.channel(name).ok_or_else(|| Failure::Absent(name.into()))?;
+        let held = recording.channel("B1.1 displacement x");
+        let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
+        let way = |i: usize| wine.values[i] - held.values[i];
+        let times = &recording.times;
+        let crossings: Vec<f64> = (1..times.len())
+            .filter(|i| times[*i] > 1.0 && way(i - 1) * way(*i) < 0.0)
+            .map(|i| times[i - 1] + way(i - 1) / (way(i - 1) - way(i)) * (times[i] - times[i - 1]))
+            .collect();
+        match (crossings.first(), crossings.last()) {
+            (Some(first), Some(last)) if crossings.len() > 4 => {
+                Ok(0.5 * (crossings.len() - 1) as f64 / (last - first))
+            }
+            _ => Err(Failure::Absent("the wine does not swing".into())),
+        }
+    })
 }
 
 fn scenario(filled: f64) -> Result<Scenario, Failure> {

@@ -11,9 +11,9 @@ use barrelstack_dynamics::{
 };
 
 use super::overlaps;
-use crate::problem::refine;
+use crate::problem::{absolute, relative, setting};
 use crate::scene::{self, DOWN, Scene, centered, disc, floor, ground_of, interface};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
 
@@ -79,66 +79,52 @@ fn depth(height: f64) -> Problem {
     for _ in 0..100 {
         exact = ((energy + MASS * GRAVITY * exact) / (0.4 * STIFFNESS)).powf(0.4);
     }
-    Problem {
-        id: format!("solids/depth-{height:.1}m"),
-        title: format!("a full barrel of {MASS} kg falls {height} m on the floor"),
-        source: REBOUND.into(),
-        quantity: "greatest depth",
-        unit: "m",
-        exact,
-        tolerance: Tolerance::Relative(2e-3),
-        fast: None,
-        run: Box::new(move |effort| {
-            refine(effort, exact, |level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
-        }),
-    }
+    setting(
+        format!("solids/depth-{height:.1}m"),
+        format!("a full barrel of {MASS} kg falls {height} m on the floor"),
+        REBOUND,
+    )
+    .asks("greatest depth", "m", relative(exact, 2e-3))
+    .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
 /// How fast it leaves, whatever its mass.
 fn rebound(what: &str, mass: f64, height: f64) -> Problem {
-    Problem {
-        id: format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
-        title: format!("a {what} ({mass} kg at the contact) falls {height} m on the floor"),
-        source: "e² of the energy comes back; Walton and Braun 1986".into(),
-        quantity: "speed after over speed before",
-        unit: "",
-        exact: RESTITUTION,
-        tolerance: Tolerance::Relative(2e-2),
-        fast: None,
-        run: Box::new(move |effort| {
-            let step = if effort == Effort::Full { 1e-6 } else { 1e-5 };
-            let (depth, left) = drop(mass, height, step)?;
-            let share = left / speed_after(height);
-            Ok(Outcome::of(share).noted(format!("{:.1} mm deep", 1e3 * depth)))
-        }),
-    }
+    setting(
+        format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
+        format!("a {what} ({mass} kg at the contact) falls {height} m on the floor"),
+        "e² of the energy comes back; Walton and Braun 1986",
+    )
+    .asks("speed after over speed before", "", relative(RESTITUTION, 2e-2))
+    .by(move |effort| {
+        let step = if effort == Effort::Full { 1e-6 } else { 1e-5 };
+        let (depth, left) = drop(mass, height, step)?;
+        let share = left / speed_after(height);
+        Ok(Outcome::of(share).noted(format!("{:.1} mm deep", 1e3 * depth)))
+    })
 }
 
 /// The same with the step that a stack takes.
 fn default_step() -> Problem {
-    Problem {
-        id: "solids/restitution-at-the-default-step".into(),
-        title: "a full barrel falls 3.3 m, computed with steps of 0.25 ms".into(),
-        source: "e² of the energy comes back; Walton and Braun 1986".into(),
-        quantity: "speed after over speed before",
-        unit: "",
-        exact: RESTITUTION,
-        tolerance: Tolerance::Relative(0.1),
-        fast: None,
-        run: Box::new(|_| {
-            let (depth, left) = drop(MASS, 3.3, 2.5e-4)?;
-            let said = [1e-4, 5e-4].map(|step| drop(MASS, 3.3, step));
-            let [fine, coarse] = said;
-            let share = |left: f64| left / speed_after(3.3);
-            let note = format!(
-                "{:.1} mm deep; {:.3} at 0.1 ms, {:.3} at 0.5 ms",
-                1e3 * depth,
-                share(fine?.1),
-                share(coarse?.1)
-            );
-            Ok(Outcome::of(share(left)).noted(note))
-        }),
-    }
+    setting(
+        "solids/restitution-at-the-default-step",
+        "a full barrel falls 3.3 m, computed with steps of 0.25 ms",
+        "e² of the energy comes back; Walton and Braun 1986",
+    )
+    .asks("speed after over speed before", "", relative(RESTITUTION, 0.1))
+    .by(|_| {
+        let (depth, left) = drop(MASS, 3.3, 2.5e-4)?;
+        let said = [1e-4, 5e-4].map(|step| drop(MASS, 3.3, step));
+        let [fine, coarse] = said;
+        let share = |left: f64| left / speed_after(3.3);
+        let note = format!(
+            "{:.1} mm deep; {:.3} at 0.1 ms, {:.3} at 0.5 ms",
+            1e3 * depth,
+            share(fine?.1),
+            share(coarse?.1)
+        );
+        Ok(Outcome::of(share(left)).noted(note))
+    })
 }
 
 /// A shape that touches others exactly.
@@ -208,75 +194,61 @@ fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Fa
 
 /// A box flat on another: two contacts, at the ends of where they overlap, whichever box they are of.
 fn flat(share: f64, count: f64) -> Problem {
-    Problem {
-        id: format!("solids/flat-on-flat-{share:.2}"),
-        title: format!("a box flat on another, {share} of its width beyond the edge or not"),
-        source: "two lines that overlap touch at the two ends of the overlap".into(),
-        quantity: "contacts",
-        unit: "",
-        exact: count,
-        tolerance: Tolerance::Absolute(0.0),
-        fast: None,
-        run: Box::new(move |_| {
-            let pose = Pose { position: Vec2::new(share * 0.6, 0.2 - 1e-3), orientation: 0.0 };
-            let (one, contacts) = forces_on(pose, false)?;
-            let (other, swapped) = forces_on(pose, true)?;
-            let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if apart > 1e-9 * one[1].abs() || contacts != swapped {
-                return Err(Failure::Absent(format!(
-                    "swapping the boxes changes forces by {apart} N"
-                )));
-            }
-            Ok(Outcome::of(contacts as f64).noted(format!("{:.0} N", one[1])))
-        }),
-    }
+    setting(
+        format!("solids/flat-on-flat-{share:.2}"),
+        format!("a box flat on another, {share} of its width beyond the edge or not"),
+        "two lines that overlap touch at the two ends of the overlap",
+    )
+    .asks("contacts", "", absolute(count, 0.0))
+    .by(move |_| {
+        let pose = Pose { position: Vec2::new(share * 0.6, 0.2 - 1e-3), orientation: 0.0 };
+        let (one, contacts) = forces_on(pose, false)?;
+        let (other, swapped) = forces_on(pose, true)?;
+        let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if apart > 1e-9 * one[1].abs() || contacts != swapped {
+            return Err(Failure::Absent(format!("swapping the boxes changes forces by {apart} N")));
+        }
+        Ok(Outcome::of(contacts as f64).noted(format!("{:.0} N", one[1])))
+    })
 }
 
 /// Forces change smoothly while one box goes along paths over flats, edges and corners of the other: the
 /// largest jump between neighbors of a fine path, over the largest change that the stiffness explains.
 fn smooth() -> Problem {
-    Problem {
-        id: "solids/smooth-along-paths".into(),
-        title: "a box led over flats, edges and corners of another on 40 paths".into(),
-        source: "forces of a spring of stiffness k change by k times the way".into(),
-        quantity: "largest jump of a force over k times the step, in excess of 4",
-        unit: "",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-9),
-        fast: None,
-        run: Box::new(|effort| {
-            let steps = if effort == Effort::Full { 4000 } else { 1000 };
-            let (mut worst, mut touching) = (0.0_f64, 0_u64);
-            for path in 0..40 {
-                // From the left edge to the right one, sinking and turning a little on the way.
-                let lean = f64::from(path) / 40.0 - 0.5;
-                let depth = 1e-3 * (1.0 + f64::from(path % 4));
-                let at = |i: i32| {
-                    let share = f64::from(i) / f64::from(steps);
-                    let angle = 0.02 * lean * (2.0 * PI * share).sin();
-                    Pose {
-                        position: Vec2::new(1.7 * share - 0.85, 0.2 - depth),
-                        orientation: angle,
-                    }
-                };
-                let mut before: Option<[f64; 3]> = None;
-                for i in 0..=steps {
-                    let (forces, contacts) = forces_on(at(i), false)?;
-                    touching += contacts as u64;
-                    if let Some(before) = before {
-                        let (from, to) = (at(i - 1), at(i));
-                        let way = (to.position - from.position).x.abs()
-                            + (to.orientation - from.orientation).abs();
-                        let jump =
-                            (0..2).map(|k| (forces[k] - before[k]).abs()).fold(0.0, f64::max);
-                        worst = worst.max(jump / (1e6 * way) - 4.0);
-                    }
-                    before = Some(forces);
+    setting(
+        "solids/smooth-along-paths",
+        "a box led over flats, edges and corners of another on 40 paths",
+        "forces of a spring of stiffness k change by k times the way",
+    )
+    .asks("largest jump of a force over k times the step, in excess of 4", "", absolute(0.0, 1e-9))
+    .by(|effort| {
+        let steps = if effort == Effort::Full { 4000 } else { 1000 };
+        let (mut worst, mut touching) = (0.0_f64, 0_u64);
+        for path in 0..40 {
+            // From the left edge to the right one, sinking and turning a little on the way.
+            let lean = f64::from(path) / 40.0 - 0.5;
+            let depth = 1e-3 * (1.0 + f64::from(path % 4));
+            let at = |i: i32| {
+                let share = f64::from(i) / f64::from(steps);
+                let angle = 0.02 * lean * (2.0 * PI * share).sin();
+                Pose { position: Vec2::new(1.7 * share - 0.85, 0.2 - depth), orientation: angle }
+            };
+            let mut before: Option<[f64; 3]> = None;
+            for i in 0..=steps {
+                let (forces, contacts) = forces_on(at(i), false)?;
+                touching += contacts as u64;
+                if let Some(before) = before {
+                    let (from, to) = (at(i - 1), at(i));
+                    let way = (to.position - from.position).x.abs()
+                        + (to.orientation - from.orientation).abs();
+                    let jump = (0..2).map(|k| (forces[k] - before[k]).abs()).fold(0.0, f64::max);
+                    worst = worst.max(jump / (1e6 * way) - 4.0);
                 }
+                before = Some(forces);
             }
-            Ok(Outcome::of(worst.max(0.0)).noted(format!("{touching} contacts on the way")))
-        }),
-    }
+        }
+        Ok(Outcome::of(worst.max(0.0)).noted(format!("{touching} contacts on the way")))
+    })
 }
 
 /// Way (m, rad) to either side over which a slope is taken.
@@ -286,55 +258,51 @@ const WAY: f64 = 1e-8;
 /// other and whichever of their pieces meet: so no way around a corner gives or takes energy. The largest
 /// difference over the force, at poses all around the lower body, of all three components.
 fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
-    Problem {
-        id: format!("solids/slope-of-the-energy-{}", what.replace(' ', "-")),
-        title: format!("{what}, in contact all around each other"),
-        source: "a force that has an energy is minus its slope".into(),
-        quantity: "largest difference, over the force",
-        unit: "",
-        exact: 0.0,
-        tolerance: Tolerance::Absolute(1e-4),
-        fast: None,
-        run: Box::new(move |effort| {
-            let wanted = if effort == Effort::Full { 20_000 } else { 1000 };
-            let (model, mut state) = two(shapes(), scene::pose(0.0, 0.0, 0.0), false)?;
-            let mut scratch = Scratch::new(&model);
-            let mut energy_and_force = |[x, z, orientation]: [f64; 3]| {
-                state.poses[2] = Pose { position: Vec2::new(x, z), orientation };
-                state.contact_elements.make_exhaustive(&model, &state.poses);
-                evaluate(&model, &state, &mut scratch);
-                let deepest = scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max);
-                let wrench = scratch.wrenches[2];
-                let force = [wrench.force.x, wrench.force.z, wrench.moment];
-                (scratch.totals.elastic, force, deepest, scratch.contacts.len())
-            };
-            let (mut worst, mut seen, mut several) = (0.0_f64, 0, 0);
-            let mut at = [0.0; 3];
-            while seen < wanted {
-                // A sequence that fills the space of poses evenly.
-                for (value, step) in at.iter_mut().zip([0.819_172_5, 0.671_043_6, 0.549_700_5]) {
-                    *value = (*value + step) % 1.0;
-                }
-                let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
-                let (_, force, deepest, contacts) = energy_and_force(pose);
-                // Deeper than this the cores of the bodies may overlap, which no contact is meant to reach.
-                if deepest == 0.0 || deepest > 0.015 {
-                    continue;
-                }
-                seen += 1;
-                several += usize::from(contacts > 1);
-                let size = force[0].hypot(force[1]);
-                for k in 0..3 {
-                    let moved = |way: f64| {
-                        let mut pose = pose;
-                        pose[k] += way;
-                        pose
-                    };
-                    let change = energy_and_force(moved(WAY)).0 - energy_and_force(moved(-WAY)).0;
-                    worst = worst.max((change / (2.0 * WAY) + force[k]).abs() / size);
-                }
+    setting(
+        format!("solids/slope-of-the-energy-{}", what.replace(' ', "-")),
+        format!("{what}, in contact all around each other"),
+        "a force that has an energy is minus its slope",
+    )
+    .asks("largest difference, over the force", "", absolute(0.0, 1e-4))
+    .by(move |effort| {
+        let wanted = if effort == Effort::Full { 20_000 } else { 1000 };
+        let (model, mut state) = two(shapes(), scene::pose(0.0, 0.0, 0.0), false)?;
+        let mut scratch = Scratch::new(&model);
+        let mut energy_and_force = |[x, z, orientation]: [f64; 3]| {
+            state.poses[2] = Pose { position: Vec2::new(x, z), orientation };
+            state.contact_elements.make_exhaustive(&model, &state.poses);
+            evaluate(&model, &state, &mut scratch);
+            let deepest = scratch.contacts.iter().map(|c| c.penetration).fold(0.0, f64::max);
+            let wrench = scratch.wrenches[2];
+            let force = [wrench.force.x, wrench.force.z, wrench.moment];
+            (scratch.totals.elastic, force, deepest, scratch.contacts.len())
+        };
+        let (mut worst, mut seen, mut several) = (0.0_f64, 0, 0);
+        let mut at = [0.0; 3];
+        while seen < wanted {
+            // A sequence that fills the space of poses evenly.
+            for (value, step) in at.iter_mut().zip([0.819_172_5, 0.671_043_6, 0.549_700_5]) {
+                *value = (*value + step) % 1.0;
             }
-            Ok(Outcome::of(worst).noted(format!("{seen} poses, {several} with several contacts")))
-        }),
-    }
+            let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
+            let (_, force, deepest, contacts) = energy_and_force(pose);
+            // Deeper than this the cores of the bodies may overlap, which no contact is meant to reach.
+            if deepest == 0.0 || deepest > 0.015 {
+                continue;
+            }
+            seen += 1;
+            several += usize::from(contacts > 1);
+            let size = force[0].hypot(force[1]);
+            for k in 0..3 {
+                let moved = |way: f64| {
+                    let mut pose = pose;
+                    pose[k] += way;
+                    pose
+                };
+                let change = energy_and_force(moved(WAY)).0 - energy_and_force(moved(-WAY)).0;
+                worst = worst.max((change / (2.0 * WAY) + force[k]).abs() / size);
+            }
+        }
+        Ok(Outcome::of(worst).noted(format!("{seen} poses, {several} with several contacts")))
+    })
 }

@@ -6,12 +6,11 @@ use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{ContactPair, Model, NormalLaw};
 
 use crate::drive::Shake;
-use crate::problem::border;
+use crate::problem::{absolute, border, halvings, relative, setting};
 use crate::scene::{DOWN, Scene, all_pairs, coulomb, floor, interface};
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 use super::gravity::{INSET, brick};
-use super::housner::halvings;
 
 const UPLIFT: &str = "quasi-static balance, least c/h over the joints";
 const PATTERNS: &str = "Psycharis 1990";
@@ -81,66 +80,59 @@ fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
 
 fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
     let (exact, joint) = least_ratio(sizes);
-    Problem {
-        id: format!("stacks/opens-{name}"),
-        title: match sizes.len() {
+    setting(
+        format!("stacks/opens-{name}"),
+        match sizes.len() {
             1 => "a block on the ground".into(),
             count => format!("{count} blocks on each other, joint {} opens first", joint + 1),
         },
-        source: UPLIFT.into(),
-        quantity: "ground acceleration that opens a joint",
-        unit: "g",
-        exact,
-        tolerance: Tolerance::Relative(5e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let mut wrong = None;
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
-                let mut scene = tower(sizes, (5.0, 5.0))?;
-                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.3 };
-                scene.run(&drive, STEP, 1.0)?;
-                let tilt = |body: usize| scene.state.poses[body].orientation;
-                let turn = |k: usize| (tilt(k + 1) - tilt(k)).abs();
-                let first = (0..sizes.len()).find(|k| turn(*k) > 2e-4);
-                if first.is_some_and(|k| k != joint) {
-                    wrong = first;
-                }
-                Ok(first.is_some())
-            })?;
-            match wrong {
-                Some(k) => Err(Failure::Absent(format!("joint {} opens instead", k + 1))),
-                None => Ok(Outcome::of(found)),
+        UPLIFT,
+    )
+    .asks("ground acceleration that opens a joint", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .by(move |effort| {
+        let mut wrong = None;
+        let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
+            let mut scene = tower(sizes, (5.0, 5.0))?;
+            let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.3 };
+            scene.run(&drive, STEP, 1.0)?;
+            let tilt = |body: usize| scene.state.poses[body].orientation;
+            let turn = |k: usize| (tilt(k + 1) - tilt(k)).abs();
+            let first = (0..sizes.len()).find(|k| turn(*k) > 2e-4);
+            if first.is_some_and(|k| k != joint) {
+                wrong = first;
             }
-        }),
-    }
+            Ok(first.is_some())
+        })?;
+        match wrong {
+            Some(k) => Err(Failure::Absent(format!("joint {} opens instead", k + 1))),
+            None => Ok(found),
+        }
+    })
 }
 
 fn slides(ground: f64, between: f64, exact: f64) -> Problem {
     let upper = between < ground;
-    Problem {
-        id: format!("stacks/slides-{ground}-{between}"),
-        title: format!("two low blocks, μ = {ground} on the ground and {between} between them"),
-        source: UPLIFT.into(),
-        quantity: "ground acceleration from which the weaker joint slides",
-        unit: "g",
-        exact,
-        tolerance: Tolerance::Relative(2e-3),
-        fast: Some(Tolerance::Relative(1.2e-2)),
-        run: Box::new(move |effort| {
-            let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
-                let mut scene = tower(&[(2.0, 0.2), (2.0, 0.2)], (ground, between))?;
-                let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.2 };
-                scene.run(&drive, STEP, 0.5)?;
-                let slip = [scene.relative(1), scene.relative(2) - scene.relative(1)];
-                let weaker = usize::from(upper);
-                if slip[1 - weaker].abs() > 2e-5 {
-                    return Err(Failure::Absent("the stronger joint slides".into()));
-                }
-                Ok(slip[weaker].abs() > 2e-5)
-            })?;
-            Ok(Outcome::of(found))
-        }),
-    }
+    setting(
+        format!("stacks/slides-{ground}-{between}"),
+        format!("two low blocks, μ = {ground} on the ground and {between} between them"),
+        UPLIFT,
+    )
+    .asks(
+        "ground acceleration from which the weaker joint slides",
+        "g",
+        relative(exact, 2e-3).fast(1.2e-2),
+    )
+    .at_border(0.02, move |push| {
+        let mut scene = tower(&[(2.0, 0.2), (2.0, 0.2)], (ground, between))?;
+        let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.2 };
+        scene.run(&drive, STEP, 0.5)?;
+        let slip = [scene.relative(1), scene.relative(2) - scene.relative(1)];
+        let weaker = usize::from(upper);
+        if slip[1 - weaker].abs() > 2e-5 {
+            return Err(Failure::Absent("the stronger joint slides".into()));
+        }
+        Ok(slip[weaker].abs() > 2e-5)
+    })
 }
 
 /// Names of the patterns of Psycharis, in his order of appearance here.
@@ -159,38 +151,33 @@ fn pattern(lower: f64, upper: f64) -> Option<usize> {
 }
 
 fn patterns() -> Problem {
-    Problem {
-        id: "stacks/four-patterns".into(),
-        title: "two blocks 1 m high, of several widths, under one sine of 0.33 g to 0.8 g".into(),
-        source: PATTERNS.into(),
-        quantity: "rocking patterns that occur",
-        unit: "",
-        exact: 4.0,
-        tolerance: Tolerance::Absolute(0.0),
-        fast: None,
-        run: Box::new(|effort| {
-            let mut times = [0.0; 4];
-            // Strength (g), ω (rad/s), widths of the lower and the upper block (m).
-            for (strength, omega, lower, upper) in
-                [(0.33, 6.0, 0.8, 0.3), (0.4, 6.0, 0.5, 0.5), (0.8, 9.0, 0.5, 0.45)]
-            {
-                let mut scene = tower(&[(lower, 1.0), (upper, 1.0)], (5.0, 5.0))?;
-                let drive =
-                    Shake::Sine { acceleration: strength * GRAVITY, omega, half_waves: 2.0 };
-                let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
-                scene.watch(&drive, step, 2.0, |state, _, _| {
-                    let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);
-                    if let Some(at) = pattern(lower, upper) {
-                        times[at] += step;
-                    }
-                    let fallen = lower.abs().max(upper.abs()) > 0.6;
-                    if fallen { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-                })?;
-            }
-            let seen = times.iter().filter(|time| **time > 5e-3).count();
-            let said: Vec<String> =
-                NAMES.iter().zip(times).map(|(name, time)| format!("{name} {time:.2} s")).collect();
-            Ok(Outcome::of(seen as f64).noted(said.join(", ")))
-        }),
-    }
+    setting(
+        "stacks/four-patterns",
+        "two blocks 1 m high, of several widths, under one sine of 0.33 g to 0.8 g",
+        PATTERNS,
+    )
+    .asks("rocking patterns that occur", "", absolute(4.0, 0.0))
+    .by(|effort| {
+        let mut times = [0.0; 4];
+        // Strength (g), ω (rad/s), widths of the lower and the upper block (m).
+        for (strength, omega, lower, upper) in
+            [(0.33, 6.0, 0.8, 0.3), (0.4, 6.0, 0.5, 0.5), (0.8, 9.0, 0.5, 0.45)]
+        {
+            let mut scene = tower(&[(lower, 1.0), (upper, 1.0)], (5.0, 5.0))?;
+            let drive = Shake::Sine { acceleration: strength * GRAVITY, omega, half_waves: 2.0 };
+            let step = if effort == Effort::Full { STEP } else { 1.5 * STEP };
+            scene.watch(&drive, step, 2.0, |state, _, _| {
+                let (lower, upper) = (state.poses[1].orientation, state.poses[2].orientation);
+                if let Some(at) = pattern(lower, upper) {
+                    times[at] += step;
+                }
+                let fallen = lower.abs().max(upper.abs()) > 0.6;
+                if fallen { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })?;
+        }
+        let seen = times.iter().filter(|time| **time > 5e-3).count();
+        let said: Vec<String> =
+            NAMES.iter().zip(times).map(|(name, time)| format!("{name} {time:.2} s")).collect();
+        Ok(Outcome::of(seen as f64).noted(said.join(", ")))
+    })
 }

@@ -8,9 +8,10 @@ use barrelstack_dynamics::math::{cos, exp};
 
 use crate::drive::Sampled;
 use crate::oracle::Rocker;
+use crate::problem::{absolute, setting};
 use crate::rocking::RockingBlock;
 use crate::tumble::Random;
-use crate::{Effort, Failure, GRAVITY, Outcome, Problem, Tolerance, theory};
+use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 
 use super::housner::firm;
 
@@ -79,18 +80,19 @@ fn median(of: &[f64]) -> f64 {
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
-    vec![Problem {
-        id: "statistics/maxima".into(),
-        title: "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)"
-            .into(),
-        source: SOURCE.into(),
-        quantity: "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
-        unit: "",
-        exact: 0.0,
+    vec![
+        setting(
+            "statistics/maxima",
+            "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)",
+            SOURCE,
+        )
         // Two samples of 200 from one distribution are this far apart in one case of twenty.
-        tolerance: Tolerance::Absolute(0.136),
-        fast: Some(Tolerance::Absolute(0.3)),
-        run: Box::new(|effort| {
+        .asks(
+            "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
+            "",
+            absolute(0.0, 0.136).fast(0.3),
+        )
+        .by(|effort| {
             let (ours, exact) = maxima(effort)?;
             let fell = |of: &[f64]| of.iter().filter(|x| **x > 1.9).count();
             let alike = ours
@@ -107,5 +109,5 @@ pub(super) fn problems() -> Vec<Problem> {
                 ours.len()
             )))
         }),
-    }]
+    ]
 }

@@ -9,10 +9,11 @@ use barrelstack_dynamics::{
     Body, ContactPair, Model, Nodes, Placed, Quaternion, Rotation3, Solid, Spatial, Still, Vec3,
 };
 
-use super::{G, STEP, STIFFNESS, firm, problem, rough, scene};
+use super::{G, STEP, STIFFNESS, firm, rough, scene};
+use crate::problem::{relative, setting};
 use crate::scene::{Scene, interface, pair};
 use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
-use crate::{Failure, Outcome, Problem, Tolerance};
+use crate::{Failure, Problem};
 
 /// A barrel of 225 liters by its fill: name, mass (kg), moments of inertia (kg·m²) about its axis and
 /// across.
@@ -103,41 +104,40 @@ fn down() -> Vec3 {
 
 /// A top whose spherical tip rolls, going round steadily.
 fn top(asked: &'static str) -> Problem {
-    let (quantity, exact): (_, f64) = match asked {
-        "speed" => (("speed of its center after 1 s", "m/s"), 0.344_417_790),
-        _ => (("precession", "rad/s"), 2.867_405_337_754),
+    let (quantity, unit, exact) = match asked {
+        "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
+        _ => ("precession", "rad/s", 2.867_405_337_754),
     };
-    problem(
+    setting(
         format!("space-barrels/top-{asked}"),
         "top of 0.5 kg with a tip of 5 mm that rolls, 200 rad/s",
         "steady precession without slip; Routh 1884",
-        quantity,
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |_| {
-            let (mass, tip, length) = (0.5, 0.005, 0.06);
-            let (lean, spin, round) = (25_f64.to_radians(), 200.0, 2.867_405_337_754);
-            let stiffness = 1e7;
-            let mut body = free("top", mass, Vec3::new(4e-4, 6e-4, 6e-4), Vec3::default());
-            body.nodes = vec![Nodes::Rolling {
-                center: Vec3::new(-length, 0.0, 0.0),
-                radius: tip,
-                tributary_length: 1.0,
-            }];
-            body.pose.orientation = upright(lean);
-            let (axis, up) = (axis(upright(lean)), Vec3::new(0.0, 0.0, 1.0));
-            let from_tip = axis * length + up * tip;
-            body.pose.position = Vec3::new(0.0, 0.0, from_tip.z - mass * G / stiffness);
-            body.twist.angular = axis * (spin - round * cos(lean)) + up * round;
-            body.twist.linear = body.twist.angular.cross(from_tip);
-            let laws = (firm(stiffness, mass), rough(0.5, stiffness, 0.1 * mass));
-            let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
-            let found = precession(&mut scene, 5e-6, 1.0)?;
-            Ok(Outcome::of(match asked {
-                "speed" => scene.state.twists[1].linear.length(),
-                _ => found,
-            }))
-        }),
     )
+    .asks(quantity, unit, relative(exact, 1e-3))
+    .by(move |_| {
+        let (mass, tip, length) = (0.5, 0.005, 0.06);
+        let (lean, spin, round) = (25_f64.to_radians(), 200.0, 2.867_405_337_754);
+        let stiffness = 1e7;
+        let mut body = free("top", mass, Vec3::new(4e-4, 6e-4, 6e-4), Vec3::default());
+        body.nodes = vec![Nodes::Rolling {
+            center: Vec3::new(-length, 0.0, 0.0),
+            radius: tip,
+            tributary_length: 1.0,
+        }];
+        body.pose.orientation = upright(lean);
+        let (axis, up) = (axis(upright(lean)), Vec3::new(0.0, 0.0, 1.0));
+        let from_tip = axis * length + up * tip;
+        body.pose.position = Vec3::new(0.0, 0.0, from_tip.z - mass * G / stiffness);
+        body.twist.angular = axis * (spin - round * cos(lean)) + up * round;
+        body.twist.linear = body.twist.angular.cross(from_tip);
+        let laws = (firm(stiffness, mass), rough(0.5, stiffness, 0.1 * mass));
+        let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
+        let found = precession(&mut scene, 5e-6, 1.0)?;
+        Ok(match asked {
+            "speed" => scene.state.twists[1].linear.length(),
+            _ => found,
+        })
+    })
 }
 
 /// A body of revolution that runs round on its lower rim while its center stays.
@@ -165,22 +165,21 @@ fn running_round(
 }
 
 fn disc(degrees: f64, exact: f64) -> Problem {
-    problem(
+    setting(
         format!("space-barrels/disc-{degrees}"),
         format!("thin disc of 0.3 m that runs round at {degrees}° to the floor, for one turn"),
         "Ω² = 4 g / (R sin α); Euler's disc",
-        ("precession", "rad/s"),
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |_| {
-            let (mass, radius) = (20.0, 0.3);
-            let square = mass * radius * radius;
-            // As thin as no lever.
-            let shape = shaped(2e-5, radius, radius + 1.6e-10, 0.0)?;
-            let bulk = (mass, 0.5 * square, 0.25 * square);
-            let mut scene = running_round(shape, bulk, degrees.to_radians(), exact)?;
-            Ok(Outcome::of(precession(&mut scene, STEP, TAU / exact)?))
-        }),
     )
+    .asks("precession", "rad/s", relative(exact, 1e-3))
+    .by(move |_| {
+        let (mass, radius) = (20.0, 0.3);
+        let square = mass * radius * radius;
+        // As thin as no lever.
+        let shape = shaped(2e-5, radius, radius + 1.6e-10, 0.0)?;
+        let bulk = (mass, 0.5 * square, 0.25 * square);
+        let mut scene = running_round(shape, bulk, degrees.to_radians(), exact)?;
+        Ok(precession(&mut scene, STEP, TAU / exact)?)
+    })
 }
 
 fn wobble(
@@ -188,18 +187,17 @@ fn wobble(
     degrees: f64,
     exact: f64,
 ) -> Problem {
-    problem(
+    setting(
         format!("space-barrels/chime-{name}-{degrees}"),
         format!("{name} barrel that wobbles on its chime at {degrees}° from upright, for 0.5 s"),
         "steady rolling of a rim; Euler's disc of a barrel",
-        ("precession", "rad/s"),
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |_| {
-            let bulk = (mass, about, across);
-            let mut scene = running_round(barrel()?, bulk, degrees.to_radians(), exact)?;
-            Ok(Outcome::of(precession(&mut scene, STEP, 0.5)?))
-        }),
     )
+    .asks("precession", "rad/s", relative(exact, 1e-3))
+    .by(move |_| {
+        let bulk = (mass, about, across);
+        let mut scene = running_round(barrel()?, bulk, degrees.to_radians(), exact)?;
+        Ok(precession(&mut scene, STEP, 0.5)?)
+    })
 }
 
 /// A barrel that rocks on its bilge along its length.
@@ -208,38 +206,37 @@ fn rock(
     degrees: f64,
     exact: f64,
 ) -> Problem {
-    problem(
+    setting(
         format!("space-barrels/bilge-{name}-{degrees}"),
         format!("{name} barrel that rocks on its bilge by {degrees}°"),
         "body with an arc that rolls on a floor",
-        ("period", "s"),
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |_| {
-            // Small swings stand for those without amplitude.
-            let lean = if degrees == 0.0 { 0.003 } else { degrees.to_radians() };
-            let inertia = Vec3::new(about, across, across);
-            let height = 1.6875 - 1.3425 * cos(lean) - mass * G / STIFFNESS;
-            let place = Vec3::new(0.0, 0.0, height);
-            let mut body = solid("barrel", Hull::Barrel(barrel()?), mass, inertia, place);
-            body.pose.orientation = Quaternion::turn(Vec3::new(0.0, lean, 0.0));
-            let laws = (firm(STIFFNESS, mass), rough(1.0, STIFFNESS, mass));
-            let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
-            let (mut crossings, mut before) = (vec![], (0.0, 0.0));
-            scene.watch(&Still, STEP, exact, |state, _, _| {
-                let rise = axis(state.poses[1].orientation).z;
-                if rise * before.1 < 0.0 {
-                    let part = before.1 / (before.1 - rise);
-                    crossings.push(before.0 + part * (state.time - before.0));
-                }
-                before = (state.time, rise);
-                ControlFlow::Continue(())
-            })?;
-            match crossings[..] {
-                [first, second, ..] => Ok(Outcome::of(2.0 * (second - first))),
-                _ => Err(Failure::Absent("the barrel does not rock".into())),
-            }
-        }),
     )
+    .asks("period", "s", relative(exact, 1e-3))
+    .by(move |_| {
+        // Small swings stand for those without amplitude.
+        let lean = if degrees == 0.0 { 0.003 } else { degrees.to_radians() };
+        let inertia = Vec3::new(about, across, across);
+        let height = 1.6875 - 1.3425 * cos(lean) - mass * G / STIFFNESS;
+        let place = Vec3::new(0.0, 0.0, height);
+        let mut body = solid("barrel", Hull::Barrel(barrel()?), mass, inertia, place);
+        body.pose.orientation = Quaternion::turn(Vec3::new(0.0, lean, 0.0));
+        let laws = (firm(STIFFNESS, mass), rough(1.0, STIFFNESS, mass));
+        let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
+        let (mut crossings, mut before) = (vec![], (0.0, 0.0));
+        scene.watch(&Still, STEP, exact, |state, _, _| {
+            let rise = axis(state.poses[1].orientation).z;
+            if rise * before.1 < 0.0 {
+                let part = before.1 / (before.1 - rise);
+                crossings.push(before.0 + part * (state.time - before.0));
+            }
+            before = (state.time, rise);
+            ControlFlow::Continue(())
+        })?;
+        match crossings[..] {
+            [first, second, ..] => Ok(2.0 * (second - first)),
+            _ => Err(Failure::Absent("the barrel does not rock".into())),
+        }
+    })
 }
 
 /// Which part of the pair the barrel is.
@@ -296,39 +293,35 @@ fn on_tubes(
 
 fn rail(fill: (&'static str, f64, f64, f64), exact: f64, role: Role) -> Problem {
     let as_what = if role == Role::Contactor { "contactor" } else { "target" };
-    problem(
+    setting(
         format!("space-barrels/tubes-{}-{as_what}", fill.0),
         format!("{} barrel as {as_what} that rolls down two tubes on a slope of 5°", fill.0),
         "g sin θ / (1 + I / (m ρ²)) with the rolling radius ρ",
-        ("acceleration", "m/s2"),
-        (exact, Tolerance::Relative(1e-4)),
-        Box::new(move |_| {
-            let mut scene = on_tubes(fill, role)?;
-            scene.run(&Still, STEP, 0.3)?;
-            let before = scene.state.twists[1].linear.x;
-            scene.run(&Still, STEP, 0.8)?;
-            Ok(Outcome::of((scene.state.twists[1].linear.x - before) / 0.5))
-        }),
     )
+    .asks("acceleration", "m/s2", relative(exact, 1e-4))
+    .by(move |_| {
+        let mut scene = on_tubes(fill, role)?;
+        scene.run(&Still, STEP, 0.3)?;
+        let before = scene.state.twists[1].linear.x;
+        scene.run(&Still, STEP, 0.8)?;
+        Ok((scene.state.twists[1].linear.x - before) / 0.5)
+    })
 }
 
 fn bears(fill: (&'static str, f64, f64, f64)) -> Problem {
     let exact = fill.1 * G * cos(SLOPE) / (2.0 * cos(CONTACT_ANGLE));
-    problem(
+    setting(
         format!("space-barrels/tubes-{}-bear", fill.0),
         format!("{} barrel that rolls down two tubes on a slope of 5°", fill.0),
         "equilibrium of the barrel across the tubes",
-        ("normal force of a tube", "N"),
-        (exact, Tolerance::Relative(1e-4)),
-        Box::new(move |_| {
-            let mut scene = on_tubes(fill, Role::Contactor)?;
-            scene.run(&Still, STEP, 0.3)?;
-            match scene.scratch.contacts[..] {
-                [first, second] => {
-                    Ok(Outcome::of(0.5 * (first.normal_force + second.normal_force)))
-                }
-                _ => Err(Failure::Absent("the barrel does not bear on both".into())),
-            }
-        }),
     )
+    .asks("normal force of a tube", "N", relative(exact, 1e-4))
+    .by(move |_| {
+        let mut scene = on_tubes(fill, Role::Contactor)?;
+        scene.run(&Still, STEP, 0.3)?;
+        match scene.scratch.contacts[..] {
+            [first, second] => Ok(0.5 * (first.normal_force + second.normal_force)),
+            _ => Err(Failure::Absent("the barrel does not bear on both".into())),
+        }
+    })
 }

@@ -7,11 +7,11 @@ use barrelstack_dynamics::math::{asin, cos, sin};
 use barrelstack_dynamics::space::Linear;
 use barrelstack_dynamics::{FrictionLaw, Lack, NormalLaw, Quaternion, Still, Vec3};
 
-use super::{G, STIFFNESS, firm, problem, rough, scene};
-use crate::problem::border;
+use super::{G, STIFFNESS, firm, rough, scene};
+use crate::problem::{absolute, border, relative, setting};
 use crate::scene::coulomb;
 use crate::spatial::{corners, floor, free, points, yaw};
-use crate::{Effort, Failure, Outcome, Problem, Tolerance};
+use crate::{Effort, Failure, Problem};
 
 pub(super) fn problems() -> Vec<Problem> {
     let mut list: Vec<Problem> = four_feet().into_iter().chain(three_legs()).collect();
@@ -54,46 +54,43 @@ fn three_legs() -> Vec<Problem> {
 fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Problem> {
     let of = |(foot, exact): (usize, f64)| {
         let feet = feet.to_vec();
-        problem(
+        setting(
             format!("space-blocks/{name}-{}", foot + 1),
             title,
             "equilibrium of a rigid plate on springs",
-            ("force on a foot", "N"),
-            (exact, Tolerance::Relative(1e-6)),
-            Box::new(move |_| Ok(Outcome::of(loads(&feet)?[foot]))),
         )
+        .asks("force on a foot", "N", relative(exact, 1e-6))
+        .by(move |_| Ok(loads(&feet)?[foot]))
     };
     exact.into_iter().enumerate().map(of).collect()
 }
 
 /// A box that is pushed obliquely tips over the edge that comes first.
 fn tips(degrees: f64, exact: f64) -> Problem {
-    problem(
+    setting(
         format!("space-blocks/tips-{degrees}"),
         format!("box of half sides 0.27 and 0.7365 m, center 0.9 m high, pushed at {degrees}°"),
         "moments about the edges",
-        ("push that it does not bear", "g"),
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |effort| {
-            let halvings = if effort == Effort::Full { 8 } else { 5 };
-            let found = border((0.99 * exact, 1.01 * exact), halvings, |push| {
-                let mass = 270.0;
-                let inertia = Vec3::new(120.0, 80.0, 55.0);
-                let mut body = free("box", mass, inertia, Vec3::new(0.0, 0.0, 0.9));
-                body.nodes = vec![points(&corners(0.27, 0.7365, -0.9))];
-                let angle = degrees.to_radians();
-                let gravity = Vec3::new(push * cos(angle), push * sin(angle), -1.0) * G;
-                let (law, grip) = (firm(STIFFNESS, mass), rough(5.0, STIFFNESS, mass));
-                let mut scene = scene(vec![floor(), body], law, grip, gravity)?;
-                match scene.settle(1e-6) {
-                    Ok(_) => Ok(false),
-                    Err(refused) if matches!(refused.lack, Lack::Balance { .. }) => Ok(true),
-                    Err(refused) => Err(refused.into()),
-                }
-            })?;
-            Ok(Outcome::of(found))
-        }),
     )
+    .asks("push that it does not bear", "g", relative(exact, 1e-3))
+    .by(move |effort| {
+        let halvings = if effort == Effort::Full { 8 } else { 5 };
+        border((0.99 * exact, 1.01 * exact), halvings, |push| {
+            let mass = 270.0;
+            let inertia = Vec3::new(120.0, 80.0, 55.0);
+            let mut body = free("box", mass, inertia, Vec3::new(0.0, 0.0, 0.9));
+            body.nodes = vec![points(&corners(0.27, 0.7365, -0.9))];
+            let angle = degrees.to_radians();
+            let gravity = Vec3::new(push * cos(angle), push * sin(angle), -1.0) * G;
+            let (law, grip) = (firm(STIFFNESS, mass), rough(5.0, STIFFNESS, mass));
+            let mut scene = scene(vec![floor(), body], law, grip, gravity)?;
+            match scene.settle(1e-6) {
+                Ok(_) => Ok(false),
+                Err(refused) if matches!(refused.lack, Lack::Balance { .. }) => Ok(true),
+                Err(refused) => Err(refused.into()),
+            }
+        })
+    })
 }
 
 /// The first impact of a box.
@@ -156,37 +153,39 @@ fn rocks() -> Vec<Problem> {
     for degrees in [0.0, 30.0, 90.0] {
         let angle = f64::to_radians(degrees);
         let title = format!("box of 0.54 × 1.8 m that rocks, turned by {degrees}°");
-        let mut asked = |name: &str, source: &str, quantity, exact, of: fn(Impact) -> f64| {
-            list.push(problem(
-                format!("space-blocks/rocks-{degrees}-{name}"),
-                title.clone(),
-                source,
-                quantity,
-                exact,
-                Box::new(move |_| Ok(Outcome::of(of(first_impact(angle)?)))),
-            ));
+        let mut asked = |name: &str, source, (quantity, unit, exact), of: fn(Impact) -> f64| {
+            list.push(
+                setting(format!("space-blocks/rocks-{degrees}-{name}"), title.clone(), source)
+                    .asks(quantity, unit, relative(exact, 1e-3))
+                    .by(move |_| Ok(of(first_impact(angle)?))),
+            );
         };
-        let (source, near) = ("Housner 1963, exact equation", Tolerance::Relative(1e-3));
-        let time = ("time to its first impact", "s");
-        asked("time", source, time, (0.471_810_597_6, near), |impact| impact.time);
-        let rate = ("rate before its first impact", "rad/s");
-        asked("rate", source, rate, (-0.703_182_112_6, near), |impact| impact.rate);
-        let ratio = ("rate after its first impact over that before", "");
-        asked("impact", "Housner 1963, eq. 8", ratio, (0.876_146_789_0, near), |i| i.ratio);
+        let source = "Housner 1963, exact equation";
+        let time = ("time to its first impact", "s", 0.471_810_597_6);
+        asked("time", source, time, |impact| impact.time);
+        let rate = ("rate before its first impact", "rad/s", -0.703_182_112_6);
+        asked("rate", source, rate, |impact| impact.rate);
+        let ratio = ("rate after its first impact over that before", "", 0.876_146_789_0);
+        asked("impact", "Housner 1963, eq. 8", ratio, |impact| impact.ratio);
         if degrees > 0.0 {
-            list.push(problem(
-                format!("space-blocks/rocks-{degrees}-turned"),
-                title,
-                "no direction is distinguished",
-                ("change of its next lean and its rate by turning it, as a share", ""),
-                (0.0, Tolerance::Absolute(1e-9)),
-                Box::new(move |_| {
+            list.push(
+                setting(
+                    format!("space-blocks/rocks-{degrees}-turned"),
+                    title,
+                    "no direction is distinguished",
+                )
+                .asks(
+                    "change of its next lean and its rate by turning it, as a share",
+                    "",
+                    absolute(0.0, 1e-9),
+                )
+                .by(move |_| {
                     let (turned, straight) = (first_impact(angle)?, first_impact(0.0)?);
                     let rate = (turned.rate / straight.rate - 1.0).abs();
                     let ratio = (turned.ratio / straight.ratio - 1.0).abs();
-                    Ok(Outcome::of(rate.max(ratio)))
+                    Ok(rate.max(ratio))
                 }),
-            ));
+            );
         }
     }
     list

@@ -10,10 +10,11 @@ use barrelstack_dynamics::{
     Body, FrictionLaw, Motion, NormalLaw, Quaternion, Spatial, Still, Vec3,
 };
 
-use super::{G, STEP, firm, problem, rough, scene};
+use super::{G, STEP, firm, rough, scene};
+use crate::problem::{relative, setting};
 use crate::scene::Scene;
 use crate::spatial::{floor, gravity_on_slope, solid, yaw};
-use crate::{Failure, Outcome, Problem, Tolerance, theory};
+use crate::{Failure, Problem, theory};
 
 /// Mass (kg) of the bodies.
 const MASS: f64 = 269.0;
@@ -66,25 +67,24 @@ fn spring() -> NormalLaw {
 /// Barrels on their heads, one on the other.
 fn stands(count: u32) -> Problem {
     let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
-    problem(
+    setting(
         format!("space-flat/stands-{count}"),
         format!("{count} barrels on their heads, one on the other"),
         "a disc on four springs",
-        ("how far the top one sinks", "m"),
-        (exact, Tolerance::Relative(1e-6)),
-        Box::new(move |_| {
-            let mut bodies = vec![floor()];
-            for level in 0..count {
-                let height = HALF * (1.0 + 2.0 * f64::from(level));
-                bodies.push(barrel(&format!("barrel {level}"), height - 1e-4, 0.01)?);
-            }
-            let law = firm(SOFT, MASS);
-            let friction = rough(0.5, SOFT, MASS);
-            let scene = scene(bodies, law, friction, down())?.settled(1e-10)?;
-            let top = HALF * (2.0 * f64::from(count) - 1.0);
-            Ok(Outcome::of(top - scene.state.poses[count as usize].position.z))
-        }),
     )
+    .asks("how far the top one sinks", "m", relative(exact, 1e-6))
+    .by(move |_| {
+        let mut bodies = vec![floor()];
+        for level in 0..count {
+            let height = HALF * (1.0 + 2.0 * f64::from(level));
+            bodies.push(barrel(&format!("barrel {level}"), height - 1e-4, 0.01)?);
+        }
+        let law = firm(SOFT, MASS);
+        let friction = rough(0.5, SOFT, MASS);
+        let scene = scene(bodies, law, friction, down())?.settled(1e-10)?;
+        let top = HALF * (2.0 * f64::from(count) - 1.0);
+        Ok(top - scene.state.poses[count as usize].position.z)
+    })
 }
 
 /// The period (s) with which a component of the axis of body 1 swings.
@@ -138,14 +138,13 @@ type Swing = (f64, Result<Scene<Spatial>, Failure>);
 fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
     let of: fn(Vec3) -> f64 = if name == "barrel" { |axis| axis.x } else { |axis| axis.z };
     let (exact, _) = start();
-    problem(
+    setting(
         format!("space-flat/springs-{name}"),
         title,
         "a rigid body on equal springs, less the pull of its weight",
-        ("period", "s"),
-        (exact, Tolerance::Relative(1e-4)),
-        Box::new(move |_| Ok(Outcome::of(period(start().1?, of, exact)?))),
     )
+    .asks("period", "s", relative(exact, 1e-4))
+    .by(move |_| Ok(period(start().1?, of, exact)?))
 }
 
 /// A barrel let go on the rim of its head, at half the angle at which it would stay.
@@ -156,46 +155,45 @@ fn rocks(asked: &'static str) -> Problem {
     let alpha = atan(head / half);
     let square = half * half + head * head;
     let rate = (MASS * G * square.sqrt() / (ACROSS + MASS * square)).sqrt();
-    let (quantity, exact) = if asked == "time" {
-        (("time until it stands", "s"), theory::quarter_period(alpha, 0.5) / rate)
+    let (quantity, unit, exact) = if asked == "time" {
+        ("time until it stands", "s", theory::quarter_period(alpha, 0.5) / rate)
     } else {
         let fall = 2.0 * (cos(0.5 * alpha) - cos(alpha));
-        (("rate when it stands", "rad/s"), rate * fall.sqrt())
+        ("rate when it stands", "rad/s", rate * fall.sqrt())
     };
-    problem(
+    setting(
         format!("space-flat/rocks-{asked}"),
         "barrel that is let go on the rim of its head at half its slenderness angle",
         "Housner 1963, exact equation, for a block as wide as the head",
-        quantity,
-        (exact, Tolerance::Relative(1e-3)),
-        Box::new(move |_| {
-            let stiffness = 1e9;
-            let lean = 0.5 * alpha;
-            let height = half * cos(lean) + head * sin(lean) + rounding;
-            let mut body = barrel("barrel", height - MASS * G / stiffness, rounding)?;
-            body.pose.orientation = upright(lean);
-            let (law, friction) = (firm(stiffness, MASS), rough(20.0, stiffness, MASS));
-            let mut scene = scene(vec![floor(), body], law, friction, down())?;
-            let (mut found, mut before) = (None, (0.0, lean, 0.0));
-            scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
-                let axis = state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0));
-                let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
-                // A little before, where the middle of the head does not bear yet.
-                let level = 2e-4;
-                if lean < level {
-                    let part = (before.1 - level) / (before.1 - lean);
-                    let now = before.0 + part * (state.time - before.0);
-                    let rate = before.2 + part * (rate - before.2);
-                    found = Some((now - level / rate, -rate));
-                    return ControlFlow::Break(());
-                }
-                before = (state.time, lean, rate);
-                ControlFlow::Continue(())
-            })?;
-            let (time, rate) = found.ok_or_else(|| Failure::Absent("it does not fall".into()))?;
-            Ok(Outcome::of(if asked == "time" { time } else { rate }))
-        }),
     )
+    .asks(quantity, unit, relative(exact, 1e-3))
+    .by(move |_| {
+        let stiffness = 1e9;
+        let lean = 0.5 * alpha;
+        let height = half * cos(lean) + head * sin(lean) + rounding;
+        let mut body = barrel("barrel", height - MASS * G / stiffness, rounding)?;
+        body.pose.orientation = upright(lean);
+        let (law, friction) = (firm(stiffness, MASS), rough(20.0, stiffness, MASS));
+        let mut scene = scene(vec![floor(), body], law, friction, down())?;
+        let (mut found, mut before) = (None, (0.0, lean, 0.0));
+        scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
+            let axis = state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0));
+            let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
+            // A little before, where the middle of the head does not bear yet.
+            let level = 2e-4;
+            if lean < level {
+                let part = (before.1 - level) / (before.1 - lean);
+                let now = before.0 + part * (state.time - before.0);
+                let rate = before.2 + part * (rate - before.2);
+                found = Some((now - level / rate, -rate));
+                return ControlFlow::Break(());
+            }
+            before = (state.time, lean, rate);
+            ControlFlow::Continue(())
+        })?;
+        let (time, rate) = found.ok_or_else(|| Failure::Absent("it does not fall".into()))?;
+        Ok(if asked == "time" { time } else { rate })
+    })
 }
 
 /// A tube in the groove between two others, along lines.
@@ -216,27 +214,26 @@ fn groove() -> Problem {
         }
         low
     };
-    problem(
+    setting(
         "space-flat/groove",
         "tube between two shorter ones side by side",
         "equilibrium of springs at the ends of both lines",
-        ("height of its axis above theirs", "m"),
-        (exact, Tolerance::Relative(1e-6)),
-        Box::new(move |_| {
-            let shape = |half_length| Hull::Capsule(Capsule { half_length, radius });
-            let side = |name: &str, y: f64| Body {
-                motion: Motion::Prescribed,
-                ..solid(name, shape(0.4), 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, y, 0.0))
-            };
-            let place = Vec3::new(0.0, 0.0, 2.0 * radius * cos(slope));
-            let tube = solid("tube", shape(0.6), MASS, Vec3::new(0.4, 40.0, 40.0), place);
-            let bodies = vec![tube, side("left", -aside), side("right", aside)];
-            // Friction would bear a part of it.
-            let law = firm(SOFT, MASS);
-            let scene = scene(bodies, law, FrictionLaw::Frictionless, down())?.settled(1e-10)?;
-            Ok(Outcome::of(scene.state.poses[0].position.z))
-        }),
     )
+    .asks("height of its axis above theirs", "m", relative(exact, 1e-6))
+    .by(move |_| {
+        let shape = |half_length| Hull::Capsule(Capsule { half_length, radius });
+        let side = |name: &str, y: f64| Body {
+            motion: Motion::Prescribed,
+            ..solid(name, shape(0.4), 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::new(0.0, y, 0.0))
+        };
+        let place = Vec3::new(0.0, 0.0, 2.0 * radius * cos(slope));
+        let tube = solid("tube", shape(0.6), MASS, Vec3::new(0.4, 40.0, 40.0), place);
+        let bodies = vec![tube, side("left", -aside), side("right", aside)];
+        // Friction would bear a part of it.
+        let law = firm(SOFT, MASS);
+        let scene = scene(bodies, law, FrictionLaw::Frictionless, down())?.settled(1e-10)?;
+        Ok(scene.state.poses[0].position.z)
+    })
 }
 
 /// A tube that lies on a slope and rolls down, whichever way it points at first.
@@ -245,27 +242,26 @@ fn rolls(degrees: f64) -> Problem {
     let slope = 5.0_f64.to_radians();
     let inertia = Vec3::new(0.5 * MASS * radius * radius, 45.0, 45.0);
     let exact = G * sin(slope) / (1.0 + inertia.x / (MASS * radius * radius));
-    problem(
+    setting(
         format!("space-flat/rolls-{degrees}"),
         format!("tube that lies on a slope of 5° and rolls, all turned by {degrees}°"),
         "g sin θ / (1 + I / (m r²))",
-        ("acceleration", "m/s2"),
-        (exact, Tolerance::Relative(1e-4)),
-        Box::new(move |_| {
-            let heading = degrees.to_radians();
-            let gravity = gravity_on_slope(G, slope, heading);
-            let stiffness = 1e8;
-            let height = radius + MASS * gravity.z / (2.0 * stiffness);
-            let shape = Hull::Capsule(Capsule { half_length, radius });
-            let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, height));
-            body.pose.orientation = yaw(heading + FRAC_PI_2);
-            let laws = (firm(stiffness, MASS), rough(0.5, stiffness, MASS));
-            let mut scene = scene(vec![floor(), body], laws.0, laws.1, gravity)?;
-            let toward = Vec3::new(cos(heading), sin(heading), 0.0);
-            scene.run(&Still, STEP, 0.3)?;
-            let before = scene.state.twists[1].linear.dot(toward);
-            scene.run(&Still, STEP, 0.8)?;
-            Ok(Outcome::of((scene.state.twists[1].linear.dot(toward) - before) / 0.5))
-        }),
     )
+    .asks("acceleration", "m/s2", relative(exact, 1e-4))
+    .by(move |_| {
+        let heading = degrees.to_radians();
+        let gravity = gravity_on_slope(G, slope, heading);
+        let stiffness = 1e8;
+        let height = radius + MASS * gravity.z / (2.0 * stiffness);
+        let shape = Hull::Capsule(Capsule { half_length, radius });
+        let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, height));
+        body.pose.orientation = yaw(heading + FRAC_PI_2);
+        let laws = (firm(stiffness, MASS), rough(0.5, stiffness, MASS));
+        let mut scene = scene(vec![floor(), body], laws.0, laws.1, gravity)?;
+        let toward = Vec3::new(cos(heading), sin(heading), 0.0);
+        scene.run(&Still, STEP, 0.3)?;
+        let before = scene.state.twists[1].linear.dot(toward);
+        scene.run(&Still, STEP, 0.8)?;
+        Ok((scene.state.twists[1].linear.dot(toward) - before) / 0.5)
+    })
 }

@@ -7,10 +7,11 @@ use barrelstack_dynamics::{
     FrictionLaw, Method, NormalLaw, Quaternion, Space, Spatial, Still, Vec3,
 };
 
-use super::{problem, scene};
+use super::scene;
+use crate::problem::{absolute, setting};
 use crate::scene::Scene;
 use crate::spatial::free;
-use crate::{Failure, Outcome, Problem, Tolerance};
+use crate::{Failure, Outcome, Problem};
 
 const SOURCE: &str = "Euler's equations; Landau and Lifshitz, Mechanics, § 37";
 
@@ -49,45 +50,43 @@ fn body_spin(scene: &Scene<Spatial>) -> Vec3 {
 }
 
 fn spin() -> Problem {
-    problem(
+    setting(
         "space-free/spin",
         "asymmetric body that tumbles for 20 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
-        ("spin about its middle axis", "rad/s"),
-        (2.709_578_90, Tolerance::Absolute(1e-7)),
-        Box::new(|_| {
-            let mut scene = body(Method::RungeKutta4)?;
-            scene.run(&Still, 1e-3, 20.0)?;
-            let spin = body_spin(&scene);
-            let off = spin - Vec3::new(1.037_479_57, 2.709_578_90, 1.022_919_29);
-            let note = format!("spin off by {:.1e} rad/s in all", off.length());
-            Ok(Outcome::of(spin.y).noted(note))
-        }),
     )
+    .asks("spin about its middle axis", "rad/s", absolute(2.709_578_90, 1e-7))
+    .by(|_| {
+        let mut scene = body(Method::RungeKutta4)?;
+        scene.run(&Still, 1e-3, 20.0)?;
+        let spin = body_spin(&scene);
+        let off = spin - Vec3::new(1.037_479_57, 2.709_578_90, 1.022_919_29);
+        let note = format!("spin off by {:.1e} rad/s in all", off.length());
+        Ok(Outcome::of(spin.y).noted(note))
+    })
 }
 
 fn attitude() -> Problem {
-    problem(
+    setting(
         "space-free/attitude",
         "asymmetric body that tumbles for 10 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
-        ("how far its quaternion is from the exact one, or its negative", ""),
-        (0.0, Tolerance::Absolute(1e-7)),
-        Box::new(|_| {
-            let mut scene = body(Method::RungeKutta4)?;
-            scene.run(&Still, 1e-3, 10.0)?;
-            let exact = Quaternion {
-                w: 0.238_640_12,
-                v: Vec3::new(-0.053_627_58, -0.965_432_75, -0.090_080_98),
-            };
-            let found = scene.state.poses[0].orientation;
-            let off = |sign: f64| {
-                let (w, v) = (found.w - sign * exact.w, found.v - exact.v * sign);
-                (w * w + v.dot(v)).sqrt()
-            };
-            Ok(Outcome::of(off(1.0).min(off(-1.0))))
-        }),
     )
+    .asks("how far its quaternion is from the exact one, or its negative", "", absolute(0.0, 1e-7))
+    .by(|_| {
+        let mut scene = body(Method::RungeKutta4)?;
+        scene.run(&Still, 1e-3, 10.0)?;
+        let exact = Quaternion {
+            w: 0.238_640_12,
+            v: Vec3::new(-0.053_627_58, -0.965_432_75, -0.090_080_98),
+        };
+        let found = scene.state.poses[0].orientation;
+        let off = |sign: f64| {
+            let (w, v) = (found.w - sign * exact.w, found.v - exact.v * sign);
+            (w * w + v.dot(v)).sqrt()
+        };
+        Ok(off(1.0).min(off(-1.0)))
+    })
 }
 
 /// How the body is turned after 7 s in steps of a length (s).
@@ -98,27 +97,30 @@ fn turned(method: Method, step: f64) -> Result<Quaternion, Failure> {
 }
 
 fn convergence(method: Method, order: f64) -> Problem {
-    problem(
+    setting(
         format!("space-free/order-{}", method.name()),
         format!("asymmetric body that tumbles for 7 s, {}", method.name()),
         SOURCE,
-        ("order of convergence of its attitude, counted up to that of the method", ""),
-        (order, Tolerance::Absolute(0.1)),
-        Box::new(move |_| {
-            let [a, b, c] = [0.01, 0.005, 0.0025].map(|step| turned(method, step));
-            let apart = |p: Quaternion, q: Quaternion| {
-                Spatial::<f64>::spin_magnitude(Spatial::<f64>::turn_between(p, q))
-            };
-            let (b, coarse) = (b?, a?);
-            let (first, second) = (apart(coarse, b), apart(b, c?));
-            let found = (first / second).log2();
-            let note = format!(
-                "order {found:.2}: {first:.2e}, {second:.2e} rad between steps of 10, 5 and 2.5 ms"
-            );
-            // The error of fourth order is so small here that the one of fifth order still shows.
-            Ok(Outcome::of(found.min(order)).noted(note))
-        }),
     )
+    .asks(
+        "order of convergence of its attitude, counted up to that of the method",
+        "",
+        absolute(order, 0.1),
+    )
+    .by(move |_| {
+        let [a, b, c] = [0.01, 0.005, 0.0025].map(|step| turned(method, step));
+        let apart = |p: Quaternion, q: Quaternion| {
+            Spatial::<f64>::spin_magnitude(Spatial::<f64>::turn_between(p, q))
+        };
+        let (b, coarse) = (b?, a?);
+        let (first, second) = (apart(coarse, b), apart(b, c?));
+        let found = (first / second).log2();
+        let note = format!(
+            "order {found:.2}: {first:.2e}, {second:.2e} rad between steps of 10, 5 and 2.5 ms"
+        );
+        // The error of fourth order is so small here that the one of fifth order still shows.
+        Ok(Outcome::of(found.min(order)).noted(note))
+    })
 }
 
 fn angular_momentum(scene: &Scene<Spatial>) -> Vec3 {
@@ -127,36 +129,34 @@ fn angular_momentum(scene: &Scene<Spatial>) -> Vec3 {
 }
 
 fn momentum(method: Method) -> Problem {
-    problem(
+    setting(
         format!("space-free/momentum-{}", method.name()),
         format!("asymmetric body that tumbles for 100 s, {} at 1 ms", method.name()),
         "conservation of angular momentum",
-        ("change of the angular momentum, as a share", ""),
-        (0.0, Tolerance::Absolute(1e-12)),
-        Box::new(move |_| {
-            let mut scene = body(method)?;
-            let start = angular_momentum(&scene);
-            scene.run(&Still, 1e-3, 100.0)?;
-            Ok(Outcome::of((angular_momentum(&scene) - start).length() / start.length()))
-        }),
     )
+    .asks("change of the angular momentum, as a share", "", absolute(0.0, 1e-12))
+    .by(move |_| {
+        let mut scene = body(method)?;
+        let start = angular_momentum(&scene);
+        scene.run(&Still, 1e-3, 100.0)?;
+        Ok((angular_momentum(&scene) - start).length() / start.length())
+    })
 }
 
 fn energy() -> Problem {
-    problem(
+    setting(
         "space-free/energy",
         "asymmetric body that tumbles for 100 s, velocity Verlet at 1 ms",
         "conservation of energy",
-        ("largest change of its energy, as a share", ""),
-        (0.0, Tolerance::Absolute(1e-6)),
-        Box::new(|_| {
-            let mut scene = body(Method::VelocityVerlet)?;
-            let mut worst = 0.0_f64;
-            scene.watch(&Still, 1e-3, 100.0, |_, _, books| {
-                worst = worst.max((books.summary(0).kinetic / 22.57 - 1.0).abs());
-                ControlFlow::Continue(())
-            })?;
-            Ok(Outcome::of(worst))
-        }),
     )
+    .asks("largest change of its energy, as a share", "", absolute(0.0, 1e-6))
+    .by(|_| {
+        let mut scene = body(Method::VelocityVerlet)?;
+        let mut worst = 0.0_f64;
+        scene.watch(&Still, 1e-3, 100.0, |_, _, books| {
+            worst = worst.max((books.summary(0).kinetic / 22.57 - 1.0).abs());
+            ControlFlow::Continue(())
+        })?;
+        Ok(worst)
+    })
 }

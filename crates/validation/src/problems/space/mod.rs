@@ -10,9 +10,8 @@ mod sliding;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Spatial, Vec3};
 
-use crate::problem::Run;
 use crate::scene::{Scene, coulomb, interface};
-use crate::{Failure, Problem, Tolerance};
+use crate::{Failure, Problem};
 
 /// Acceleration of free fall (m/s²) of these problems.
 const G: f64 = 9.81;
@@ -34,28 +33,6 @@ pub(super) fn problems() -> Vec<Problem> {
         flat::problems(),
     ];
     theories.into_iter().flatten().collect()
-}
-
-/// A problem whose full and fast forms are one.
-fn problem(
-    id: impl Into<String>,
-    title: impl Into<String>,
-    source: &str,
-    (quantity, unit): (&'static str, &'static str),
-    (exact, tolerance): (f64, Tolerance),
-    run: Run,
-) -> Problem {
-    Problem {
-        id: id.into(),
-        title: title.into(),
-        source: source.into(),
-        quantity,
-        unit,
-        exact,
-        tolerance,
-        fast: None,
-        run,
-    }
 }
 
 /// A normal law of a stiffness (N/m), for a mass (kg) that comes to rest on it.

@@ -6,10 +6,11 @@ use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::space::Linear;
 use barrelstack_dynamics::{Body, FrictionLaw, Nodes, NormalLaw, Spatial, Still, Vec3};
 
-use super::{G, STEP, STIFFNESS, firm, problem, rough, scene};
+use super::{G, STEP, STIFFNESS, firm, rough, scene};
+use crate::problem::{absolute, relative, setting};
 use crate::scene::{Scene, coulomb};
 use crate::spatial::{ball, floor, gravity_on_slope, ground_of};
-use crate::{Failure, Outcome, Problem, Tolerance};
+use crate::{Failure, Outcome, Problem};
 
 const SOURCE: &str = "rigid-body dynamics of a homogeneous ball";
 const RADIUS: f64 = 0.3;
@@ -57,27 +58,17 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
         Ok(scene)
     };
     [
-        problem(
-            format!("space-rolling/slope-{degrees}-{friction}-way"),
-            title.clone(),
-            SOURCE,
-            ("way down after 1 s", "m"),
-            (0.5 * acceleration, Tolerance::Relative(1e-4)),
-            Box::new(move |_| Ok(Outcome::of(downhill(run()?.state.poses[1].position)))),
-        ),
-        problem(
-            format!("space-rolling/slope-{degrees}-{friction}-spin"),
-            title,
-            SOURCE,
-            ("spin after 1 s", "rad/s"),
-            (spin, Tolerance::Relative(1e-4)),
-            Box::new(move |_| {
+        setting(format!("space-rolling/slope-{degrees}-{friction}-way"), title.clone(), SOURCE)
+            .asks("way down after 1 s", "m", relative(0.5 * acceleration, 1e-4))
+            .by(move |_| Ok(downhill(run()?.state.poses[1].position))),
+        setting(format!("space-rolling/slope-{degrees}-{friction}-spin"), title, SOURCE)
+            .asks("spin after 1 s", "rad/s", relative(spin, 1e-4))
+            .by(move |_| {
                 let spin = run()?.state.twists[1].angular;
                 // It turns about the level axis across the slope.
                 let across = Vec3::new(-sin(HEADING), cos(HEADING), 0.0);
-                Ok(Outcome::of(spin.dot(across)))
+                Ok(spin.dot(across))
             }),
-        ),
     ]
 }
 
@@ -131,39 +122,28 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
         Ok(worst)
     };
     [
-        problem(
-            format!("space-rolling/carried-{name}-{friction}-forces"),
-            title.clone(),
-            SOURCE,
-            ("largest error of normal force and friction, as a share", ""),
-            (0.0, Tolerance::Absolute(1e-3)),
-            Box::new(move |_| {
+        setting(format!("space-rolling/carried-{name}-{friction}-forces"), title.clone(), SOURCE)
+            .asks("largest error of normal force and friction, as a share", "", absolute(0.0, 1e-3))
+            .by(move |_| {
                 let error = |normal: f64, friction: f64, _: f64| {
                     (normal / 92.183_85 - 1.0).abs().max((friction / 9.586_76 - 1.0).abs())
                 };
-                Ok(Outcome::of(forces(error)?))
+                Ok(forces(error)?)
             }),
-        ),
-        problem(
+        setting(
             format!("space-rolling/carried-{name}-{friction}-tangential"),
             title.clone(),
             SOURCE,
-            ("largest friction along the normal", "N"),
-            (0.0, Tolerance::Absolute(1e-9)),
-            Box::new(move |_| Ok(Outcome::of(forces(|_, _, along| along.abs())?))),
-        ),
-        problem(
-            format!("space-rolling/carried-{name}-{friction}-way"),
-            title,
-            SOURCE,
-            ("way down after 3 s", "m"),
-            (place, Tolerance::Relative(1e-4)),
-            Box::new(move |_| {
+        )
+        .asks("largest friction along the normal", "N", absolute(0.0, 1e-9))
+        .by(move |_| Ok(forces(|_, _, along| along.abs())?)),
+        setting(format!("space-rolling/carried-{name}-{friction}-way"), title, SOURCE)
+            .asks("way down after 3 s", "m", relative(place, 1e-4))
+            .by(move |_| {
                 let mut scene = rolling(role, friction)?;
                 scene.run(&Still, 5e-5, 3.0)?;
-                Ok(Outcome::of(downhill(scene.state.poses[1].position)))
+                Ok(downhill(scene.state.poses[1].position))
             }),
-        ),
     ]
 }
 
@@ -184,34 +164,19 @@ fn side_spin() -> [Problem; 3] {
         Ok(Outcome::of(off).noted(format!("at ({:.7}, {:.7}) m", place.x, place.y)))
     };
     [
-        problem(
-            "space-rolling/side-spin-rolls",
-            title,
-            source,
-            ("how far from the place where it begins to roll", "m"),
-            (0.0, Tolerance::Absolute(1e-5)),
-            Box::new(move |_| off(0.286_846_011_4, 0.540_909_62, -0.073_760_40)),
-        ),
-        problem(
-            "space-rolling/side-spin-place",
-            title,
-            source,
-            ("how far from its place after 1.5 s", "m"),
-            (0.0, Tolerance::Absolute(1e-5)),
-            Box::new(move |_| off(1.5, 2.689_925_26, -0.697_668_17)),
-        ),
-        problem(
-            "space-rolling/side-spin-spin",
-            title,
-            source,
-            ("how far from its spin after 1.5 s", "rad/s"),
-            (0.0, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| {
+        setting("space-rolling/side-spin-rolls", title, source)
+            .asks("how far from the place where it begins to roll", "m", absolute(0.0, 1e-5))
+            .by(move |_| off(0.286_846_011_4, 0.540_909_62, -0.073_760_40)),
+        setting("space-rolling/side-spin-place", title, source)
+            .asks("how far from its place after 1.5 s", "m", absolute(0.0, 1e-5))
+            .by(move |_| off(1.5, 2.689_925_26, -0.697_668_17)),
+        setting("space-rolling/side-spin-spin", title, source)
+            .asks("how far from its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
+            .by(move |_| {
                 let spin = run(1.5)?.state.twists[1].angular;
                 let exact = Vec3::new(1.714_285_7, 5.904_761_9, 7.0);
-                Ok(Outcome::of((spin - exact).length()))
+                Ok((spin - exact).length())
             }),
-        ),
     ]
 }
 
@@ -222,26 +187,25 @@ fn bounce() -> [Problem; 3] {
                  unit: &'static str,
                  exact: f64,
                  of: fn(&Scene<Spatial>) -> f64| {
-        problem(
+        setting(
             format!("space-rolling/bounce-{name}"),
             "ball of 10 kg that bounces with a spin of 30 rad/s, μ = 0.05",
             "impulse of a half-damped spring; Candia, de la Llera and Almazán 2008",
-            (quantity, unit),
-            (exact, Tolerance::Relative(1e-4)),
-            Box::new(move |_| {
-                let radius = 0.1;
-                let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
-                ball.twist.linear = Vec3::new(3.0, 1.0, -2.0);
-                ball.twist.angular = Vec3::new(0.0, 30.0, 0.0);
-                // As stiff as that the depth is no lever, with the same damping ratio.
-                let law = NormalLaw::SpeedGap { stiffness: 1e12, damping: 4e5 };
-                // Far faster than the speed at which this law begins to hold.
-                let sliding = FrictionLaw::Regularized { coefficient: 0.05, velocity: 1e-6 };
-                let mut scene = scene(vec![floor(), ball], law, sliding, Vec3::default())?;
-                scene.run(&Still, 1e-9, 2e-5)?;
-                Ok(Outcome::of(of(&scene)))
-            }),
         )
+        .asks(quantity, unit, relative(exact, 1e-4))
+        .by(move |_| {
+            let radius = 0.1;
+            let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
+            ball.twist.linear = Vec3::new(3.0, 1.0, -2.0);
+            ball.twist.angular = Vec3::new(0.0, 30.0, 0.0);
+            // As stiff as that the depth is no lever, with the same damping ratio.
+            let law = NormalLaw::SpeedGap { stiffness: 1e12, damping: 4e5 };
+            // Far faster than the speed at which this law begins to hold.
+            let sliding = FrictionLaw::Regularized { coefficient: 0.05, velocity: 1e-6 };
+            let mut scene = scene(vec![floor(), ball], law, sliding, Vec3::default())?;
+            scene.run(&Still, 1e-9, 2e-5)?;
+            Ok(of(&scene))
+        })
     };
     [
         asked("up", "speed upward after the bounce", "m/s", 1.817_774_060_7, |scene| {

@@ -6,10 +6,11 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{Drive, Quaternion, Spatial, Still, Vec3};
 
-use super::{G, STEP, STIFFNESS, firm, problem, rough, scene};
+use super::{G, STEP, STIFFNESS, firm, rough, scene};
+use crate::problem::{absolute, relative, setting};
 use crate::scene::Scene;
 use crate::spatial::{corners, floor, free, gravity_on_slope, points, yaw};
-use crate::{Failure, Outcome, Problem, Tolerance};
+use crate::{Failure, Problem};
 
 const MASS: f64 = 100.0;
 /// Half the sides (m) of the block.
@@ -105,38 +106,23 @@ fn circle() -> [Problem; 3] {
         Ok((scene, time))
     };
     [
-        problem(
-            "space-sliding/circle-time",
-            title,
-            COULOMB,
-            ("time until it stops", "s"),
-            (exact, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| Ok(Outcome::of(thrown()?.1))),
-        ),
-        problem(
-            "space-sliding/circle-way",
-            title,
-            COULOMB,
-            ("way until it stops", "m"),
-            (exact, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| {
+        setting("space-sliding/circle-time", title, COULOMB)
+            .asks("time until it stops", "s", absolute(exact, 1e-4))
+            .by(move |_| Ok(thrown()?.1)),
+        setting("space-sliding/circle-way", title, COULOMB)
+            .asks("way until it stops", "m", absolute(exact, 1e-4))
+            .by(move |_| {
                 let place = thrown()?.0.state.poses[1].position;
-                Ok(Outcome::of(Vec3::new(place.x, place.y, 0.0).length()))
+                Ok(Vec3::new(place.x, place.y, 0.0).length())
             }),
-        ),
-        problem(
-            "space-sliding/circle-direction",
-            title,
-            COULOMB,
-            ("direction of its way, or its turn, off by", "rad"),
-            (0.0, Tolerance::Absolute(1e-6)),
-            Box::new(move |_| {
+        setting("space-sliding/circle-direction", title, COULOMB)
+            .asks("direction of its way, or its turn, off by", "rad", absolute(0.0, 1e-6))
+            .by(move |_| {
                 let pose = thrown()?.0.state.poses[1];
                 let aside = 0.6 * pose.position.y - 0.8 * pose.position.x;
                 let along = 0.6 * pose.position.x + 0.8 * pose.position.y;
-                Ok(Outcome::of((aside / along).abs().max(turn(pose.orientation).abs())))
+                Ok((aside / along).abs().max(turn(pose.orientation).abs()))
             }),
-        ),
     ]
 }
 
@@ -147,34 +133,28 @@ fn slope(degrees: f64) -> [Problem; 2] {
         block(0.3, 0.15, degrees.to_radians(), gravity)
     };
     [
-        problem(
-            format!("space-sliding/slope-{degrees}-acceleration"),
-            title.clone(),
-            COULOMB,
-            ("acceleration once its sticks are stretched", "m/s2"),
-            (2.0 * 0.739_310_665_2, Tolerance::Relative(1e-4)),
-            Box::new(move |_| {
+        setting(format!("space-sliding/slope-{degrees}-acceleration"), title.clone(), COULOMB)
+            .asks(
+                "acceleration once its sticks are stretched",
+                "m/s2",
+                relative(2.0 * 0.739_310_665_2, 1e-4),
+            )
+            .by(move |_| {
                 let mut scene = start()?;
                 scene.run(&Still, STEP, 0.5)?;
                 let before = scene.state.twists[1].linear.x;
                 scene.run(&Still, STEP, 1.0)?;
-                Ok(Outcome::of((scene.state.twists[1].linear.x - before) / 0.5))
+                Ok((scene.state.twists[1].linear.x - before) / 0.5)
             }),
-        ),
-        problem(
-            format!("space-sliding/slope-{degrees}-turn"),
-            title,
-            COULOMB,
-            ("turn, and way aside over way down", "rad"),
-            (0.0, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| {
+        setting(format!("space-sliding/slope-{degrees}-turn"), title, COULOMB)
+            .asks("turn, and way aside over way down", "rad", absolute(0.0, 1e-4))
+            .by(move |_| {
                 let mut scene = start()?;
                 scene.run(&Still, STEP, 1.0)?;
                 let pose = scene.state.poses[1];
                 let turned = (turn(pose.orientation) - degrees.to_radians()).abs();
-                Ok(Outcome::of(turned.max((pose.position.y / pose.position.x).abs())))
+                Ok(turned.max((pose.position.y / pose.position.x).abs()))
             }),
-        ),
     ]
 }
 
@@ -190,34 +170,19 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
         Ok((scene, time))
     };
     [
-        problem(
-            format!("space-sliding/spinning-{turned}-time"),
-            title.clone(),
-            QUADRATURE,
-            ("time until it stops", "s"),
-            (time, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| Ok(Outcome::of(run()?.1))),
-        ),
-        problem(
-            format!("space-sliding/spinning-{turned}-place"),
-            title.clone(),
-            QUADRATURE,
-            ("how far from the place where it stops", "m"),
-            (0.0, Tolerance::Absolute(2e-5)),
-            Box::new(move |_| {
+        setting(format!("space-sliding/spinning-{turned}-time"), title.clone(), QUADRATURE)
+            .asks("time until it stops", "s", absolute(time, 1e-4))
+            .by(move |_| Ok(run()?.1)),
+        setting(format!("space-sliding/spinning-{turned}-place"), title.clone(), QUADRATURE)
+            .asks("how far from the place where it stops", "m", absolute(0.0, 2e-5))
+            .by(move |_| {
                 let found = run()?.0.state.poses[1].position;
                 let off = Vec3::new(found.x - place.0, found.y - place.1, 0.0);
-                Ok(Outcome::of(off.length()))
+                Ok(off.length())
             }),
-        ),
-        problem(
-            format!("space-sliding/spinning-{turned}-turn"),
-            title,
-            QUADRATURE,
-            ("turn until it stops", "rad"),
-            (spun, Tolerance::Absolute(2e-5)),
-            Box::new(move |_| Ok(Outcome::of(turn(run()?.0.state.poses[1].orientation) - turned))),
-        ),
+        setting(format!("space-sliding/spinning-{turned}-turn"), title, QUADRATURE)
+            .asks("turn until it stops", "rad", absolute(spun, 2e-5))
+            .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation) - turned)),
     ]
 }
 
@@ -240,30 +205,15 @@ fn ring() -> [Problem; 3] {
         Ok((scene, time))
     };
     [
-        problem(
-            "space-sliding/ring-time",
-            title,
-            source,
-            ("time until it stops", "s"),
-            (0.673_86, Tolerance::Absolute(2e-4)),
-            Box::new(move |_| Ok(Outcome::of(run()?.1))),
-        ),
-        problem(
-            "space-sliding/ring-way",
-            title,
-            source,
-            ("way until it stops", "m"),
-            (0.374_178, Tolerance::Absolute(2e-4)),
-            Box::new(move |_| Ok(Outcome::of(run()?.0.state.poses[1].position.x))),
-        ),
-        problem(
-            "space-sliding/ring-turn",
-            title,
-            source,
-            ("turn until it stops", "rad"),
-            (1.576_485, Tolerance::Absolute(2e-4)),
-            Box::new(move |_| Ok(Outcome::of(turn(run()?.0.state.poses[1].orientation)))),
-        ),
+        setting("space-sliding/ring-time", title, source)
+            .asks("time until it stops", "s", absolute(0.673_86, 2e-4))
+            .by(move |_| Ok(run()?.1)),
+        setting("space-sliding/ring-way", title, source)
+            .asks("way until it stops", "m", absolute(0.374_178, 2e-4))
+            .by(move |_| Ok(run()?.0.state.poses[1].position.x)),
+        setting("space-sliding/ring-turn", title, source)
+            .asks("turn until it stops", "rad", absolute(1.576_485, 2e-4))
+            .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation))),
     ]
 }
 
@@ -285,26 +235,25 @@ impl Drive<Spatial> for Circling {
 /// Steady slip on ground that moves in a circle.
 fn circling() -> [Problem; 2] {
     let asked = |name: &str, time: f64, place: (f64, f64)| {
-        problem(
+        setting(
             format!("space-sliding/circling-{name}"),
             format!("block on ground that circles with 5 m/s², 1 Hz, μ = 0.3, after {time} s"),
             "steady slip: friction carries the block in a circle of its own",
-            ("how far from its place on the ground", "m"),
-            (0.0, Tolerance::Absolute(1e-4)),
-            Box::new(move |_| {
-                let drive = Circling { acceleration: 5.0, omega: TAU };
-                let mut scene = block(0.3, 0.0, 0.0, down())?;
-                let (start, carried) = drive.at(0.0);
-                scene.state.poses[1].position += start;
-                scene.state.twists[1].linear =
-                    carried + Vec3::new(-0.378_660_336_5, 0.520_078_597_1, 0.0);
-                let from = scene.state.poses[1].position - start;
-                scene.run(&drive, STEP, time)?;
-                let slip = scene.state.poses[1].position - scene.state.poses[0].position - from;
-                let off = Vec3::new(slip.x - place.0, slip.y - place.1, 0.0);
-                Ok(Outcome::of(off.length()))
-            }),
         )
+        .asks("how far from its place on the ground", "m", absolute(0.0, 1e-4))
+        .by(move |_| {
+            let drive = Circling { acceleration: 5.0, omega: TAU };
+            let mut scene = block(0.3, 0.0, 0.0, down())?;
+            let (start, carried) = drive.at(0.0);
+            scene.state.poses[1].position += start;
+            scene.state.twists[1].linear =
+                carried + Vec3::new(-0.378_660_336_5, 0.520_078_597_1, 0.0);
+            let from = scene.state.poses[1].position - start;
+            scene.run(&drive, STEP, time)?;
+            let slip = scene.state.poses[1].position - scene.state.poses[0].position - from;
+            let off = Vec3::new(slip.x - place.0, slip.y - place.1, 0.0);
+            Ok(off.length())
+        })
     };
     [asked("quarter", 0.25, (-0.143_038_743_8, 0.022_507_415_2)), asked("turn", 1.0, (0.0, 0.0))]
 }
