@@ -137,7 +137,6 @@ impl Problem {
 }
 
 /// What a problem looks at, made by [`setting`].
-#[derive(Clone)]
 pub struct Setting {
     id: String,
     title: String,
@@ -150,12 +149,6 @@ pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) ->
 }
 
 impl Setting {
-    /// The same as one of several, by what is asked of it.
-    #[must_use]
-    pub fn named(&self, what: &str) -> Self {
-        Self { id: format!("{}-{what}", self.id), ..self.clone() }
-    }
-
     /// What is asked for, its unit (empty for pure numbers), and the exact answer.
     pub fn asks(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
         Question { setting: self, quantity, unit, answer }
@@ -163,7 +156,6 @@ impl Setting {
 }
 
 /// The exact or published answer, and how near ours has to come.
-#[derive(Clone, Copy)]
 pub struct Answer {
     exact: f64,
     tolerance: Tolerance,

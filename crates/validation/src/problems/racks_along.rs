@@ -9,7 +9,7 @@ use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_motion::GroundMotion;
 
 use crate::problem::{border, halvings, relative, setting};
-use crate::{Effort, Failure, GRAVITY, Problem};
+use crate::{Failure, GRAVITY, Problem};
 
 use super::devices::push;
 
@@ -159,7 +159,7 @@ fn slides(degrees: f64, side: f64) -> Problem {
         "statics: two contacts under Coulomb friction on an arc",
     )
     .asks("push from which the barrel slides", "g", relative(exact, 1e-2).fast(2e-2))
-    .by(move |effort: Effort| {
+    .by(move |effort| {
         border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
             let settings = [
                 format!("interface.barrel-rack.friction.coefficient={FRICTION}"),

@@ -116,7 +116,7 @@ fn slipping() -> Problem {
     .asks("its acceleration", "m/s2", relative(exact, 1e-10)) // measured 9.5e-13
     .by(move |_| {
         let drive = Shake::Rectangular { acceleration: GRAVITY, duration: 1e9 };
-        Ok(acceleration(&mut roller(0.5, 0.2, DOWN, 0)?, &drive, 0)?)
+        acceleration(&mut roller(0.5, 0.2, DOWN, 0)?, &drive, 0)
     })
 }
 

@@ -178,7 +178,7 @@ fn disc(degrees: f64, exact: f64) -> Problem {
         let shape = shaped(2e-5, radius, radius + 1.6e-10, 0.0)?;
         let bulk = (mass, 0.5 * square, 0.25 * square);
         let mut scene = running_round(shape, bulk, degrees.to_radians(), exact)?;
-        Ok(precession(&mut scene, STEP, TAU / exact)?)
+        precession(&mut scene, STEP, TAU / exact)
     })
 }
 
@@ -196,7 +196,7 @@ fn wobble(
     .by(move |_| {
         let bulk = (mass, about, across);
         let mut scene = running_round(barrel()?, bulk, degrees.to_radians(), exact)?;
-        Ok(precession(&mut scene, STEP, 0.5)?)
+        precession(&mut scene, STEP, 0.5)
     })
 }
 

@@ -128,7 +128,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
                 let error = |normal: f64, friction: f64, _: f64| {
                     (normal / 92.183_85 - 1.0).abs().max((friction / 9.586_76 - 1.0).abs())
                 };
-                Ok(forces(error)?)
+                forces(error)
             }),
         setting(
             format!("space-rolling/carried-{name}-{friction}-tangential"),
@@ -136,7 +136,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
             SOURCE,
         )
         .asks("largest friction along the normal", "N", absolute(0.0, 1e-9))
-        .by(move |_| Ok(forces(|_, _, along| along.abs())?)),
+        .by(move |_| forces(|_, _, along| along.abs())),
         setting(format!("space-rolling/carried-{name}-{friction}-way"), title, SOURCE)
             .asks("way down after 3 s", "m", relative(place, 1e-4))
             .by(move |_| {
