@@ -21,6 +21,7 @@ use serde::Deserialize;
 
 use crate::oracle::OVERTURNED;
 use crate::problem::border;
+use crate::swing::crossing;
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
 /// What a case may ask for.
@@ -195,13 +196,11 @@ fn answer_of(file: &str, scene: &str, expect: &Expect, effort: Effort) -> Result
         _ => {
             let (run, body) = run(&[])?;
             let frames = &run.recording.frames;
-            let crossing =
-                frames.poses.windows(2).position(|w| w[0][body][2] * w[1][body][2] <= 0.0);
-            let Some(i) = crossing else {
-                return Err(Failure::Absent("the body is never upright".into()));
-            };
-            let (a, b) = (frames.poses[i][body][2], frames.poses[i + 1][body][2]);
-            Ok(frames.times[i] + a / (a - b) * (frames.times[i + 1] - frames.times[i]))
+            let leans = frames.poses.iter().map(|pose| pose[body][2]);
+            let leans: Vec<(f64, f64)> = frames.times.iter().copied().zip(leans).collect();
+            let passed = leans.windows(2).find(|pair| pair[0].1 * pair[1].1 <= 0.0);
+            let never = || Failure::Absent("the body is never upright".into());
+            passed.map(|pair| crossing(pair[0], pair[1])).ok_or_else(never)
         }
     }
 }

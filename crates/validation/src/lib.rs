@@ -28,6 +28,7 @@ pub mod page;
 pub mod problem;
 pub mod problems;
 pub mod rocking;
+pub mod swing;
 
 pub use execute::{Row, execute};
 pub use problem::{Effort, Failure, Outcome, Problem, Tolerance};

@@ -96,6 +96,12 @@ pub enum Failure {
     Absent(String),
 }
 
+/// No answer, for a reason of another library.
+#[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
+pub fn absent(reason: impl ToString) -> Failure {
+    Failure::Absent(reason.to_string())
+}
+
 /// What a problem runs.
 type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
 

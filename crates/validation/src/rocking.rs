@@ -8,7 +8,7 @@ use barrelstack_dynamics::{Drive, NormalLaw, Planar, Still, Vec2};
 
 use crate::oracle::{OVERTURNED, Rocker};
 use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
-use crate::{Effort, Failure, GRAVITY, theory};
+use crate::{Effort, Failure, GRAVITY, swing, theory};
 
 /// Mass (kg); no answer depends on it.
 const MASS: f64 = 100.0;
@@ -174,7 +174,7 @@ impl RockingBlock {
         scene.watch(&Still, self.step(), patience, |state, _, _| {
             let lean = -state.poses[1].orientation;
             if before.1 * lean < 0.0 {
-                crossing = before.0 + before.1 / (before.1 - lean) * (state.time - before.0);
+                crossing = swing::crossing(before, (state.time, lean));
             }
             if side * lean < -slack {
                 // On the other side for good: the last crossing was the impact.

@@ -13,15 +13,11 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack_dynamics::math::{cos, sin};
-use barrelstack_dynamics::{
-    Body, ContactPair, Counts, Model, ModelError, Motion, NormalLaw, Planar, Shape, Twist, Vec2,
-};
+use barrelstack_dynamics::{Body, ContactPair, Model, ModelError, NormalLaw, Planar, Vec2};
 
 use crate::drive::Shake;
 use crate::problem::{absolute, setting};
-use crate::scene::{
-    DOWN, Scene, centered, coulomb, disc, floor, interface, points, pose, rectangle,
-};
+use crate::scene::{DOWN, Scene, block, coulomb, disc, floor, interface, pair, points, pose};
 use crate::{Effort, Failure, Outcome, Problem};
 
 const SOURCE: &str = "MuJoCo (penalty), YADE, Drake, PyBullet (spring) and a plain penalty code";
@@ -111,8 +107,6 @@ fn verdict(
 
 /// A rack: a beam whose underside the crowns below touch, feet, and two points for each barrel.
 fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
-    let mass = 30.0;
-    let beam = rectangle(WIDTH, BEAM);
     let center = CLEARANCE + RADIUS - 0.5 * BEAM;
     let mut supports = vec![];
     for side in [-1.0, 1.0] {
@@ -124,17 +118,10 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
         }
     }
     let foot = |x: f64| Vec2::new(x * WIDTH, -0.5 * BEAM);
+    let place = pose(0.0, underside + 0.5 * BEAM, 0.0);
     Body {
-        name: format!("R{level}"),
-        motion: Motion::Free,
-        mass,
-        inertia: mass * (WIDTH * WIDTH + BEAM * BEAM) / 12.0,
-        damping: None,
-        pose: pose(0.0, underside + 0.5 * BEAM, 0.0),
-        twist: Twist::default(),
-        surfaces: vec![centered(Shape::Polygon(beam))],
         nodes: vec![points(&supports), points(&[foot(-0.5), foot(0.5)])],
-        faces: Vec::new(),
+        ..block(&format!("R{level}"), (WIDTH, BEAM), 30.0, place)
     }
 }
 
@@ -155,25 +142,22 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
             bodies.push(disc(&name, RADIUS, 275.0, 0.5 * RADIUS * RADIUS, center));
         }
     }
-    let pair = |contactor, nodes, target, interface| ContactPair {
-        contactor,
+    let join = |contactor, nodes, target, interface| ContactPair {
         nodes,
-        target,
-        surface: 0,
         interface,
-        counts: Counts::Everywhere,
+        ..pair(contactor, target)
     };
     let mut pairs = vec![];
     for i in 1..bodies.len() {
         // Feet and barrels on the ground.
-        pairs.push(pair(i, usize::from(is_rack(i)), 0, 0));
+        pairs.push(join(i, usize::from(is_rack(i)), 0, 0));
         for j in 1..bodies.len() {
             match (is_rack(i), is_rack(j)) {
                 // Cradle supports on barrels.
-                (true, false) => pairs.push(pair(i, 0, j, 1)),
+                (true, false) => pairs.push(join(i, 0, j, 1)),
                 // Crowns on undersides above; a barrel meets its own rack at the supports alone.
-                (false, true) if i.div_ceil(3) != j.div_ceil(3) => pairs.push(pair(i, 0, j, 1)),
-                (false, false) if i < j => pairs.push(pair(i, 0, j, 1)),
+                (false, true) if i.div_ceil(3) != j.div_ceil(3) => pairs.push(join(i, 0, j, 1)),
+                (false, false) if i < j => pairs.push(join(i, 0, j, 1)),
                 _ => {}
             }
         }

@@ -1,6 +1,6 @@
 //! Protection devices: each where its answer is exact, as a scenario puts it on a stack.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 
 use barrelstack::assemble::PartKind;
@@ -10,8 +10,9 @@ use barrelstack_dynamics::math::{cos, exp, sin, tan};
 use barrelstack_dynamics::{Body, Guide, Link, Model, Still, Strap, Vec2};
 use barrelstack_motion::GroundMotion;
 
-use crate::problem::{relative, setting};
+use crate::problem::{absent, relative, setting};
 use crate::scene::{Scene, disc, floor};
+use crate::swing::{crossings, mean_time, run_crossings};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 /// The problems of this theory.
@@ -47,13 +48,15 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
 
 /// The same under a push (g) that grows for a second and stays for another one.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
-    // So smoothly, and in steps so small, that stiff elements do not ring with it.
-    let grown = |at: u32| 0.5 * (1.0 - cos(0.5 * TAU * f64::from(at.min(1000)) / 1000.0));
-    let samples = (0..2000).map(|at| push * GRAVITY * grown(at)).collect();
-    let motion = GroundMotion::from_acceleration("push", 0.001, samples);
-    let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
-    let any = self::push(push, 1.0);
-    let scenario = scenario(settings, &any, 1.99)?;
+    run_pushed(&scenario(settings, &self::push(push, 1.0), 1.99)?, push, 1000)
+}
+
+/// A scenario under a push (g) that grows for a time (ms) and stays for a second, so smoothly, and in steps so small,
+/// that stiff elements do not ring with it.
+pub(super) fn run_pushed(scenario: &Scenario, push: f64, rise: u32) -> Result<Run, Failure> {
+    let grown = |at: u32| 0.5 * (1.0 - cos(PI * f64::from(at.min(rise)) / f64::from(rise)));
+    let samples = (0..rise + 1000).map(|at| push * GRAVITY * grown(at)).collect();
+    let motion = GroundMotion::from_acceleration("push", 0.001, samples).map_err(absent)?;
     Ok(scenario.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
 }
 
@@ -161,18 +164,14 @@ fn dish(radius: f64) -> Problem {
         ];
         let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
         let ways = way(&run, "platform of R1", "x")?;
-        let crossings: Vec<f64> = ways
-            .windows(2)
-            .filter(|w| w[0].0 > 0.3 && w[0].1 * w[1].1 < 0.0)
-            .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
-            .collect();
-        match (crossings.first(), crossings.last()) {
-            (Some(first), Some(last)) if crossings.len() > 2 => {
-                Ok(2.0 * (last - first) / (crossings.len() - 1) as f64)
-            }
-            _ => Err(Failure::Absent("the platform does not swing".into())),
-        }
+        period(&ways, 0.3).ok_or_else(|| Failure::Absent("the platform does not swing".into()))
     })
+}
+
+/// The period (s) with which a quantity crosses zero after a time (s), if it swings.
+pub(super) fn period(ways: &[(f64, f64)], after: f64) -> Option<f64> {
+    let through: Vec<f64> = crossings(ways).into_iter().filter(|time| *time > after).collect();
+    mean_time(&through, 3).map(|half| 2.0 * half)
 }
 
 fn slides() -> Problem {
@@ -274,18 +273,11 @@ fn between_stops() -> Problem {
             let spring = Guide::spring(joined(Vec2::new(0.0, 3.0)), Vec2::new(1.0, 0.0), 0.0, 0.0);
             let guide = Guide { gap, stop_stiffness: MASS * omega * omega, ..spring };
             let mut scene = flying(speed, guide.into())?;
-            let (mut before, mut found) = ((0.0, 0.0), None);
             let step = if effort == Effort::Full { 1e-5 } else { 5e-5 };
-            scene.watch(&Still, step, 1.0, |state, _, _| {
-                let (t, x) = (state.time, state.poses[1].position.x);
-                if before.1 < 0.0 && x >= 0.0 {
-                    found = Some(before.0 + before.1 / (before.1 - x) * (t - before.0));
-                    return ControlFlow::Break(());
-                }
-                before = (t, x);
-                ControlFlow::Continue(())
-            })?;
-            found.ok_or_else(|| Failure::Absent("it does not come back".into()))
+            match run_crossings(&mut scene, step, 1.0, |state| state.poses[1].position.x)?[..] {
+                [_, back, ..] => Ok(back),
+                _ => Err(Failure::Absent("it does not come back".into())),
+            }
         })
 }
 

@@ -9,7 +9,7 @@ use barrelstack_dynamics::math::{cos, sin, tan};
 use crate::problem::{relative, setting};
 use crate::{Failure, GRAVITY, Problem};
 
-use super::devices::{one_level, pressed, push, way};
+use super::devices::{self, one_level, pressed, push, way};
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -100,17 +100,7 @@ fn strap() -> Problem {
 
 /// The period (s) with which a quantity crosses zero after a time (s).
 fn period(ways: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
-    let crossings: Vec<f64> = ways
-        .windows(2)
-        .filter(|w| w[0].0 > after && w[0].1 * w[1].1 < 0.0)
-        .map(|w| w[0].0 + w[0].1 / (w[0].1 - w[1].1) * (w[1].0 - w[0].0))
-        .collect();
-    match (crossings.first(), crossings.last()) {
-        (Some(first), Some(last)) if crossings.len() > 2 => {
-            Ok(2.0 * (last - first) / (crossings.len() - 1) as f64)
-        }
-        _ => Err(Failure::Absent("it does not swing".into())),
-    }
+    devices::period(ways, after).ok_or_else(|| Failure::Absent("it does not swing".into()))
 }
 
 /// The mass (kg) of bodies whose names a filter lets through.

@@ -8,7 +8,7 @@ use barrelstack::watch::{Fates, Thresholds};
 use barrelstack_dynamics::Still;
 use barrelstack_dynamics::math::pow;
 
-use crate::problem::{relative, setting};
+use crate::problem::{absent, relative, setting};
 use crate::scene::Scene;
 use crate::{Failure, GRAVITY, Problem};
 
@@ -47,7 +47,7 @@ fn stopped(height: f64) -> Problem {
                 radius + height
             );
             let assembly = assemble(&Scenario::parse("fall.toml", &text, &[])?)
-                .map_err(|error| Failure::Absent(error.to_string()))?;
+                .map_err(absent)?;
             let mut scene = Scene::of(assembly.model.clone());
             let mut fates = Fates::new(&assembly, &scene.state, THRESHOLDS);
             scene.watch(&Still, 1e-5, 1.3, |state, scratch, _| {

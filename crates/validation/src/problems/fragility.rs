@@ -6,7 +6,7 @@ use barrelstack_fragility::{
     Dispersion, Fit, Hazard, Interval, Lognormal, Stripe, evidence, fit, profile_band, simulate,
 };
 
-use crate::problem::{absolute, relative, setting};
+use crate::problem::{absent, absolute, relative, setting};
 use crate::tumble::Random;
 use crate::{Effort, Failure, Outcome, Problem};
 
@@ -21,7 +21,7 @@ fn stripes() -> Vec<Stripe> {
 }
 
 fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
-    fit(&evidence(stripes), Dispersion::Free).map_err(|error| absent(&error))
+    fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
 /// One number of the fit of the eight stripes, right to half a unit of its last printed digit.
@@ -85,10 +85,6 @@ fn covered(
         .by(move |effort| coverage(effort, band))
 }
 
-fn absent(error: &impl ToString) -> Failure {
-    Failure::Absent(error.to_string())
-}
-
 /// Annual rate of failure where `λ(x) = k₀ x⁻ᵏ`: `k₀ θ⁻ᵏ exp(k²β²/2)`.
 fn power_law() -> Problem {
     let (k0, k, ln_median) = (1e-4, 2.5, -0.7);
@@ -106,7 +102,7 @@ fn power_law() -> Problem {
     .by(move |_| {
         let row = |i: i32| -12.0 + 0.6 * f64::from(i);
         let rows: Vec<(f64, f64)> = (0..=40).map(row).map(|u| (exp(u), k0 * exp(-k * u))).collect();
-        let hazard = Hazard::new(&rows).map_err(|error| absent(&error))?;
+        let hazard = Hazard::new(&rows).map_err(absent)?;
         Ok(hazard.rate_of(|x| curve.probability(x)).low)
     })
 }
@@ -128,8 +124,7 @@ pub(super) fn problems() -> Vec<Problem> {
             "bands by profile likelihood",
             "Wilks 1938",
             |stripes, _| {
-                profile_band(&evidence(stripes), Dispersion::Free, 0.95, &AT)
-                    .map_err(|error| absent(&error))
+                profile_band(&evidence(stripes), Dispersion::Free, 0.95, &AT).map_err(absent)
             },
         ),
         covered(
@@ -139,7 +134,7 @@ pub(super) fn problems() -> Vec<Problem> {
             |stripes, random| {
                 simulate(stripes, Dispersion::Free, 400, || random.within(0.0, 1.0))
                     .map(|replicates| replicates.band(0.95, &AT))
-                    .map_err(|error| absent(&error))
+                    .map_err(absent)
             },
         ),
         power_law(),

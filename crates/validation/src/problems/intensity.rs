@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use barrelstack_dynamics::math::{exp, sin};
 use barrelstack_motion::{IntensityMeasure, STANDARD_GRAVITY, Sampled, response};
 
-use crate::problem::{relative, setting};
+use crate::problem::{absent, relative, setting};
 use crate::{Failure, Problem};
 
 const SOURCE: &str = "integrals of a harmonic";
@@ -41,11 +41,11 @@ fn harmonic() -> Result<Sampled, Failure> {
 }
 
 fn sampled(step: f64, acceleration: Vec<f64>) -> Result<Sampled, Failure> {
-    Sampled::new(step, acceleration).map_err(|error| Failure::Absent(error.to_string()))
+    Sampled::new(step, acceleration).map_err(absent)
 }
 
 fn measured(measure: &IntensityMeasure, motion: &Sampled) -> Result<f64, Failure> {
-    measure.of(motion).map_err(|error| Failure::Absent(error.to_string()))
+    measure.of(motion).map_err(absent)
 }
 
 fn of_harmonic(
@@ -85,8 +85,8 @@ fn of_push(period: f64) -> Problem {
     .asks("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
     .by(move |_| {
         let motion = push(period / 1000.0)?;
-        let found = response(motion.time_step(), motion.acceleration(), period, DAMPING)
-            .map_err(|error| Failure::Absent(error.to_string()))?;
+        let found =
+            response(motion.time_step(), motion.acceleration(), period, DAMPING).map_err(absent)?;
         Ok(found.pseudo_acceleration)
     })
 }

@@ -1,17 +1,14 @@
 //! Racks along their barrels: posts that bear a stack, and rails that raise one end of every barrel.
 
-use std::ops::ControlFlow;
-
 use barrelstack::assemble::{Assembly, assemble};
-use barrelstack::{Ground, Run, Scenario};
+use barrelstack::{Run, Scenario};
 use barrelstack_dynamics::Vec2;
 use barrelstack_dynamics::math::{cos, sin};
-use barrelstack_motion::GroundMotion;
 
-use crate::problem::{border, halvings, relative, setting};
-use crate::{Failure, GRAVITY, Problem};
+use crate::problem::{absent, border, halvings, relative, setting};
+use crate::{Failure, Problem};
 
-use super::devices::push;
+use super::devices::{push, run_pushed};
 
 /// The problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -23,12 +20,7 @@ pub(super) fn problems() -> Vec<Problem> {
 /// A stack along its barrels, on contacts so stiff that next to nothing gives, under a push (g) that grows for two
 /// seconds and stays for another one.
 fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
-    let grown =
-        |at: u32| 0.5 * (1.0 - cos(std::f64::consts::PI * f64::from(at.min(2000)) / 2000.0));
-    let samples = (0..3000).map(|at| push * GRAVITY * grown(at)).collect();
-    let motion = GroundMotion::from_acceleration("push", 0.001, samples);
-    let motion = motion.map_err(|error| Failure::Absent(error.to_string()))?;
-    Ok(scenario(settings)?.run_on(Ground::from(motion), &mut |_| ControlFlow::Continue(()))?)
+    run_pushed(&scenario(settings)?, push, 2000)
 }
 
 fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
@@ -89,8 +81,7 @@ fn posts() -> Problem {
 
 /// Height (m) of the center of mass of the upper levels over the posts that bear them.
 fn height_of_upper_levels() -> Result<f64, Failure> {
-    let assembly =
-        assemble(&scenario(&towers())?).map_err(|error| Failure::Absent(error.to_string()))?;
+    let assembly = assemble(&scenario(&towers())?).map_err(absent)?;
     let (mut mass, mut moment) = (0.0, 0.0);
     for name in ["R2", "B2.1", "R3", "B3.1"] {
         let body = &assembly.model.bodies()[named(&assembly, name)?];

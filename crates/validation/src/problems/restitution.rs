@@ -9,6 +9,7 @@ use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
 use crate::problem::{refine, relative, setting};
 use crate::rocking::{Corner, RockingBlock, contact_frequency};
 use crate::scene::{DOWN, Scene, disc, floor, ground_of, interface};
+use crate::swing::crossing;
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem, theory};
 
 const SOURCE: &str = "damped oscillator on approach";
@@ -94,8 +95,7 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
     scene.watch(&Still, step, patience, |state, _, _| {
         let gap = state.poses[1].position.z - RADIUS;
         if gap >= 0.0 && before.1 < 0.0 {
-            let part = -before.1 / (gap - before.1);
-            left = Some((before.0 + part * (state.time - before.0), state.twists[1].linear.z));
+            left = Some((crossing(before, (state.time, gap)), state.twists[1].linear.z));
             return ControlFlow::Break(());
         }
         before = (state.time, gap);

@@ -6,13 +6,14 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{atan, cos, sin, tan};
 use barrelstack_dynamics::shape::Cradle;
-use barrelstack_dynamics::{Drive, FrictionLaw, NormalLaw, Planar, Shape, Still, Vec2};
+use barrelstack_dynamics::{Drive, FrictionLaw, NormalLaw, Planar, Shape, State, Still, Vec2};
 
 use crate::drive::Shake;
 use crate::problem::{absolute, relative, setting};
 use crate::scene::{
     DOWN, Scene, centered, coulomb, disc, floor, gravity_on_slope, ground_of, interface, points,
 };
+use crate::swing::{mean_time, run_crossings};
 use crate::{Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "rigid-body dynamics of rolling";
@@ -169,22 +170,11 @@ fn swing(ratio: f64) -> Problem {
         let cradle = ground_of(vec![centered(Shape::Cradle(Cradle::new(cradle_radius, 1.2)))]);
         let laws = interface(firm(level), stick(0.9, level));
         let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
-        let (mut crossings, mut before) = (vec![], (0.0, angle));
-        scene.watch(&Still, step(level), 8.0, |state, _, _| {
-            let x = state.poses[1].position.x;
-            if x < 0.0 && before.1 >= 0.0 {
-                let part = before.1 / (before.1 - x);
-                crossings.push(before.0 + part * (state.time - before.0));
-            }
-            before = (state.time, x);
-            ControlFlow::Continue(())
-        })?;
-        match (crossings.first(), crossings.last()) {
-            (Some(first), Some(last)) if crossings.len() > 3 => {
-                Ok((last - first) / (crossings.len() - 1) as f64)
-            }
-            _ => Err(Failure::Absent("the disc does not swing".into())),
-        }
+        let place = |state: &State<Planar>| state.poses[1].position.x;
+        let through = run_crossings(&mut scene, step(level), 8.0, place)?;
+        // It starts on the right, so every other time it comes from there.
+        let leftward: Vec<f64> = through.into_iter().step_by(2).collect();
+        mean_time(&leftward, 4).ok_or_else(|| Failure::Absent("the disc does not swing".into()))
     })
 }
 

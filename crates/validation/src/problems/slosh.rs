@@ -6,6 +6,7 @@ use barrelstack::{Run, Scenario};
 use barrelstack_dynamics::math::{acos, sin_cos};
 
 use crate::problem::{relative, setting};
+use crate::swing::crossings;
 use crate::{Failure, GRAVITY, Problem};
 
 const HALF_FULL: &str = "Budiansky 1960; McIver 1989";
@@ -35,7 +36,7 @@ fn number(depth: f64) -> f64 {
 
 fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance: f64) -> Problem {
     setting(
-        name,
+        format!("slosh/{name}"),
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         source,
     )
@@ -220,15 +221,12 @@ fn in_a_stack(filled: f64) -> Problem {
         let wine = recording.channel(name).ok_or_else(|| Failure::Absent(name.into()))?;
         let held = recording.channel("B1.1 displacement x");
         let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
-        let way = |i: usize| wine.values[i] - held.values[i];
-        let times = &recording.times;
-        let crossings: Vec<f64> = (1..times.len())
-            .filter(|i| times[*i] > 1.0 && way(i - 1) * way(*i) < 0.0)
-            .map(|i| times[i - 1] + way(i - 1) / (way(i - 1) - way(i)) * (times[i] - times[i - 1]))
-            .collect();
-        match (crossings.first(), crossings.last()) {
-            (Some(first), Some(last)) if crossings.len() > 4 => {
-                Ok(0.5 * (crossings.len() - 1) as f64 / (last - first))
+        let ways = wine.values.iter().zip(&held.values).map(|(wine, barrel)| wine - barrel);
+        let ways: Vec<(f64, f64)> = recording.times.iter().copied().zip(ways).collect();
+        let through: Vec<f64> = crossings(&ways).into_iter().filter(|time| *time > 1.0).collect();
+        match through[..] {
+            [first, .., last] if through.len() > 4 => {
+                Ok(0.5 * (through.len() - 1) as f64 / (last - first))
             }
             _ => Err(Failure::Absent("the wine does not swing".into())),
         }

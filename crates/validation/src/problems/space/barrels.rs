@@ -6,13 +6,15 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::math::{atan2, cos, sin};
 use barrelstack_dynamics::solid::{Barrel, Capsule, Hull, Rounded};
 use barrelstack_dynamics::{
-    Body, ContactPair, Model, Nodes, Placed, Quaternion, Rotation3, Solid, Spatial, Still, Vec3,
+    Body, ContactPair, Model, Nodes, Placed, Quaternion, Rotation3, Solid, Spatial, State, Still,
+    Vec3,
 };
 
-use super::{G, STEP, STIFFNESS, firm, rough, scene};
-use crate::problem::{relative, setting};
+use super::{G, STEP, STIFFNESS, axis, down, firm, rough, scene, upright};
+use crate::problem::{absent, relative, setting};
 use crate::scene::{Scene, interface, pair};
 use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
+use crate::swing::run_crossings;
 use crate::{Failure, Problem};
 
 /// A barrel of 225 liters by its fill: name, mass (kg), moments of inertia (kg·m²) about its axis and
@@ -65,16 +67,7 @@ fn barrel() -> Result<Barrel, Failure> {
 }
 
 fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, Failure> {
-    Barrel::new(length, head, bilge, rounding).map_err(|e| Failure::Absent(e.to_string()))
-}
-
-/// The orientation of a body whose axis `x` points up, but for a lean (rad) toward the outer `x`.
-fn upright(lean: f64) -> Quaternion {
-    Quaternion::turn(Vec3::new(0.0, lean - FRAC_PI_2, 0.0))
-}
-
-fn axis(orientation: Quaternion) -> Vec3 {
-    orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0))
+    Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
 /// The mean rate (rad/s) at which the axis of body 1 goes round the upright until a time (s).
@@ -96,10 +89,6 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
         ControlFlow::Continue(())
     })?;
     Ok(round / end)
-}
-
-fn down() -> Vec3 {
-    Vec3::new(0.0, 0.0, -G)
 }
 
 /// A top whose spherical tip rolls, going round steadily.
@@ -222,17 +211,8 @@ fn rock(
         body.pose.orientation = Quaternion::turn(Vec3::new(0.0, lean, 0.0));
         let laws = (firm(STIFFNESS, mass), rough(1.0, STIFFNESS, mass));
         let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
-        let (mut crossings, mut before) = (vec![], (0.0, 0.0));
-        scene.watch(&Still, STEP, exact, |state, _, _| {
-            let rise = axis(state.poses[1].orientation).z;
-            if rise * before.1 < 0.0 {
-                let part = before.1 / (before.1 - rise);
-                crossings.push(before.0 + part * (state.time - before.0));
-            }
-            before = (state.time, rise);
-            ControlFlow::Continue(())
-        })?;
-        match crossings[..] {
+        let rise = |state: &State<Spatial>| axis(state.poses[1].orientation).z;
+        match run_crossings(&mut scene, STEP, exact, rise)?[..] {
             [first, second, ..] => Ok(2.0 * (second - first)),
             _ => Err(Failure::Absent("the barrel does not rock".into())),
         }

@@ -10,10 +10,11 @@ use barrelstack_dynamics::{
     Body, FrictionLaw, Motion, NormalLaw, Quaternion, Spatial, Still, Vec3,
 };
 
-use super::{G, STEP, firm, rough, scene};
-use crate::problem::{relative, setting};
+use super::{G, STEP, axis, down, firm, rough, scene, upright};
+use crate::problem::{absent, relative, setting};
 use crate::scene::Scene;
 use crate::spatial::{floor, gravity_on_slope, solid, yaw};
+use crate::swing::{mean_time, run_crossings};
 use crate::{Failure, Problem, theory};
 
 /// Mass (kg) of the bodies.
@@ -42,22 +43,12 @@ pub(super) fn problems() -> Vec<Problem> {
 }
 
 fn barrel(name: &str, height: f64, rounding: f64) -> Result<Body<Spatial>, Failure> {
-    let shape = Barrel::new(2.0 * HALF, 0.2775, 0.345, rounding)
-        .map_err(|e| Failure::Absent(e.to_string()))?;
+    let shape = Barrel::new(2.0 * HALF, 0.2775, 0.345, rounding).map_err(absent)?;
     let inertia = Vec3::new(ABOUT, ACROSS, ACROSS);
     let place = Vec3::new(0.0, 0.0, height);
     let mut body = solid(name, Hull::Barrel(shape), MASS, inertia, place);
     body.pose.orientation = upright(0.0);
     Ok(body)
-}
-
-/// The orientation of a body whose axis `x` points up, but for a lean (rad) toward the outer `x`.
-fn upright(lean: f64) -> Quaternion {
-    Quaternion::turn(Vec3::new(0.0, lean - FRAC_PI_2, 0.0))
-}
-
-fn down() -> Vec3 {
-    Vec3::new(0.0, 0.0, -G)
 }
 
 fn spring() -> NormalLaw {
@@ -89,20 +80,10 @@ fn stands(count: u32) -> Problem {
 
 /// The period (s) with which a component of the axis of body 1 swings.
 fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<f64, Failure> {
-    let (mut crossings, mut before) = (vec![], (0.0, 0.0));
-    scene.watch(&Still, 1e-5, 5.3 * guess, |state, _, _| {
-        let now = of(state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0)));
-        if now * before.1 < 0.0 {
-            let part = before.1 / (before.1 - now);
-            crossings.push(before.0 + part * (state.time - before.0));
-        }
-        before = (state.time, now);
-        ControlFlow::Continue(())
-    })?;
-    match crossings[..] {
-        [first, .., last] => Ok(2.0 * (last - first) / (crossings.len() - 1) as f64),
-        _ => Err(Failure::Absent("it does not rock".into())),
-    }
+    let through =
+        run_crossings(&mut scene, 1e-5, 5.3 * guess, |state| of(axis(state.poses[1].orientation)))?;
+    let half = mean_time(&through, 2).ok_or_else(|| Failure::Absent("it does not rock".into()))?;
+    Ok(2.0 * half)
 }
 
 /// Without friction a body turns about its center of mass, while its weight goes through the flat of its head,
@@ -177,7 +158,7 @@ fn rocks(asked: &'static str) -> Problem {
         let mut scene = scene(vec![floor(), body], law, friction, down())?;
         let (mut found, mut before) = (None, (0.0, lean, 0.0));
         scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
-            let axis = state.poses[1].orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0));
+            let axis = axis(state.poses[1].orientation);
             let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
             // A little before, where the middle of the head does not bear yet.
             let level = 2e-4;

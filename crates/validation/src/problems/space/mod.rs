@@ -7,8 +7,10 @@ mod free;
 mod rolling;
 mod sliding;
 
+use std::f64::consts::FRAC_PI_2;
+
 use barrelstack_dynamics::contact::restitution;
-use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Spatial, Vec3};
+use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Quaternion, Spatial, Vec3};
 
 use crate::scene::{Scene, coulomb, interface};
 use crate::{Failure, Problem};
@@ -53,4 +55,19 @@ fn scene(
     gravity: Vec3,
 ) -> Result<Scene<Spatial>, Failure> {
     Ok(Scene::new(bodies, interface(normal, friction), gravity)?)
+}
+
+/// Free fall straight down.
+fn down() -> Vec3 {
+    Vec3::new(0.0, 0.0, -G)
+}
+
+/// The orientation of a body whose axis `x` points up, but for a lean (rad) toward the outer `x`.
+fn upright(lean: f64) -> Quaternion {
+    Quaternion::turn(Vec3::new(0.0, lean - FRAC_PI_2, 0.0))
+}
+
+/// Where the axis `x` of a body points.
+fn axis(orientation: Quaternion) -> Vec3 {
+    orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0))
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{Drive, Quaternion, Spatial, Still, Vec3};
 
-use super::{G, STEP, STIFFNESS, firm, rough, scene};
+use super::{G, STEP, STIFFNESS, down, firm, rough, scene};
 use crate::problem::{absolute, relative, setting};
 use crate::scene::Scene;
 use crate::spatial::{corners, floor, free, gravity_on_slope, points, yaw};
@@ -64,10 +64,6 @@ fn sliding(
     body.nodes = vec![feet];
     let friction = rough(friction, stiffness, share);
     scene(vec![floor(), body], firm(stiffness, share), friction, gravity)
-}
-
-fn down() -> Vec3 {
-    Vec3::new(0.0, 0.0, -G)
 }
 
 /// The turn (rad) about the upright.

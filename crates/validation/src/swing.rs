@@ -1,0 +1,47 @@
+//! What swings: when it goes through its middle.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::{Space, State, Still};
+
+use crate::Failure;
+use crate::scene::Scene;
+
+/// When (s) a quantity is zero between two of its values, each with its time (s), as on a line.
+pub fn crossing(before: (f64, f64), now: (f64, f64)) -> f64 {
+    before.0 + before.1 / (before.1 - now.1) * (now.0 - before.0)
+}
+
+/// When (s) a quantity changes its sign, from its times (s) and values.
+pub fn crossings(values: &[(f64, f64)]) -> Vec<f64> {
+    let changes = values.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0);
+    changes.map(|pair| crossing(pair[0], pair[1])).collect()
+}
+
+/// The same for a quantity of a scene on ground at rest until a time (s).
+///
+/// # Errors
+/// When the numbers break down.
+pub fn run_crossings<S: Space<Real = f64>>(
+    scene: &mut Scene<S>,
+    step: f64,
+    end: f64,
+    of: impl Fn(&State<S>) -> f64,
+) -> Result<Vec<f64>, Failure> {
+    let mut values = vec![];
+    scene.watch(&Still, step, end, |state, _, _| {
+        values.push((state.time, of(state)));
+        ControlFlow::Continue(())
+    })?;
+    Ok(crossings(&values))
+}
+
+/// The mean time (s) from one of these instants to the next; none where there are fewer than `least`.
+pub fn mean_time(instants: &[f64], least: usize) -> Option<f64> {
+    match instants {
+        [first, .., last] if instants.len() >= least => {
+            Some((last - first) / (instants.len() - 1) as f64)
+        }
+        _ => None,
+    }
+}
