@@ -62,10 +62,10 @@ impl Record {
             .iter()
             .map(|(p, start, end)| format!("{} {start} to {end}", self.channels[*p].name))
             .collect();
-        let apart = MotionError::Mismatch {
-            what: format!("the channels have no span in common: {}", each.join(", ")),
-            remedy: "give channels that were recorded at one time".to_owned(),
-        };
+        let apart = MotionError::mismatch(
+            format!("the channels have no span in common: {}", each.join(", ")),
+            "give channels that were recorded at one time",
+        );
         if !(end.since(begin) >= longest_step) {
             return Err(apart);
         }

@@ -39,9 +39,9 @@ impl Record {
         for channel in &mut out.channels {
             let done = chain
                 .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
-                .map_err(|error| MotionError::Mismatch {
-                    what: format!("{}, channel {}: {error}", self.file, channel.name),
-                    remedy: "give a value in that range".to_owned(),
+                .map_err(|error| {
+                    let what = format!("{}, channel {}: {error}", self.file, channel.name);
+                    MotionError::mismatch(what, "give a value in that range")
                 })?;
             channel.acceleration = done.acceleration;
             channel.initial_velocity = done.initial_velocity;

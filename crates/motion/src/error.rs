@@ -158,24 +158,35 @@ impl MotionError {
         Self::Parameter { what: what.into(), expected: expected.into(), found: found.to_string() }
     }
 
+    /// Things that do not go together, and the next move.
+    pub fn mismatch(what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Mismatch { what: what.into(), remedy: remedy.into() }
+    }
+
+    /// `Ok` when a number is what it should be.
+    ///
+    /// # Errors
+    /// When it is not, as [`MotionError::parameter`] says it.
+    pub fn require(
+        holds: bool,
+        what: impl Into<String>,
+        expected: impl Into<String>,
+        found: impl fmt::Display,
+    ) -> Result<(), Self> {
+        if holds { Ok(()) } else { Err(Self::parameter(what, expected, found)) }
+    }
+
     /// `Ok` when `value` is finite and above zero.
     ///
     /// # Errors
     /// When it is not, in words that begin with `what` it is.
     pub fn require_positive(what: &str, value: f64) -> Result<(), Self> {
-        if value.is_finite() && value > 0.0 {
-            Ok(())
-        } else {
-            Err(Self::parameter(what, "a finite number above 0", value))
-        }
+        let positive = value.is_finite() && value > 0.0;
+        Self::require(positive, what, "a finite number above 0", value)
     }
 
     /// `Ok` when `value` is finite.
     pub(crate) fn require_finite(what: &str, value: f64) -> Result<(), Self> {
-        if value.is_finite() {
-            Ok(())
-        } else {
-            Err(Self::parameter(what, "a finite number", value))
-        }
+        Self::require(value.is_finite(), what, "a finite number", value)
     }
 }

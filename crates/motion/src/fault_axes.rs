@@ -24,16 +24,9 @@ impl Record {
     /// If the strike is not finite or there are not two horizontals of known azimuth.
     pub fn fault_axes(&self, strike: f64) -> Result<Turned, MotionError> {
         MotionError::require_finite("strike (degrees)", strike)?;
-        let named = |azimuth: f64, name: &str| -> Result<Channel, MotionError> {
-            let mut channel = self.component(&Component::Azimuth(azimuth.rem_euclid(360.0)))?;
-            name.clone_into(&mut channel.name);
-            // What the header stated is true of another direction or name.
-            channel.peaks.clear();
-            Ok(channel)
-        };
         Ok(Turned {
-            first: named(strike + 90.0, "FN")?,
-            second: named(strike, "FP")?,
+            first: self.named_along(strike + 90.0, "FN")?,
+            second: self.named_along(strike, "FP")?,
             note: format!(
                 "turned to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) of strike \
                  {strike} degrees",
@@ -51,14 +44,10 @@ impl Record {
         let north = self.component(&Component::Azimuth(0.0))?;
         let east = self.component(&Component::Azimuth(90.0))?;
         let peak = rotated_peak(&north.velocity(), &east.velocity());
-        let turned = self.fault_axes(peak.angle - 90.0)?;
-        let named = |mut channel: Channel, name: &str| {
-            name.clone_into(&mut channel.name);
-            channel
-        };
+        let across = peak.angle - 90.0;
         Ok(Turned {
-            first: named(turned.first, "VMAX"),
-            second: named(turned.second, "VMAX-90"),
+            first: self.named_along(peak.angle, "VMAX")?,
+            second: self.named_along(across, "VMAX-90")?,
             note: format!(
                 "turned to VMAX, the direction of the largest velocity, {:.1} cm/s at azimuth {}, and \
                  VMAX-90, 90 degrees before it",
@@ -66,5 +55,14 @@ impl Record {
                 peak.angle
             ),
         })
+    }
+
+    /// The motion along an azimuth (degrees) under a name of its own.
+    fn named_along(&self, azimuth: f64, name: &str) -> Result<Channel, MotionError> {
+        let mut channel = self.component(&Component::Azimuth(azimuth.rem_euclid(360.0)))?;
+        name.clone_into(&mut channel.name);
+        // What the header stated is true of another direction or name.
+        channel.peaks.clear();
+        Ok(channel)
     }
 }

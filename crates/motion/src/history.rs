@@ -115,13 +115,8 @@ impl History {
         }
         let duration = self.duration();
         let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
-        if !(steps <= 1e8) {
-            return Err(MotionError::parameter(
-                "time step (s)",
-                format!("at least {:e} for a motion of {duration} s", duration / 1e8),
-                time_step,
-            ));
-        }
+        let expected = format!("at least {:e} for a motion of {duration} s", duration / 1e8);
+        MotionError::require(steps <= 1e8, "time step (s)", expected, time_step)?;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e8")]
         let n = (steps as usize).max(1);
         let even = duration / n as f64;

@@ -174,14 +174,10 @@ impl IntensityMeasure {
     pub fn check(&self) -> Result<(), MotionError> {
         match *self {
             Self::SignificantDuration { from, to } => {
-                if !(0.0 <= from && from < to && to <= 1.0) {
-                    return Err(MotionError::parameter(
-                        "significant duration",
-                        "fractions 0 <= from < to <= 1",
-                        format!("{from} and {to}"),
-                    ));
-                }
-                Ok(())
+                let (within, found) =
+                    (0.0 <= from && from < to && to <= 1.0, format!("{from} and {to}"));
+                let what = "significant duration";
+                MotionError::require(within, what, "fractions 0 <= from < to <= 1", found)
             }
             Self::BracketedDuration { threshold } => {
                 MotionError::require_positive("bracketed duration threshold (m/s2)", threshold)

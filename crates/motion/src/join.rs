@@ -20,8 +20,11 @@ impl Record {
     /// If there is no record, the steps differ, the files are of different stations, sensors, events,
     /// publishers or stages, or have no span in common.
     pub fn gather(records: &[Self]) -> Result<Self, MotionError> {
-        if let Some(first) = records.first() {
-            records[1..].iter().try_for_each(|record| require_kin(first, record))?;
+        if let Some((first, rest)) = records.split_first()
+            && let Some(what) = rest.iter().find_map(|record| first.unlike(record))
+        {
+            let remedy = "give components that one sensor recorded in one event";
+            return Err(MotionError::mismatch(what, remedy));
         }
         Self::gather_mixed(records)
     }
@@ -138,16 +141,6 @@ impl Record {
     }
 }
 
-fn require_kin(one: &Record, other: &Record) -> Result<(), MotionError> {
-    match one.unlike(other) {
-        None => Ok(()),
-        Some(what) => Err(MotionError::Mismatch {
-            what,
-            remedy: "give components that one sensor recorded in one event".to_owned(),
-        }),
-    }
-}
-
 const ONE_STEP: &str = "give files of one step";
 
 /// That two channels have one step; else what is to be done.
@@ -157,22 +150,18 @@ pub(crate) fn require_step(
     remedy: &str,
 ) -> Result<(), MotionError> {
     if (one.time_step / other.time_step - 1.0).abs() > 1e-9 {
-        return Err(MotionError::Mismatch {
-            what: format!(
-                "channel {} has a step of {} s, channel {} of {} s",
-                one.name, one.time_step, other.name, other.time_step
-            ),
-            remedy: remedy.to_owned(),
-        });
+        let what = format!(
+            "channel {} has a step of {} s, channel {} of {} s",
+            one.name, one.time_step, other.name, other.time_step
+        );
+        return Err(MotionError::mismatch(what, remedy));
     }
     Ok(())
 }
 
 fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
-    let refuse = |what: String| MotionError::Mismatch {
-        what,
-        remedy: "give the parts of one record in order of time".to_owned(),
-    };
+    let refuse =
+        |what: String| MotionError::mismatch(what, "give the parts of one record in order of time");
     let mut overlap = None;
     // Channels of plain columns are named after their files: where no name is shared, the order in
     // the file tells which belong together.

@@ -196,20 +196,17 @@ impl GroundMotion {
 }
 
 fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
-    let shortest = settings.shortest;
-    if !(shortest >= 4.0 * time_step && shortest < settings.longest) {
-        return Err(MotionError::parameter(
-            "shortest matched period (s)",
-            format!("from four steps, {} s, to {} s", 4.0 * time_step, settings.longest),
-            shortest,
-        ));
-    }
-    MotionError::require_positive("matching tolerance", settings.tolerance)?;
-    MotionError::require_finite("longest matched period (s)", settings.longest)?;
-    if settings.rounds == 0 || settings.rounds > 10_000 {
-        return Err(MotionError::parameter("matching rounds", "1 to 10000", settings.rounds));
-    }
-    Ok(())
+    let Matching { shortest, longest, tolerance, rounds, .. } = *settings;
+    let least = 4.0 * time_step;
+    MotionError::require(
+        shortest >= least && shortest < longest,
+        "shortest matched period (s)",
+        format!("from four steps, {least} s, to {longest} s"),
+        shortest,
+    )?;
+    MotionError::require_positive("matching tolerance", tolerance)?;
+    MotionError::require_finite("longest matched period (s)", longest)?;
+    MotionError::require((1..=10_000).contains(&rounds), "matching rounds", "1 to 10000", rounds)
 }
 
 /// The same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps to the shortest period, so that

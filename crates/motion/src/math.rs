@@ -1,57 +1,13 @@
 //! Transcendental functions with the same bits on every platform, from the pure-Rust `libm`.
 
-pub(crate) use std::f64::consts::PI;
+pub(crate) use std::f64::consts::{PI, TAU};
+
+pub(crate) use libm::{
+    atan2, cos, erf, exp, hypot, log as ln, log10, pow as powf, sin, sincos as sin_cos, tan,
+};
 
 /// Standard gravity (m/s²), used for every conversion from g.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
-
-/// 2π.
-pub(crate) const TAU: f64 = std::f64::consts::TAU;
-
-pub(crate) fn sin(x: f64) -> f64 {
-    libm::sin(x)
-}
-
-pub(crate) fn cos(x: f64) -> f64 {
-    libm::cos(x)
-}
-
-/// Sine and cosine of `x`.
-pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
-    libm::sincos(x)
-}
-
-pub(crate) fn tan(x: f64) -> f64 {
-    libm::tan(x)
-}
-
-pub(crate) fn atan2(y: f64, x: f64) -> f64 {
-    libm::atan2(y, x)
-}
-
-pub(crate) fn exp(x: f64) -> f64 {
-    libm::exp(x)
-}
-
-pub(crate) fn ln(x: f64) -> f64 {
-    libm::log(x)
-}
-
-pub(crate) fn log10(x: f64) -> f64 {
-    libm::log10(x)
-}
-
-pub(crate) fn powf(x: f64, y: f64) -> f64 {
-    libm::pow(x, y)
-}
-
-pub(crate) fn erf(x: f64) -> f64 {
-    libm::erf(x)
-}
-
-pub(crate) fn hypot(x: f64, y: f64) -> f64 {
-    libm::hypot(x, y)
-}
 
 /// Integer power by repeated multiplication, in a fixed order.
 pub(crate) fn powi(x: f64, n: u32) -> f64 {

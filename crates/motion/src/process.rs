@@ -111,41 +111,33 @@ impl Processing {
 
     fn check(&self, time_step: f64, samples: usize) -> Result<(), MotionError> {
         MotionError::require_positive("time step (s)", time_step)?;
-        if !(0.0..=0.5).contains(&self.taper) {
-            return Err(MotionError::parameter("taper", "a fraction from 0 to 0.5", self.taper));
-        }
-        if !(1..=12).contains(&self.order) {
-            return Err(MotionError::parameter("filter order", "1 to 12", self.order));
-        }
+        let fits = (0.0..=0.5).contains(&self.taper);
+        MotionError::require(fits, "taper", "a fraction from 0 to 0.5", self.taper)?;
+        MotionError::require(
+            (1..=12).contains(&self.order),
+            "filter order",
+            "1 to 12",
+            self.order,
+        )?;
         let (slowest, nyquist) = (1.0 / (time_step * samples as f64), 0.5 / time_step);
-        if let Some(corner) = self.high_pass
-            && !(corner > 0.0 && corner < nyquist)
-        {
-            return Err(MotionError::parameter(
-                "high-pass corner (Hz)",
-                format!("above 0 and below the Nyquist frequency, {nyquist} Hz"),
-                corner,
-            ));
+        if let Some(corner) = self.high_pass {
+            let (within, what) = (corner > 0.0 && corner < nyquist, "high-pass corner (Hz)");
+            let expected = format!("above 0 and below the Nyquist frequency, {nyquist} Hz");
+            MotionError::require(within, what, expected, corner)?;
         }
         let Some(low) = self.low_pass else { return Ok(()) };
-        if !(low >= slowest && low < nyquist) {
-            return Err(MotionError::parameter(
-                "low-pass corner (Hz)",
-                format!(
-                    "at least one over the duration, {slowest:.4} Hz, and below the Nyquist \
-                     frequency, {nyquist} Hz"
-                ),
-                low,
-            ));
-        }
-        match self.high_pass_used(time_step, samples) {
-            Some(high) if high >= low => Err(MotionError::parameter(
-                "high-pass corner (Hz), at least one over the duration",
-                format!("below the low-pass corner, {low} Hz"),
-                high,
-            )),
-            _ => Ok(()),
-        }
+        MotionError::require(
+            low >= slowest && low < nyquist,
+            "low-pass corner (Hz)",
+            format!(
+                "at least one over the duration, {slowest:.4} Hz, and below the Nyquist frequency, \
+                 {nyquist} Hz"
+            ),
+            low,
+        )?;
+        let Some(high) = self.high_pass_used(time_step, samples) else { return Ok(()) };
+        let what = "high-pass corner (Hz), at least one over the duration";
+        MotionError::require(high < low, what, format!("below the low-pass corner, {low} Hz"), high)
     }
 
     /// The corner of the high-pass (Hz) on a record of this length: no slower wave fits into it.

@@ -238,10 +238,7 @@ impl Pulse {
     /// The same pulse times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let mut pulse = *self;
-        let (amplitude, _) = pulse.amplitude_mut();
-        *amplitude *= factor;
-        pulse
+        self.stretched(1.0, factor)
     }
 
     /// The pulse with time times `time` and acceleration times `factor`.
@@ -285,30 +282,23 @@ impl Pulse {
         match *self {
             Self::Sine { cycles, ramp_cycles, .. } => {
                 MotionError::require_positive("sine cycles", cycles)?;
-                if !(ramp_cycles >= 0.0 && 2.0 * ramp_cycles <= cycles) {
-                    return Err(MotionError::parameter(
-                        "sine ramp cycles",
-                        format!("0 to {} (both ramps within {cycles} cycles)", 0.5 * cycles),
-                        ramp_cycles,
-                    ));
-                }
+                let within = ramp_cycles >= 0.0 && 2.0 * ramp_cycles <= cycles;
+                let expected = format!("0 to {} (both ramps within {cycles} cycles)", 0.5 * cycles);
+                MotionError::require(within, "sine ramp cycles", expected, ramp_cycles)
             }
             Self::Gabor { gamma, phase, .. } => {
                 MotionError::require_finite("pulse phase (rad)", phase)?;
-                if !(gamma > 0.0 && gamma <= 12.0) {
-                    return Err(MotionError::parameter("Gabor gamma", "above 0, up to 12", gamma));
-                }
+                let within = gamma > 0.0 && gamma <= 12.0;
+                MotionError::require(within, "Gabor gamma", "above 0, up to 12", gamma)
             }
             Self::CycloidC { cycles, .. } => {
-                if cycles == 0 || cycles > 1000 {
-                    return Err(MotionError::parameter("cycloid cycles", "1 to 1000", cycles));
-                }
+                let within = (1..=1000).contains(&cycles);
+                MotionError::require(within, "cycloid cycles", "1 to 1000", cycles)
             }
             Self::MavroeidisPapageorgiou { gamma, phase, .. } => {
                 MotionError::require_finite("pulse phase (rad)", phase)?;
-                if !(gamma > 1.0 && gamma.is_finite()) {
-                    return Err(MotionError::parameter("pulse gamma", "above 1", gamma));
-                }
+                let within = gamma > 1.0 && gamma.is_finite();
+                MotionError::require(within, "pulse gamma", "above 1", gamma)
             }
             Self::HalfSine { .. }
             | Self::OneSine { .. }
@@ -316,9 +306,8 @@ impl Pulse {
             | Self::Rectangular { .. }
             | Self::Ricker { .. }
             | Self::CycloidA { .. }
-            | Self::CycloidB { .. } => {}
+            | Self::CycloidB { .. } => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -45,29 +45,23 @@ pub fn dominant_pulse(
     longest: f64,
 ) -> Result<PulseFit, MotionError> {
     MotionError::require_positive("shortest pulse period (s)", shortest)?;
-    if !(longest > shortest && longest.is_finite()) {
-        return Err(MotionError::parameter(
-            "longest pulse period (s)",
-            format!("above the shortest, {shortest} s"),
-            longest,
-        ));
-    }
-    if shortest < 8.0 * motion.time_step() {
-        return Err(MotionError::parameter(
-            "shortest pulse period (s)",
-            format!("at least eight steps, {} s", 8.0 * motion.time_step()),
-            shortest,
-        ));
-    }
+    let (longer, above) = (longest > shortest, format!("above the shortest, {shortest} s"));
+    MotionError::require(
+        longer && longest.is_finite(),
+        "longest pulse period (s)",
+        above,
+        longest,
+    )?;
+    let least = 8.0 * motion.time_step();
+    let expected = format!("at least eight steps, {least} s");
+    MotionError::require(shortest >= least, "shortest pulse period (s)", expected, shortest)?;
     // The correlation needs no more than a sixteenth of the shortest period.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
     let every = (shortest / 16.0 / motion.time_step()).floor().max(1.0) as usize;
     let dt = motion.time_step() * every as f64;
     let velocity: Vec<f64> = motion.velocity().iter().copied().step_by(every).collect();
     let energy: f64 = velocity.iter().map(|v| v * v).sum();
-    if !(energy > 0.0) {
-        return Err(MotionError::parameter("motion", "a velocity other than zero", "zero"));
-    }
+    MotionError::require(energy > 0.0, "motion", "a velocity other than zero", "zero")?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let longest_support = (WIDTHS[WIDTHS.len() - 1] * longest / dt).ceil().min(1e8) as usize;
     let length = (velocity.len() + 2 * longest_support).next_power_of_two();

@@ -291,10 +291,8 @@ impl Record {
             record.channels.push(Channel::new(*channel, direction, time_step, acceleration));
         }
         format::finish(&Source::new(name, &[]), &mut record).map_err(|error| {
-            MotionError::Mismatch {
-                what: format!("{name}: expected {}, found {}", error.expected, error.found),
-                remedy: "correct the samples, their step or their unit".to_owned(),
-            }
+            let what = format!("{name}: expected {}, found {}", error.expected, error.found);
+            MotionError::mismatch(what, "correct the samples, their step or their unit")
         })?;
         Ok(record)
     }

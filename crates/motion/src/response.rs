@@ -100,13 +100,10 @@ fn impulse_integrals(
 
 /// Checks a period (s, zero allowed) and a damping ratio (0 up to but not including 1).
 pub(crate) fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
-    if !(period >= 0.0 && period.is_finite()) {
-        return Err(MotionError::parameter("oscillator period (s)", "0 or above", period));
-    }
-    if !(0.0..1.0).contains(&damping) {
-        return Err(MotionError::parameter("damping ratio", "0 to below 1 (5 % is 0.05)", damping));
-    }
-    Ok(())
+    let real = period >= 0.0 && period.is_finite();
+    MotionError::require(real, "oscillator period (s)", "0 or above", period)?;
+    let swings = (0.0..1.0).contains(&damping);
+    MotionError::require(swings, "damping ratio", "0 to below 1 (5 % is 0.05)", damping)
 }
 
 /// Peak response of one oscillator to accelerations (m/s²) of step `time_step` (s).

@@ -76,13 +76,8 @@ impl Sampled {
     ) -> Result<Self, MotionError> {
         MotionError::require_positive("time step (s)", time_step)?;
         MotionError::require_finite("initial velocity (m/s)", initial_velocity)?;
-        if acceleration.len() < 2 {
-            return Err(MotionError::parameter(
-                "acceleration samples",
-                "at least 2",
-                acceleration.len(),
-            ));
-        }
+        let count = acceleration.len();
+        MotionError::require(count >= 2, "acceleration samples", "at least 2", count)?;
         if let Some(k) = acceleration.iter().position(|a| !a.is_finite()) {
             return Err(MotionError::parameter(
                 format!("acceleration sample {}", k + 1),
@@ -103,10 +98,8 @@ impl Sampled {
     pub(crate) fn require_step(&self, other: &Self) -> Result<(), MotionError> {
         let (one, two) = (self.time_step, other.time_step);
         if (two / one - 1.0).abs() > 1e-9 {
-            return Err(MotionError::Mismatch {
-                what: format!("one horizontal has a step of {one} s, the other of {two} s"),
-                remedy: "choose components of one step".to_owned(),
-            });
+            let what = format!("one horizontal has a step of {one} s, the other of {two} s");
+            return Err(MotionError::mismatch(what, "choose components of one step"));
         }
         Ok(())
     }
@@ -192,13 +185,7 @@ impl Sampled {
     /// The same motion times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let times = |values: &[f64]| values.iter().map(|v| v * factor).collect();
-        Self {
-            time_step: self.time_step,
-            acceleration: times(&self.acceleration),
-            velocity: times(&self.velocity),
-            displacement: times(&self.displacement),
-        }
+        self.stretched(1.0, factor)
     }
 
     /// The same motion with time times `time` and acceleration times `factor`.

@@ -192,13 +192,10 @@ impl Record {
 
     fn require_one_site(&self, one: &Channel, other: &Channel) -> Result<(), MotionError> {
         match one.site.differs(&other.site) {
-            Some(what) if !self.mixed => Err(MotionError::Mismatch {
-                what: format!(
-                    "channels {} and {} of {} are of {what}",
-                    one.name, other.name, self.file
-                ),
-                remedy: "choose channels of one sensor".to_owned(),
-            }),
+            Some(what) if !self.mixed => Err(MotionError::mismatch(
+                format!("channels {} and {} of {} are of {what}", one.name, other.name, self.file),
+                "choose channels of one sensor",
+            )),
             _ => Ok(()),
         }
     }
@@ -212,24 +209,20 @@ impl Record {
     pub fn horizontal_pair(&self) -> Result<(&Channel, &Channel), MotionError> {
         let mut flat = self.channels.iter().filter(|channel| !channel.is_vertical());
         let (Some(one), Some(two)) = (flat.next(), flat.next()) else {
-            return Err(MotionError::Mismatch {
-                what: format!(
-                    "measures over directions need two horizontal components, and {} has {}",
-                    self.file,
-                    self.channel_names()
-                ),
-                remedy: "give the files of both".to_owned(),
-            });
+            let what = format!(
+                "measures over directions need two horizontal components, and {} has {}",
+                self.file,
+                self.channel_names()
+            );
+            return Err(MotionError::mismatch(what, "give the files of both"));
         };
         for channel in [one, two] {
             if channel.direction.orientation.is_none() {
-                return Err(MotionError::Mismatch {
-                    what: format!(
-                        "{} does not tell whether channel \"{}\" is horizontal",
-                        self.file, channel.name
-                    ),
-                    remedy: "name the channels after their directions, such as N and E".to_owned(),
-                });
+                let (file, name) = (&self.file, &channel.name);
+                return Err(MotionError::mismatch(
+                    format!("{file} does not tell whether channel \"{name}\" is horizontal"),
+                    "name the channels after their directions, such as N and E",
+                ));
             }
         }
         self.require_one_site(one, two)?;
@@ -237,13 +230,12 @@ impl Record {
         if let (Some(a), Some(b)) = (one.direction.azimuth, two.direction.azimuth)
             && math::cos((b - a).to_radians()).abs() > OBLIQUE
         {
-            return Err(MotionError::Mismatch {
-                what: format!(
-                    "channels {} and {} of {} point to {a}° and {b}°, which are not perpendicular",
-                    one.name, two.name, self.file
-                ),
-                remedy: "choose two components along perpendicular azimuths".to_owned(),
-            });
+            let what = format!(
+                "channels {} and {} of {} point to {a}° and {b}°, which are not perpendicular",
+                one.name, two.name, self.file
+            );
+            let remedy = "choose two components along perpendicular azimuths";
+            return Err(MotionError::mismatch(what, remedy));
         }
         Ok((one, two))
     }

@@ -140,14 +140,12 @@ fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> Moti
     let groups = choosing.most_of_group.map_or_else(String::new, |most| {
         format!(" and at most {most} of one event, of which there are {}", pool.groups)
     });
-    MotionError::Mismatch {
-        what: format!(
-            "of {given} records {found} reach the target with factors from {least} to {largest}\
-             {groups}, and {} are asked for",
-            choosing.count
-        ),
-        remedy: "widen the limits, ask for fewer, or give more records".to_owned(),
-    }
+    let what = format!(
+        "of {given} records {found} reach the target with factors from {least} to {largest}\
+         {groups}, and {} are asked for",
+        choosing.count
+    );
+    MotionError::mismatch(what, "widen the limits, ask for fewer, or give more records")
 }
 
 fn check(
@@ -155,24 +153,20 @@ fn check(
     candidates: &[Candidate],
     choosing: &Choosing,
 ) -> Result<(), MotionError> {
-    if choosing.count < 2 {
-        return Err(MotionError::parameter("size of the set", "at least 2", choosing.count));
-    }
+    MotionError::require(choosing.count >= 2, "size of the set", "at least 2", choosing.count)?;
     let [least, largest] = choosing.scale;
-    if !(least > 0.0 && largest >= least && largest.is_finite()) {
-        let found = format!("{least} to {largest}");
-        return Err(MotionError::parameter("factors", "0 < smallest <= largest", found));
-    }
+    let (range, found) =
+        (least > 0.0 && largest >= least && largest.is_finite(), format!("{least} to {largest}"));
+    MotionError::require(range, "factors", "0 < smallest <= largest", found)?;
     let periods = target.periods().len();
     for candidate in candidates {
         let (name, values) = (&candidate.name, &candidate.spectrum);
-        if values.len() != periods {
-            return Err(MotionError::parameter(
-                format!("spectrum of {name}"),
-                format!("{periods} accelerations, one to a period of the target"),
-                values.len(),
-            ));
-        }
+        MotionError::require(
+            values.len() == periods,
+            format!("spectrum of {name}"),
+            format!("{periods} accelerations, one to a period of the target"),
+            values.len(),
+        )?;
         if let Some(k) = values.iter().position(|sa| sa.is_nan() || *sa <= 0.0) {
             return Err(MotionError::parameter(
                 format!("spectrum of {name} at {} s", target.periods()[k]),

@@ -60,25 +60,22 @@ impl SelectionTarget {
         condition: Option<Condition>,
     ) -> Result<Self, MotionError> {
         let n = periods.len();
-        if n < 2 || median.len() != n || deviation.len() != n {
-            return Err(MotionError::parameter(
-                "target of a selection",
-                "at least 2 periods, each with a median and a standard deviation",
-                format!("{n}, {} and {}", median.len(), deviation.len()),
-            ));
-        }
+        MotionError::require(
+            n >= 2 && median.len() == n && deviation.len() == n,
+            "target of a selection",
+            "at least 2 periods, each with a median and a standard deviation",
+            format!("{n}, {} and {}", median.len(), deviation.len()),
+        )?;
         for k in 0..n {
             let row = |what: &str| format!("target of a selection, row {}, {what}", k + 1);
             MotionError::require_positive(&row("period (s)"), periods[k])?;
             MotionError::require_positive(&row("median (m/s2)"), median[k])?;
-            if !(0.0..=5.0).contains(&deviation[k]) {
-                let what = row("standard deviation of ln Sa");
-                return Err(MotionError::parameter(what, "0 to 5", deviation[k]));
-            }
-            if k > 0 && periods[k] <= periods[k - 1] {
-                let above = format!("above {}", periods[k - 1]);
-                return Err(MotionError::parameter(row("period (s)"), above, periods[k]));
-            }
+            let (within, what) =
+                ((0.0..=5.0).contains(&deviation[k]), row("standard deviation of ln Sa"));
+            MotionError::require(within, what, "0 to 5", deviation[k])?;
+            let before = k.checked_sub(1).map_or(0.0, |before| periods[before]);
+            let above = format!("above {before}");
+            MotionError::require(periods[k] > before, row("period (s)"), above, periods[k])?;
         }
         let mut mean: Vec<f64> = median.iter().map(|m| libm::log(*m)).collect();
         let mut to_condition = vec![0.0; n];

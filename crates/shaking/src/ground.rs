@@ -8,7 +8,7 @@ mod record;
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 use barrelstack_motion::{
     Channel, Component, GroundMotion, Horizontals, IntensityMeasure, MotionError, Processing,
-    Record,
+    Record, Stage,
 };
 
 use crate::motion::{
@@ -122,11 +122,8 @@ pub fn scaled(
     run_scale: f64,
 ) -> Result<GroundMotion, MotionError> {
     match spec.scale {
-        Scale::Factor(factor) => {
-            if factor != 1.0 {
-                motion = motion.scaled(factor);
-            }
-        }
+        Scale::Factor(1.0) => {}
+        Scale::Factor(factor) => motion = motion.scaled(factor),
         Scale::Pga(target) => motion = motion.scale_to(IntensityMeasure::Pga, target)?,
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
         Scale::Measure { measure, value, of } => match (horizontals(of), &spec.source) {
@@ -166,10 +163,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     let mut warnings: Vec<String> =
         record.warnings.iter().map(|w| format!("{}: {w}", record.file)).collect();
     let horizontal = component_of(record, spec.component.as_deref())?;
-    let processing = match spec.processing {
-        ProcessingSpec::None => Processing::none(),
-        ProcessingSpec::Default => default_processing(record),
-    };
+    let processing = processing_of(spec, record);
     let motion = match &spec.vertical {
         Vertical::None => record.ground_motion(&horizontal, None, &processing)?,
         Vertical::Component(name) => {
@@ -193,18 +187,13 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
             let (record, other, told) = on_one_clock(record, &horizontal, other)?;
             warnings.extend(told);
-            let theirs = match spec.processing {
-                ProcessingSpec::None => Processing::none(),
-                ProcessingSpec::Default => default_processing(&other),
-            };
+            let theirs = processing_of(spec, &other);
             let vertical = other.ground_motion(&Component::Number(1), None, &theirs)?;
-            let mut motion = record.ground_motion(&Component::Number(1), None, &processing)?;
-            motion.provenance.extend(vertical.provenance);
-            let provenance = motion.provenance;
-            let mut joined =
-                GroundMotion::new(motion.name, motion.horizontal, Some(vertical.horizontal));
-            joined.provenance = provenance;
-            joined
+            let motion = record.ground_motion(&Component::Number(1), None, &processing)?;
+            let GroundMotion { name, horizontal, mut provenance, .. } = motion;
+            provenance.extend(vertical.provenance);
+            let both = GroundMotion::new(name, horizontal, Some(vertical.horizontal));
+            GroundMotion { provenance, ..both }
         }
     };
     let mut motion = scaled_by_both(motion, record, &processing, scale)?;
@@ -236,10 +225,10 @@ fn on_one_clock(
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
         None => Ok(()),
-        Some(what) => Err(MotionError::Mismatch {
-            what: format!("{}: {what}", record.file),
-            remedy: "correct the step or the unit, or give another record".to_owned(),
-        }),
+        Some(what) => Err(MotionError::mismatch(
+            format!("{}: {what}", record.file),
+            "correct the step or the unit, or give another record",
+        )),
     }
 }
 
@@ -272,13 +261,15 @@ fn scaled_by_both(
     Ok(scaled)
 }
 
-/// The default processing of a record's stage, its pads cut off again.
+/// The processing that a scenario asks for; by default that of the record's stage, its pads cut off again.
 ///
 /// Pads hold half a minute of stillness before the first arrival, which a stack at rest does not need;
 /// what cutting them leaves at the ends is closed.
-fn default_processing(record: &Record) -> Processing {
-    let full = Processing::for_stage(record.stage);
-    if full.is_none() { full } else { Processing::compact() }
+fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
+    match (spec.processing, record.stage) {
+        (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),
+        (ProcessingSpec::None, _) | (_, Stage::Corrected | Stage::Unknown) => Processing::none(),
+    }
 }
 
 /// A component as people name it: the channel's own name first, then an azimuth in degrees.

@@ -72,9 +72,7 @@ pub fn measure(
     processing: &Processing,
     periods: &[f64],
 ) -> Result<Measured, MotionError> {
-    if record.channels.is_empty() {
-        return Err(MotionError::parameter("channels", "at least one", 0));
-    }
+    MotionError::require(!record.channels.is_empty(), "channels", "at least one", 0)?;
     let motion = |channel: &Channel| processed(channel, processing).map(|(motion, _)| motion);
     let flat: Vec<&Channel> = record.channels.iter().filter(|c| !c.is_vertical()).take(2).collect();
     let mut horizontals = Vec::new();

@@ -101,9 +101,9 @@ pub fn noise_corners(
     arrival: f64,
     criterion: &NoiseCriterion,
 ) -> Result<Corners, MotionError> {
-    let refuse = |what: String| MotionError::Mismatch {
-        what: format!("channel {}: {what}", channel.name),
-        remedy: "give the corners yourself".to_owned(),
+    let refuse = |what: String| {
+        let what = format!("channel {}: {what}", channel.name);
+        MotionError::mismatch(what, "give the corners yourself")
     };
     let (dt, a) = (channel.time_step, &channel.acceleration);
     let split = samples(arrival, dt).min(a.len());

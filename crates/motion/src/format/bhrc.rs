@@ -32,14 +32,8 @@ fn read_component(
     record: &mut Record,
     first: usize,
 ) -> Result<usize, ReadError> {
-    if !source.has(first, "VOL1DS FILE") {
-        return Err(source.damaged(
-            first,
-            "\"* VOL1DS FILE\" at the start of a component",
-            quoted(&source.text(first)),
-            "lines are missing or in excess before this one; get the file again from its source",
-        ));
-    }
+    let mark = "\"* VOL1DS FILE\" at the start of a component";
+    source.require_mark(first, "VOL1DS FILE", mark)?;
     let count_line = first + 10;
     let stated = source
         .number_after(count_line, "POINTS")

@@ -1,31 +1,83 @@
 //! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block to a channel:
 //! 13 text lines, 7 lines 16I5, 7 lines of reals, then data.
 
-use super::Told;
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
+use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
-use crate::record::{Channel, Record};
+use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
 use crate::utc::{DateOrder, Utc};
 
+/// CSMIP, CDMG and CGS volume 1: uncorrected accelerograms in three data layouts.
+///
+/// Time and value pairs `10F7.3` in g/10; a data line with its own format; a data line without one.
+/// Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03, "CSMIP strong-motion data file
+/// format"; CDMG volume 1 of the 1970s.
+pub(crate) const CSMIP: Format = Format {
+    name: "csmip-v1",
+    title: "CSMIP/CDMG/CGS volume 1 (uncorrected)",
+    sniff: |source| source.find(0, "UNCORRECTED ACCELEROGRAM DATA").is_some_and(|at| at < 4),
+    read: |source, told| read_blocks(source, told, CSMIP.name, 0),
+};
+
+/// RENADIC, Universidad de Chile: pairs in g/10 and often a clock channel.
+///
+/// Coordinates, dates and azimuth integers of these files are mostly zero or of another day and are
+/// not used.
+/// Spec: "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
+pub(crate) const RENADIC: Format = Format {
+    name: "renadic",
+    title: "RENADIC (Universidad de Chile)",
+    sniff: |source| source.has(0, "UNCORRECTED ACCELEROGRAM DATA") && source.has(7, "RENADIC"),
+    read: read_renadic,
+};
+
+/// USC Los Angeles volume 1: `1X,10F7.3` pairs at uneven times.
+///
+/// Film records were digitized where the trace bends, so the step varies from 0.003 to 0.013 s.
+/// Spec: Trifunac and Lee 1973, EERL report 73-03, volume 1 card images; Todorovska et al. 1999,
+/// USC network data release.
+pub(crate) const USC: Format = Format {
+    name: "usc",
+    title: "USC Los Angeles volume 1",
+    sniff: |source| {
+        source.text(0).to_ascii_uppercase().starts_with("FILE")
+            && source.has(0, "UNCORRECTED ACCELEROGRAM")
+    },
+    read: |source, told| read_blocks(source, told, USC.name, 1),
+};
+
 /// Text lines and the 7 + 7 lines of integers and reals.
 const HEADER_LINES: usize = 27;
 
-/// How the pairs of time and value stand in their lines.
-pub(crate) const PAIRS: Columns = Columns { indent: 0, per_line: 10, width: 7 };
+fn read_renadic(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+    let mut record = read_blocks(source, told, RENADIC.name, 0)?;
+    // Times and coordinates of these headers are those of the software's first day, or zero.
+    record.place(None, &Site::default());
+    if source.name.to_ascii_lowercase().contains("parte") {
+        record.warn(
+            None,
+            "the name says that this is one part of a longer record; join the parts, which overlap",
+        );
+    }
+    Ok(record)
+}
 
-/// Reads every block of a volume 1 file into `record`.
-pub(crate) fn read_blocks(
+/// Reads every block of a volume 1 file, whose pairs of time and value stand behind `indent` blanks.
+fn read_blocks(
     source: &Source<'_>,
     told: &Told<'_>,
-    record: &mut Record,
-    pairs: Columns,
-) -> Result<(), ReadError> {
-    source.each_block(|line| read_block(source, told, record, pairs, line))
+    format: &'static str,
+    indent: usize,
+) -> Result<Record, ReadError> {
+    let mut record = Record::new(format, source.name, Stage::Raw);
+    let pairs = Columns { indent, per_line: 10, width: 7 };
+    source.each_block(|line| read_block(source, told, &mut record, pairs, line))?;
+    Ok(record)
 }
 
 fn read_block(
@@ -35,20 +87,9 @@ fn read_block(
     pairs: Columns,
     first: usize,
 ) -> Result<usize, ReadError> {
-    if !source.has(first, "UNCORRECTED ACCELEROGRAM") {
-        return Err(source.damaged(
-            first,
-            "\"UNCORRECTED ACCELEROGRAM DATA\" at the start of a channel",
-            quoted(&source.text(first)),
-            "lines are missing or in excess before this one; get the file again from its source",
-        ));
-    }
-    if source.lines.len() <= first + HEADER_LINES {
-        return Err(source.cut(
-            format!("{HEADER_LINES} header lines and data"),
-            format!("{} lines", source.lines.len() - first),
-        ));
-    }
+    let mark = "\"UNCORRECTED ACCELEROGRAM DATA\" at the start of a channel";
+    source.require_mark(first, "UNCORRECTED ACCELEROGRAM", mark)?;
+    source.require_header(first, HEADER_LINES)?;
     if record.channels.is_empty() {
         record.event = source.text(first + 1);
         record.station = station_name(source, first + 5);

@@ -47,20 +47,9 @@ fn read_channel(
     record: &mut Record,
     first: usize,
 ) -> Result<usize, ReadError> {
-    if !source.has(first, "CORRECTED ACCELEROGRAM") {
-        return Err(source.damaged(
-            first,
-            "\"Corrected accelerogram\" at the start of a channel",
-            quoted(&source.text(first)),
-            "lines are missing or in excess before this one; get the file again from its source",
-        ));
-    }
-    if source.lines.len() <= first + HEADER_LINES {
-        return Err(source.cut(
-            format!("{HEADER_LINES} header lines and data"),
-            format!("{} lines", source.lines.len() - first),
-        ));
-    }
+    let mark = "\"Corrected accelerogram\" at the start of a channel";
+    source.require_mark(first, "CORRECTED ACCELEROGRAM", mark)?;
+    source.require_header(first, HEADER_LINES)?;
     let header = first..first + TEXT_LINES;
     if record.channels.is_empty() {
         record.event = source.text(first + 2);

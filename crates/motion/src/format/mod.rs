@@ -5,7 +5,6 @@ mod bhrc;
 mod cdmg;
 mod columns;
 mod cosmos;
-mod csmip_v1;
 mod csmip_v2;
 mod cwa;
 mod esm;
@@ -20,15 +19,12 @@ mod packed;
 mod peer;
 mod place;
 mod refused;
-mod renadic;
 mod sac;
 mod seed;
-mod slammer;
 mod smc;
 mod source;
 mod told;
 mod unam;
-mod usc;
 mod zip;
 
 use crate::error::{ReadError, Refusal};
@@ -118,9 +114,9 @@ pub const FORMATS: &[Format] = &[
     npz::FORMAT,
     smc::FORMAT,
     geonet::FORMAT,
-    renadic::FORMAT,
-    usc::FORMAT,
-    csmip_v1::FORMAT,
+    cdmg::RENADIC,
+    cdmg::USC,
+    cdmg::CSMIP,
     csmip_v2::FORMAT,
     bhrc::FORMAT,
     cosmos::FORMAT,
@@ -135,7 +131,7 @@ pub const FORMATS: &[Format] = &[
 
 /// Files that are known and refused, tried first.
 const KNOWN_OTHERS: &[Format] =
-    &[refused::HDF5, refused::XML, refused::USGS_BLOCKS, slammer::FORMAT];
+    &[refused::HDF5, refused::XML, refused::USGS_BLOCKS, refused::SLAMMER];
 
 /// Reads a strong-motion file of any format, also one inside a gzip or zip file; `name` is used in
 /// messages only.

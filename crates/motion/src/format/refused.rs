@@ -1,6 +1,6 @@
 //! Files that are known and hold no acceleration history that can be read here.
 
-use super::source::Source;
+use super::source::{Source, parse_number};
 use super::{Format, Told};
 use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
@@ -9,56 +9,71 @@ use crate::record::{Quantity, Record};
 pub(crate) const HDF5: Format = Format {
     name: "hdf5",
     title: "HDF5 and ASDF containers (refused)",
-    sniff: is_hdf5,
-    read: hdf5,
+    sniff: |source| source.bytes.starts_with(b"\x89HDF\r\n\x1a\n"),
+    read: |source, _| {
+        Err(source.error(
+            (),
+            Refusal::NotAcceleration,
+            "a strong-motion file",
+            "an HDF5 container",
+            "export the acceleration series to plain columns first",
+        ))
+    },
 };
 
-pub(crate) const XML: Format =
-    Format { name: "xml", title: "StationXML and QuakeML (refused)", sniff: is_xml, read: xml };
+pub(crate) const XML: Format = Format {
+    name: "xml",
+    title: "StationXML and QuakeML (refused)",
+    sniff: |source| {
+        let text = source.text(0);
+        text.starts_with("<?xml") || text.starts_with("<FDSNStationXML")
+    },
+    read: xml,
+};
 
 /// Blocks of acceleration, velocity and displacement that the USGS gave out around 1987; no sample of
 /// them can be passed on, so that a reader could not be tested.
 pub(crate) const USGS_BLOCKS: Format = Format {
     name: "usgs-1987",
     title: "USGS blocks of 1987 (refused)",
-    sniff: is_usgs_blocks,
-    read: usgs_blocks,
+    sniff: |source| {
+        ["SAMPLES/SEC=", "DATA TYPE="].iter().all(|key| (0..7).any(|line| source.has(line, key)))
+    },
+    read: |source, _| {
+        Err(source.error(
+            (0..7).find(|&line| source.has(line, "DATA TYPE=")),
+            Refusal::Unrecognized,
+            "a format with a reader",
+            "blocks of the USGS layout of 1987",
+            "cut the block with DATA TYPE=AC into a file of plain columns and state its unit and step",
+        ))
+    },
 };
 
-fn is_usgs_blocks(source: &Source<'_>) -> bool {
-    (0..7).any(|line| source.has(line, "SAMPLES/SEC="))
-        && (0..7).any(|line| source.has(line, "DATA TYPE="))
-}
-
-fn usgs_blocks(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
-    let line = (0..7).find(|&line| source.has(line, "DATA TYPE="));
-    Err(source.error(
-        line,
-        Refusal::Unrecognized,
-        "a format with a reader",
-        "blocks of the USGS layout of 1987",
-        "cut the block with DATA TYPE=AC into a file of plain columns and state its unit and step",
-    ))
-}
-
-fn is_hdf5(source: &Source<'_>) -> bool {
-    source.bytes.starts_with(b"\x89HDF\r\n\x1a\n")
-}
-
-fn hdf5(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
-    Err(source.error(
-        (),
-        Refusal::NotAcceleration,
-        "a strong-motion file",
-        "an HDF5 container",
-        "export the acceleration series to plain columns first",
-    ))
-}
-
-fn is_xml(source: &Source<'_>) -> bool {
-    let text = source.text(0);
-    text.starts_with("<?xml") || text.starts_with("<FDSNStationXML")
-}
+/// USGS SLAMMER: bare columns of values in g whose steps stand in a table beside them.
+///
+/// The records themselves are read as plain columns with unit and step given by the caller.
+/// Spec: Jibson et al. 2013, USGS Techniques and Methods 12-B1, "Adding records".
+pub(crate) const SLAMMER: Format = Format {
+    name: "slammer",
+    title: "USGS SLAMMER record table (refused)",
+    sniff: |source| {
+        let fields: Vec<&[u8]> = source.raw(0).split(|&b| b == b'\t').collect();
+        // Counted from 0, the step stands in column 10.
+        fields.len() >= 12
+            && parse_number(fields[0]).is_none()
+            && parse_number(fields[10]).is_some_and(|step| step > 0.0 && step < 1.0)
+    },
+    read: |source, _| {
+        Err(source.error(
+            0,
+            Refusal::NotAcceleration,
+            "an acceleration history",
+            "SLAMMER's table of records",
+            "give a record file beside it with unit g and the step that this table states for it",
+        ))
+    },
+};
 
 fn xml(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut found = station_xml(&String::from_utf8_lossy(source.bytes)).unwrap_or_default();

@@ -130,6 +130,30 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
+    /// That a block begins on a line with a mark, which is `expected` there.
+    pub(crate) fn require_mark(
+        &self,
+        line: usize,
+        mark: &str,
+        expected: &str,
+    ) -> Result<(), ReadError> {
+        if self.has(line, mark) {
+            return Ok(());
+        }
+        let remedy =
+            "lines are missing or in excess before this one; get the file again from its source";
+        Err(self.damaged(line, expected, quoted(&self.text(line)), remedy))
+    }
+
+    /// That a block has all lines of its header, and some behind it.
+    pub(crate) fn require_header(&self, first: usize, lines: usize) -> Result<(), ReadError> {
+        let found = self.lines.len() - first;
+        if found > lines {
+            return Ok(());
+        }
+        Err(self.cut(format!("{lines} header lines and data"), format!("{found} lines")))
+    }
+
     /// The line behind the end of a channel, "/&" or "end of data", which blank lines may precede; the
     /// mark may be left out where the next channel begins as told.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {

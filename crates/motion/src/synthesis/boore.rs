@@ -128,30 +128,25 @@ impl BooreSource {
     }
 
     fn check(&self) -> Result<(), MotionError> {
-        if !(1.0..=9.5).contains(&self.magnitude) {
-            return Err(MotionError::parameter("moment magnitude", "1 to 9.5", self.magnitude));
-        }
+        let known = (1.0..=9.5).contains(&self.magnitude);
+        MotionError::require(known, "moment magnitude", "1 to 9.5", self.magnitude)?;
         MotionError::require_positive("stress parameter (bar)", self.stress)?;
         MotionError::require_positive("shear-wave velocity (km/s)", self.velocity)?;
         MotionError::require_positive("density (g/cm3)", self.density)?;
         MotionError::require_positive("distance (km)", self.path.distance)?;
         MotionError::require_positive("quality factor", self.path.quality)?;
         MotionError::require_finite("quality exponent", self.path.quality_exponent)?;
-        if !(self.path.kappa >= 0.0 && self.path.kappa.is_finite()) {
-            return Err(MotionError::parameter("kappa (s)", "0 or above", self.path.kappa));
-        }
-        if let SiteAmplification::Table(points) = &self.path.amplification {
-            let rising = points.windows(2).all(|pair| pair[1].0 > pair[0].0);
-            let positive = points.iter().all(|(f, a)| *f > 0.0 && *a > 0.0 && a.is_finite());
-            if points.is_empty() || !rising || !positive {
-                return Err(MotionError::parameter(
-                    "site amplification",
-                    "points of rising frequency with values above 0",
-                    format!("{} points", points.len()),
-                ));
-            }
-        }
-        Ok(())
+        let kappa = self.path.kappa;
+        MotionError::require(kappa >= 0.0 && kappa.is_finite(), "kappa (s)", "0 or above", kappa)?;
+        let SiteAmplification::Table(points) = &self.path.amplification else { return Ok(()) };
+        let rising = points.windows(2).all(|pair| pair[1].0 > pair[0].0);
+        let positive = points.iter().all(|(f, a)| *f > 0.0 && *a > 0.0 && a.is_finite());
+        MotionError::require(
+            !points.is_empty() && rising && positive,
+            "site amplification",
+            "points of rising frequency with values above 0",
+            format!("{} points", points.len()),
+        )
     }
 
     /// Accelerations (m/s²) as drawn; the noise is normalized so that the mean square of its Fourier

@@ -30,9 +30,8 @@ impl NearFault {
     pub fn motion(&self, time_step: f64, seed: u64) -> Result<GroundMotion, MotionError> {
         self.pulse.check()?;
         MotionError::require_positive("crossover", self.crossover)?;
-        if !(self.start >= 0.0 && self.start.is_finite()) {
-            return Err(MotionError::parameter("pulse start (s)", "0 or above", self.start));
-        }
+        let starts = self.start >= 0.0 && self.start.is_finite();
+        MotionError::require(starts, "pulse start (s)", "0 or above", self.start)?;
         let corner = self.crossover / self.pulse.time_scale();
         let chain = Processing {
             taper: 0.02,

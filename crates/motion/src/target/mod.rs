@@ -176,14 +176,9 @@ impl TargetSpectrum {
                 positive("S_DS (g)", *sds)?;
                 positive("S_D1 (g)", *sd1)?;
                 positive("T_L (s)", *long_period)?;
-                if sd1 / sds >= *long_period {
-                    return Err(MotionError::parameter(
-                        "T_L (s)",
-                        format!("above S_D1/S_DS = {}", sd1 / sds),
-                        long_period,
-                    ));
-                }
-                Ok(())
+                let corner = sd1 / sds;
+                let expected = format!("above S_D1/S_DS = {corner}");
+                MotionError::require(corner < *long_period, "T_L (s)", expected, long_period)
             }
             Self::Eurocode8 { ground_acceleration, damping, .. } => {
                 positive("ground acceleration (g)", *ground_acceleration)?;
@@ -194,20 +189,14 @@ impl TargetSpectrum {
             Self::Nzs1170 { hazard, return_period, fault_distance, .. } => {
                 positive("hazard factor Z", *hazard)?;
                 positive("return period factor R", *return_period)?;
-                match fault_distance {
-                    Some(distance) if !(*distance >= 0.0) => {
-                        Err(MotionError::parameter("fault distance (km)", "0 or above", distance))
-                    }
-                    _ => Ok(()),
-                }
+                let distance = fault_distance.unwrap_or(0.0);
+                let what = "fault distance (km)";
+                MotionError::require(distance >= 0.0, what, "0 or above", distance)
             }
             Self::Ac156 { sds, height_ratio } => {
                 positive("S_DS (g)", *sds)?;
-                if (0.0..=1.0).contains(height_ratio) {
-                    Ok(())
-                } else {
-                    Err(MotionError::parameter("height ratio z/h", "0 to 1", height_ratio))
-                }
+                let within = (0.0..=1.0).contains(height_ratio);
+                MotionError::require(within, "height ratio z/h", "0 to 1", height_ratio)
             }
             Self::Table { points, damping } => {
                 require_damping(*damping, 0.0, 0.99)?;
@@ -254,27 +243,19 @@ impl TargetSpectrum {
 }
 
 fn require_damping(damping: f64, least: f64, greatest: f64) -> Result<(), MotionError> {
-    if (least..=greatest).contains(&damping) {
-        return Ok(());
-    }
-    Err(MotionError::parameter("damping ratio", format!("{least} to {greatest}"), damping))
+    let within = (least..=greatest).contains(&damping);
+    MotionError::require(within, "damping ratio", format!("{least} to {greatest}"), damping)
 }
 
 fn check_table(points: &[(f64, f64)]) -> Result<(), MotionError> {
-    if points.len() < 2 {
-        return Err(MotionError::parameter("target table", "at least 2 points", points.len()));
-    }
+    MotionError::require(points.len() >= 2, "target table", "at least 2 points", points.len())?;
     for (k, (period, acceleration)) in points.iter().enumerate() {
         let row = format!("target table, row {}", k + 1);
         MotionError::require_positive(&format!("{row}, period (s)"), *period)?;
         MotionError::require_positive(&format!("{row}, acceleration (m/s2)"), *acceleration)?;
-        if k > 0 && *period <= points[k - 1].0 {
-            return Err(MotionError::parameter(
-                format!("{row}, period (s)"),
-                format!("above {}", points[k - 1].0),
-                period,
-            ));
-        }
+        let before = k.checked_sub(1).map_or(0.0, |before| points[before].0);
+        let (what, above) = (format!("{row}, period (s)"), format!("above {before}"));
+        MotionError::require(*period > before, what, above, period)?;
     }
     Ok(())
 }

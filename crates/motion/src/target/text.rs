@@ -180,9 +180,8 @@ impl FromStr for TargetSpectrum {
             }
         };
         given.end()?;
-        spectrum.check().map_err(|error| MotionError::Mismatch {
-            what: format!("{code}: {error}"),
-            remedy: "correct the parameter".to_owned(),
+        spectrum.check().map_err(|error| {
+            MotionError::mismatch(format!("{code}: {error}"), "correct the parameter")
         })?;
         Ok(spectrum)
     }

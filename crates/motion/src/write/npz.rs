@@ -46,9 +46,9 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
             head.iter().filter(|(other, _)| *other == key).map(|(_, value)| value.as_str());
         arrays.push((key.to_owned(), npy_words(&values.collect::<Vec<_>>())));
     }
-    zipped(&arrays).map_err(|error| MotionError::Mismatch {
-        what: format!("the arrays make no archive: {error}"),
-        remedy: "give the channels names of their own".to_owned(),
+    zipped(&arrays).map_err(|error| {
+        let what = format!("the arrays make no archive: {error}");
+        MotionError::mismatch(what, "give the channels names of their own")
     })
 }
 

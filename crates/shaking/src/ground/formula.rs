@@ -28,73 +28,47 @@ pub(super) fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
 /// the other one, the pulse is scaled to it.
 pub(super) fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
-    let unit = 1.0;
-    let (name, natural, made) = match pulse.kind {
-        PulseKind::Ricker => (
-            "Ricker pulse",
-            Natural::Acceleration,
-            MotionPulse::Ricker { acceleration: unit, period },
-        ),
-        PulseKind::HalfSine => (
-            "half sine",
-            Natural::Acceleration,
-            MotionPulse::HalfSine { acceleration: unit, duration: 0.5 * period },
-        ),
-        PulseKind::OneSine => {
-            ("one sine", Natural::Acceleration, MotionPulse::OneSine { acceleration: unit, period })
+    let (acceleration, velocity) = (1.0, 1.0);
+    let (name, made) = match pulse.kind {
+        PulseKind::Ricker => ("Ricker pulse", MotionPulse::Ricker { acceleration, period }),
+        PulseKind::HalfSine => {
+            ("half sine", MotionPulse::HalfSine { acceleration, duration: 0.5 * period })
         }
-        PulseKind::OneCosine => (
-            "one cosine",
-            Natural::Acceleration,
-            MotionPulse::OneCosine { acceleration: unit, period },
-        ),
-        PulseKind::Rectangular => (
-            "rectangular pulse",
-            Natural::Acceleration,
-            MotionPulse::Rectangular { acceleration: unit, duration: period },
-        ),
-        PulseKind::Gabor { gamma, phase } => (
-            "Gabor pulse",
-            Natural::Velocity,
-            MotionPulse::Gabor { velocity: unit, period, gamma, phase },
-        ),
-        PulseKind::CycloidA => {
-            ("cycloid A", Natural::Velocity, MotionPulse::CycloidA { velocity: unit, period })
+        PulseKind::OneSine => ("one sine", MotionPulse::OneSine { acceleration, period }),
+        PulseKind::OneCosine => ("one cosine", MotionPulse::OneCosine { acceleration, period }),
+        PulseKind::Rectangular => {
+            ("rectangular pulse", MotionPulse::Rectangular { acceleration, duration: period })
         }
-        PulseKind::CycloidB => {
-            ("cycloid B", Natural::Velocity, MotionPulse::CycloidB { velocity: unit, period })
+        PulseKind::Gabor { gamma, phase } => {
+            ("Gabor pulse", MotionPulse::Gabor { velocity, period, gamma, phase })
         }
-        PulseKind::CycloidC { cycles } => (
-            "cycloid C",
-            Natural::Velocity,
-            MotionPulse::CycloidC { velocity: unit, period, cycles },
-        ),
+        PulseKind::CycloidA => ("cycloid A", MotionPulse::CycloidA { velocity, period }),
+        PulseKind::CycloidB => ("cycloid B", MotionPulse::CycloidB { velocity, period }),
+        PulseKind::CycloidC { cycles } => {
+            ("cycloid C", MotionPulse::CycloidC { velocity, period, cycles })
+        }
         PulseKind::MavroeidisPapageorgiou { gamma, phase } => (
             "Mavroeidis–Papageorgiou pulse",
-            Natural::Velocity,
-            MotionPulse::MavroeidisPapageorgiou { velocity: unit, period, gamma, phase },
+            MotionPulse::MavroeidisPapageorgiou { velocity, period, gamma, phase },
         ),
     };
     let base = GroundMotion::from_pulse(name, made)?;
-    let sized = match (pulse.amplitude, natural) {
-        (Amplitude::Acceleration(a), Natural::Acceleration) => base.scaled(a),
-        (Amplitude::Velocity(v), Natural::Velocity) => base.scaled(v),
-        (Amplitude::Acceleration(a), Natural::Velocity) => {
-            base.scale_to(IntensityMeasure::Pga, a)?
-        }
-        (Amplitude::Velocity(v), Natural::Acceleration) => {
-            base.scale_to(IntensityMeasure::Pgv, v)?
-        }
+    let of_velocity = matches!(
+        pulse.kind,
+        PulseKind::Gabor { .. }
+            | PulseKind::CycloidA
+            | PulseKind::CycloidB
+            | PulseKind::CycloidC { .. }
+            | PulseKind::MavroeidisPapageorgiou { .. }
+    );
+    let sized = match (pulse.amplitude, of_velocity) {
+        (Amplitude::Acceleration(a), false) => base.scaled(a),
+        (Amplitude::Velocity(v), true) => base.scaled(v),
+        (Amplitude::Acceleration(a), true) => base.scale_to(IntensityMeasure::Pga, a)?,
+        (Amplitude::Velocity(v), false) => base.scale_to(IntensityMeasure::Pgv, v)?,
         (Amplitude::Displacement(d), _) => base.scale_to(IntensityMeasure::Pgd, d)?,
     };
     Ok(directed(sized, pulse.direction, pulse.start))
-}
-
-/// What the amplitude of a pulse's formula is.
-#[derive(Clone, Copy)]
-enum Natural {
-    Acceleration,
-    Velocity,
 }
 
 /// A horizontal motion, turned to its direction and delayed.
@@ -105,12 +79,10 @@ fn directed(motion: GroundMotion, direction: Direction, start: f64) -> GroundMot
         let delayed = barrelstack_motion::Delayed { delay: start, history: motion.horizontal };
         History::Sum(vec![delayed])
     };
-    let mut made = match direction {
-        Direction::Horizontal => GroundMotion::new(motion.name, history, None),
-        Direction::Vertical => {
-            GroundMotion::new(motion.name, History::Sum(Vec::new()), Some(history))
-        }
+    let (horizontal, vertical) = match direction {
+        Direction::Horizontal => (history, None),
+        Direction::Vertical => (History::Sum(Vec::new()), Some(history)),
     };
-    made.provenance = motion.provenance;
-    made
+    let provenance = motion.provenance;
+    GroundMotion { provenance, ..GroundMotion::new(motion.name, horizontal, vertical) }
 }

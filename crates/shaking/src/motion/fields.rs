@@ -1,11 +1,13 @@
 //! The fields of `[motion]`.
 
+use std::mem::discriminant;
+
 use barrelstack_input::Dimension;
 use barrelstack_input::field::{
     Default, Field, Kind, Named, Range, Section, Variant, Variants, names,
 };
 
-use super::{Direction, MeasuredOn, Processing};
+use super::{Direction, MeasuredOn, Processing, PulseKind};
 
 impl Named for Processing {
     const NAMES: &'static [(&'static str, Self)] =
@@ -26,38 +28,35 @@ impl Named for MeasuredOn {
     ];
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PulseName {
-    Ricker,
-    HalfSine,
-    OneSine,
-    OneCosine,
-    Rectangular,
-    Gabor,
-    CycloidA,
-    CycloidB,
-    CycloidC,
-    MavroeidisPapageorgiou,
-}
-
-impl Named for PulseName {
+impl Named for PulseKind {
     const NAMES: &'static [(&'static str, Self)] = &[
         ("ricker", Self::Ricker),
         ("half-sine", Self::HalfSine),
         ("one-sine", Self::OneSine),
         ("one-cosine", Self::OneCosine),
         ("rectangular", Self::Rectangular),
-        ("gabor", Self::Gabor),
+        ("gabor", Self::Gabor { gamma: 0.0, phase: 0.0 }),
         ("cycloid-a", Self::CycloidA),
         ("cycloid-b", Self::CycloidB),
-        ("cycloid-c", Self::CycloidC),
-        ("mavroeidis-papageorgiou", Self::MavroeidisPapageorgiou),
+        ("cycloid-c", Self::CycloidC { cycles: 0 }),
+        ("mavroeidis-papageorgiou", Self::MavroeidisPapageorgiou { gamma: 0.0, phase: 0.0 }),
     ];
+
+    /// The name of the form, whatever its parameters, which are fields of their own.
+    fn name(self) -> &'static str {
+        let same = |form: &Self| discriminant(form) == discriminant(&self);
+        Self::NAMES.iter().find(|(_, form)| same(form)).map_or("", |(name, _)| name)
+    }
 }
 
 /// Names of the records shipped with the program.
 pub fn record_names() -> Vec<&'static str> {
     barrelstack_motion::BUNDLED.to_vec()
+}
+
+/// A field that may be left out.
+const fn optional(name: &'static str, kind: Kind, help: &'static str) -> Field {
+    Field::new(name, kind, Default::Nothing, help)
 }
 
 /// Periods from a microsecond to an hour.
@@ -141,7 +140,7 @@ pub static PULSE: Section = Section {
     fields: &[
         Field::new(
             "kind",
-            Kind::Choice(names::<PulseName>),
+            Kind::Choice(names::<PulseKind>),
             Default::Required,
             "Form of the pulse.",
         ),
@@ -221,39 +220,34 @@ pub static SCALE: Section = Section {
     name: "scale",
     help: "Scaling of all components by one factor; one of the fields.",
     fields: &[
-        Field::new(
+        optional(
             "factor",
             Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
-            Default::Nothing,
             "Factor; a negative one turns the motion around.",
         ),
-        Field::new(
+        optional(
             "pga",
             Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)),
-            Default::Nothing,
             "Peak horizontal acceleration to reach.",
         ),
-        Field::new(
+        optional(
             "pgv",
             Kind::Quantity(&[Dimension::VELOCITY], Range::up_to(1e3)),
-            Default::Nothing,
             "Peak horizontal velocity to reach.",
         ),
-        Field::new(
+        optional(
             "measure",
             Kind::Text,
-            Default::Nothing,
             "Any other measure that grows with the motion, whose `value` shall be reached: `pgd`, \
              `arias`, `cav`, `cav-std`, `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period \
              in seconds, damping 5 %) or `sa(1.0,0.02)`.",
         ),
-        Field::new(
+        optional(
             "value",
             Kind::Quantity(
                 &[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH],
                 Range::up_to(1e4),
             ),
-            Default::Nothing,
             "Value of `measure` to reach.",
         ),
         Field::new(
@@ -279,37 +273,21 @@ pub static MOTION: Section = Section {
     name: "motion",
     help: "The ground motion: one of `record`, `bundled`, `sine`, `pulse` and `none`.",
     fields: &[
-        Field::new(
-            "record",
-            Kind::Text,
-            Default::Nothing,
-            "File of a recorded motion, relative to the scenario file.",
-        ),
-        Field::new(
-            "bundled",
-            Kind::Choice(record_names),
-            Default::Nothing,
-            "Record shipped with the program.",
-        ),
-        Field::new("sine", Kind::Table(&SINE), Default::Nothing, "A harmonic motion."),
-        Field::new("pulse", Kind::Table(&PULSE), Default::Nothing, "A pulse."),
-        Field::new("none", Kind::Flag, Default::Nothing, "True for a ground at rest."),
+        optional("record", Kind::Text, "File of a recorded motion, relative to the scenario file."),
+        optional("bundled", Kind::Choice(record_names), "Record shipped with the program."),
+        optional("sine", Kind::Table(&SINE), "A harmonic motion."),
+        optional("pulse", Kind::Table(&PULSE), "A pulse."),
+        optional("none", Kind::Flag, "True for a ground at rest."),
         Field::new(
             "component",
             Kind::Label,
             Default::Derived("the first horizontal component"),
             "Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`.",
         ),
-        Field::new(
-            "vertical",
-            Kind::TextOrFalse,
-            Default::Nothing,
-            "Vertical component of the same record, or false.",
-        ),
-        Field::new(
+        optional("vertical", Kind::TextOrFalse, "Vertical component of the same record, or false."),
+        optional(
             "vertical_record",
             Kind::Text,
-            Default::Nothing,
             "File of the vertical motion, relative to the scenario file.",
         ),
         Field::new(
@@ -324,10 +302,9 @@ pub static MOTION: Section = Section {
             Default::Derived("that of the file"),
             "Unit of acceleration, only for a file that states none.",
         ),
-        Field::new(
+        optional(
             "sensitivity",
             Kind::Number(Range::up_to(1e15)),
-            Default::Nothing,
             "Counts to one m/s², only for a file that holds counts (miniSEED, SAC).",
         ),
         Field::new(
@@ -336,10 +313,9 @@ pub static MOTION: Section = Section {
             Default::Value("\"default\""),
             "Signal processing of the record.",
         ),
-        Field::new(
+        optional(
             "obtain",
             Kind::Text,
-            Default::Nothing,
             "Where to get the record, told to those who do not have it.",
         ),
         Field::new(

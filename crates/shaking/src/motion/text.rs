@@ -6,7 +6,7 @@ use barrelstack_input::writer::Writer;
 use barrelstack_input::{Dimension, InputError};
 use barrelstack_motion::{IntensityMeasure, MotionError};
 
-use super::fields::{LONGEST, MOTION, PULSE, PulseName, SCALE, SINE, SOURCES};
+use super::fields::{LONGEST, MOTION, PULSE, SCALE, SINE, SOURCES};
 use super::{
     Amplitude, MeasuredOn, MotionSource, MotionSpec, Pulse, PulseKind, RecordMotion, RecordSource,
     Scale, Sine, Vertical,
@@ -195,23 +195,14 @@ fn read_sine(reader: Reader<'_>) -> Result<Sine, InputError> {
 }
 
 fn read_pulse(reader: Reader<'_>) -> Result<Pulse, InputError> {
-    let kind = match reader.choice::<PulseName>("kind")? {
-        PulseName::Ricker => PulseKind::Ricker,
-        PulseName::HalfSine => PulseKind::HalfSine,
-        PulseName::OneSine => PulseKind::OneSine,
-        PulseName::OneCosine => PulseKind::OneCosine,
-        PulseName::Rectangular => PulseKind::Rectangular,
-        PulseName::Gabor => {
-            PulseKind::Gabor { gamma: reader.number("gamma")?, phase: reader.quantity("phase")? }
-        }
-        PulseName::CycloidA => PulseKind::CycloidA,
-        PulseName::CycloidB => PulseKind::CycloidB,
-        PulseName::CycloidC => PulseKind::CycloidC { cycles: reader.integer("cycles")? },
-        PulseName::MavroeidisPapageorgiou => PulseKind::MavroeidisPapageorgiou {
-            gamma: reader.number("gamma")?,
-            phase: reader.quantity("phase")?,
-        },
-    };
+    let mut kind = reader.choice("kind")?;
+    if let PulseKind::Gabor { gamma, phase } | PulseKind::MavroeidisPapageorgiou { gamma, phase } =
+        &mut kind
+    {
+        (*gamma, *phase) = (reader.number("gamma")?, reader.quantity("phase")?);
+    } else if let PulseKind::CycloidC { cycles } = &mut kind {
+        *cycles = reader.integer("cycles")?;
+    }
     let pulse = Pulse {
         kind,
         amplitude: read_amplitude(&reader)?,
@@ -311,32 +302,14 @@ fn write_sine(sine: &Sine) -> Table {
 }
 
 fn write_pulse(pulse: &Pulse) -> Table {
-    let name = match pulse.kind {
-        PulseKind::Ricker => PulseName::Ricker,
-        PulseKind::HalfSine => PulseName::HalfSine,
-        PulseKind::OneSine => PulseName::OneSine,
-        PulseKind::OneCosine => PulseName::OneCosine,
-        PulseKind::Rectangular => PulseName::Rectangular,
-        PulseKind::Gabor { .. } => PulseName::Gabor,
-        PulseKind::CycloidA => PulseName::CycloidA,
-        PulseKind::CycloidB => PulseName::CycloidB,
-        PulseKind::CycloidC { .. } => PulseName::CycloidC,
-        PulseKind::MavroeidisPapageorgiou { .. } => PulseName::MavroeidisPapageorgiou,
-    };
-    let mut writer = Writer::variant(&PULSE, name);
-    match pulse.kind {
-        PulseKind::Gabor { gamma, phase } | PulseKind::MavroeidisPapageorgiou { gamma, phase } => {
-            writer.number("gamma", gamma);
-            writer.quantity("phase", phase);
-        }
-        PulseKind::CycloidC { cycles } => writer.integer("cycles", cycles),
-        PulseKind::Ricker
-        | PulseKind::HalfSine
-        | PulseKind::OneSine
-        | PulseKind::OneCosine
-        | PulseKind::Rectangular
-        | PulseKind::CycloidA
-        | PulseKind::CycloidB => {}
+    let mut writer = Writer::variant(&PULSE, pulse.kind);
+    if let PulseKind::Gabor { gamma, phase } | PulseKind::MavroeidisPapageorgiou { gamma, phase } =
+        pulse.kind
+    {
+        writer.number("gamma", gamma);
+        writer.quantity("phase", phase);
+    } else if let PulseKind::CycloidC { cycles } = pulse.kind {
+        writer.integer("cycles", cycles);
     }
     write_amplitude(&mut writer, pulse.amplitude);
     writer.quantity("period", pulse.period);
