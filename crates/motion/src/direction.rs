@@ -23,11 +23,7 @@ pub struct Direction {
 impl Direction {
     /// A horizontal direction of known azimuth (degrees clockwise from north).
     pub fn horizontal(azimuth: f64) -> Self {
-        Self {
-            azimuth: Some(azimuth.rem_euclid(360.0)),
-            orientation: Some(Orientation::Horizontal),
-            downward: false,
-        }
+        Self { azimuth: Some(azimuth.rem_euclid(360.0)), ..Self::some_horizontal() }
     }
 
     /// A horizontal direction whose azimuth is unknown.

@@ -63,9 +63,8 @@ impl GroundMotion {
     /// All components times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let mut motion = self.map(|history| history.scaled(factor));
-        motion.provenance.push(format!("scaled by {factor:.6} (one factor for all components)"));
-        motion
+        let step = format!("scaled by {factor:.6} (one factor for all components)");
+        self.changed(|history| history.scaled(factor), step)
     }
 
     /// The motion for a model `length_scale` times the size under the same gravity: time times
@@ -73,20 +72,19 @@ impl GroundMotion {
     /// acceleration unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
-        let mut motion = self.map(|history| history.froude(length_scale));
-        motion.provenance.push(format!(
+        let step = format!(
             "Froude-scaled to length {length_scale}: time times {:.6}, acceleration unchanged",
             length_scale.sqrt()
-        ));
-        motion
+        );
+        self.changed(|history| history.froude(length_scale), step)
     }
 
-    fn map(&self, change: impl Fn(&History) -> History) -> Self {
+    /// All components changed alike, with what was done.
+    fn changed(&self, change: impl Fn(&History) -> History, step: String) -> Self {
         let horizontal = change(&self.horizontal);
         let vertical = self.vertical.as_ref().map(change);
-        let mut motion = Self::new(self.name.clone(), horizontal, vertical);
-        motion.provenance.clone_from(&self.provenance);
-        motion
+        let provenance = self.provenance.iter().cloned().chain([step]).collect();
+        Self { provenance, ..Self::new(self.name.clone(), horizontal, vertical) }
     }
 
     /// The motion whose horizontal component has the given intensity (SI units); the vertical
@@ -96,13 +94,12 @@ impl GroundMotion {
     /// If the measure does not grow with amplitude, is zero here, or the target is not above zero.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
         let factor = self.scale_factor(measure, target)?;
-        let mut motion = self.map(|history| history.scaled(factor));
-        motion.provenance.push(format!(
+        let step = format!(
             "scaled by {factor:.6} to {measure} = {target} {} of the horizontal component (one \
              factor for all components)",
             measure.unit()
-        ));
-        Ok(motion)
+        );
+        Ok(self.changed(|history| history.scaled(factor), step))
     }
 
     /// The factor that brings the horizontal component to the given intensity (SI units).

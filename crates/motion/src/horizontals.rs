@@ -1,6 +1,5 @@
 //! A measure of two horizontals as one number.
 
-use std::fmt;
 use std::str::FromStr;
 
 use crate::error::MotionError;
@@ -119,31 +118,17 @@ fn turned(
     Ok(values)
 }
 
-impl fmt::Display for Horizontals {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::RotD50 => "rotd50",
-            Self::RotD100 => "rotd100",
-            Self::GeometricMean => "geomean",
-        })
-    }
-}
+printed_as!(Horizontals, RotD50 = "rotd50", RotD100 = "rotd100", GeometricMean = "geomean");
 
 impl FromStr for Horizontals {
     type Err = MotionError;
 
     fn from_str(text: &str) -> Result<Self, MotionError> {
-        Ok(match text.trim().to_ascii_lowercase().as_str() {
-            "rotd50" => Self::RotD50,
-            "rotd100" => Self::RotD100,
-            "geomean" => Self::GeometricMean,
-            _ => {
-                return Err(MotionError::parameter(
-                    "measure of two horizontals",
-                    "rotd50, rotd100 or geomean",
-                    format!("\"{text}\""),
-                ));
-            }
+        let told = text.trim().to_ascii_lowercase();
+        let all = [Self::RotD50, Self::RotD100, Self::GeometricMean];
+        all.into_iter().find(|one| one.to_string() == told).ok_or_else(|| {
+            let (what, all) = ("measure of two horizontals", "rotd50, rotd100 or geomean");
+            MotionError::parameter(what, all, format!("\"{text}\""))
         })
     }
 }

@@ -96,43 +96,24 @@ impl IntensityMeasure {
 
     /// The SI unit of the number, as text; empty for a pure number.
     pub fn unit(&self) -> &'static str {
-        match self {
-            Self::Pga | Self::Rms | Self::Sa { .. } => "m/s2",
-            Self::Pgv
-            | Self::Arias
-            | Self::Cav
-            | Self::CavStandardized
-            | Self::Asi
-            | Self::Fiv3 { .. } => "m/s",
-            Self::Pgd | Self::Housner { .. } | Self::Vsi => "m",
-            Self::PgvOverPga
-            | Self::SignificantDuration { .. }
-            | Self::BracketedDuration { .. }
-            | Self::MeanPeriod => "s",
-            Self::Fajfar => "m/s^0.75",
-        }
+        self.unit_and_growth().0
     }
 
-    fn growth(&self) -> Growth {
+    fn unit_and_growth(&self) -> (&'static str, Growth) {
         match self {
-            Self::Pga
-            | Self::Pgv
-            | Self::Pgd
-            | Self::Cav
-            | Self::Rms
-            | Self::Housner { .. }
-            | Self::Asi
-            | Self::Vsi
-            | Self::Fajfar
-            | Self::Sa { .. }
-            | Self::Fiv3 { .. } => Growth::Power(1.0),
-            Self::Arias => Growth::Power(2.0),
-            Self::CavStandardized => Growth::Monotone,
-            Self::PgvOverPga => Growth::None("a ratio does not change with the amplitude"),
+            Self::Pga | Self::Rms | Self::Sa { .. } => ("m/s2", Growth::Power(1.0)),
+            Self::Pgv | Self::Cav | Self::Asi | Self::Fiv3 { .. } => ("m/s", Growth::Power(1.0)),
+            Self::Arias => ("m/s", Growth::Power(2.0)),
+            Self::CavStandardized => ("m/s", Growth::Monotone),
+            Self::Pgd | Self::Housner { .. } | Self::Vsi => ("m", Growth::Power(1.0)),
+            Self::Fajfar => ("m/s^0.75", Growth::Power(1.0)),
+            Self::PgvOverPga => ("s", Growth::None("a ratio does not change with the amplitude")),
             Self::SignificantDuration { .. } | Self::MeanPeriod => {
-                Growth::None("a time does not change with the amplitude")
+                ("s", Growth::None("a time does not change with the amplitude"))
             }
-            Self::BracketedDuration { .. } => Growth::None("a bracketed duration grows in steps"),
+            Self::BracketedDuration { .. } => {
+                ("s", Growth::None("a bracketed duration grows in steps"))
+            }
         }
     }
 
@@ -150,7 +131,7 @@ impl IntensityMeasure {
             motion: name.to_owned(),
             target: format!("{target} {}", self.unit()),
         };
-        match self.growth() {
+        match self.unit_and_growth().1 {
             Growth::Power(power) => {
                 let now = value(1.0)?;
                 if !(now > 0.0) {

@@ -189,14 +189,12 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
             })?,
         };
         overlap = Some(found);
-        let start = mine.acceleration.len().checked_sub(found).ok_or_else(|| {
-            refuse(format!("channel {name} of {} is shorter than the overlap", joined.file))
-        })?;
+        let shorter =
+            |file: &str| refuse(format!("channel {name} of {file} is shorter than the overlap"));
+        let start =
+            mine.acceleration.len().checked_sub(found).ok_or_else(|| shorter(&joined.file))?;
         if found > theirs.acceleration.len() {
-            return Err(refuse(format!(
-                "channel {name} of {} is shorter than the overlap",
-                part.file
-            )));
+            return Err(shorter(&part.file));
         }
         let (tail, head) = (&mine.acceleration[start..], &theirs.acceleration[..found]);
         let misfit = misfit(tail, head);

@@ -54,6 +54,9 @@
     reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
 )]
 
+#[macro_use]
+mod printed;
+
 mod align;
 mod bundled;
 mod changed;

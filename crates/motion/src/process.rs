@@ -241,17 +241,13 @@ impl Processing {
         for (value, filtered) in padded.iter_mut().zip(&spectrum) {
             *value = filtered.re;
         }
-        if let Some(fc) = corner {
-            steps.push(format!(
-                "zero-phase Butterworth high-pass, order {} forth and back, at {fc:.4} Hz",
-                self.order
-            ));
-        }
-        if let Some(fc) = self.low_pass {
-            steps.push(format!(
-                "zero-phase Butterworth low-pass, order {} forth and back, at {fc:.4} Hz",
-                self.order
-            ));
+        for (pass, corner) in [("high", corner), ("low", self.low_pass)] {
+            steps.extend(corner.map(|fc| {
+                format!(
+                    "zero-phase Butterworth {pass}-pass, order {} forth and back, at {fc:.4} Hz",
+                    self.order
+                )
+            }));
         }
         let pad = side as f64 * time_step;
         match self.pads {

@@ -13,25 +13,18 @@ use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
 /// How far a record was processed before it was written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
     /// As recorded; velocity and displacement drift when it is integrated.
     Raw,
     /// Filtered and baseline-corrected, by its publisher or since.
     Corrected,
     /// The file does not say.
+    #[default]
     Unknown,
 }
 
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Raw => "raw",
-            Self::Corrected => "corrected",
-            Self::Unknown => "unknown",
-        })
-    }
-}
+printed_as!(Stage, Raw = "raw", Corrected = "corrected", Unknown = "unknown");
 
 /// The quantity a stated peak belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,15 +37,12 @@ pub enum Quantity {
     Displacement,
 }
 
-impl fmt::Display for Quantity {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Acceleration => "acceleration",
-            Self::Velocity => "velocity",
-            Self::Displacement => "displacement",
-        })
-    }
-}
+printed_as!(
+    Quantity,
+    Acceleration = "acceleration",
+    Velocity = "velocity",
+    Displacement = "displacement"
+);
 
 /// A peak stated in a header next to the peak of the numbers it describes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +65,7 @@ impl StatedPeak {
 }
 
 /// One component as read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channel {
     /// Name in the file, such as `360` or `N28W`.
     pub name: String,
@@ -124,16 +114,7 @@ impl Channel {
         time_step: f64,
         acceleration: Vec<f64>,
     ) -> Self {
-        Self {
-            name: name.into(),
-            direction,
-            time_step,
-            acceleration,
-            initial_velocity: 0.0,
-            start: None,
-            site: Site::default(),
-            peaks: Vec::new(),
-        }
+        Self { name: name.into(), direction, time_step, acceleration, ..Self::default() }
     }
 
     /// A channel of a motion that was made, at steps of at most `time_step` (s).
@@ -218,7 +199,7 @@ impl fmt::Display for Warning {
 }
 
 /// A file as read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
     /// Name of the format, as in [`crate::FORMATS`]; `samples` where it was made of samples.
     pub format: &'static str,
@@ -243,17 +224,7 @@ pub struct Record {
 
 impl Record {
     pub(crate) fn new(format: &'static str, file: &str, stage: Stage) -> Self {
-        Self {
-            format,
-            file: file.to_owned(),
-            event: String::new(),
-            station: String::new(),
-            stage,
-            channels: Vec::new(),
-            warnings: Vec::new(),
-            mixed: false,
-            notes: Vec::new(),
-        }
+        Self { format, file: file.to_owned(), stage, ..Self::default() }
     }
 
     /// A record out of samples at hand: channels by name, all of one step (s) and one unit.

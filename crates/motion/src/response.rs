@@ -36,7 +36,24 @@ impl Step {
         let (s, c) = math::sin_cos(w * q * time_step);
         // Impulse response h at the end of the step, its integral and its double integral.
         let impulse = decay * s / (w * q);
-        let (once, twice) = impulse_integrals(w, damping, time_step, impulse, decay, s, c);
+        let (mut once, mut twice) = (0.0, 0.0);
+        let x = w * time_step;
+        if x > 0.5 {
+            once = (1.0 - decay * (c + damping / q * s)) / (w * w);
+            twice = (time_step - impulse - 2.0 * damping * w * once) / (w * w);
+        } else {
+            // The closed forms lose digits for short steps, the series does not: `here` is the term of
+            // order k of h, that is c_k dt^k.
+            let (mut before, mut here) = (0.0, time_step);
+            for k in 1..24 {
+                let order = f64::from(k);
+                once += here * time_step / (order + 1.0);
+                twice += here * time_step * time_step / ((order + 1.0) * (order + 2.0));
+                let after =
+                    -(2.0 * damping * x * order * here + x * x * before) / (order * (order + 1.0));
+                (before, here) = (here, after);
+            }
+        }
         let (ramp, ramp_rate) = (twice / time_step, once / time_step);
         Self {
             displacement: [decay * (damping / q * s + c), impulse, once - ramp, ramp],
@@ -67,35 +84,6 @@ impl Step {
     fn total(&self, u: f64, v: f64) -> f64 {
         -2.0 * self.damping * self.frequency * v - self.frequency * self.frequency * u
     }
-}
-
-/// `∫h` and `∫∫h` over one step. The closed forms lose digits for short steps, the series does not.
-fn impulse_integrals(
-    w: f64,
-    damping: f64,
-    time_step: f64,
-    impulse: f64,
-    decay: f64,
-    s: f64,
-    c: f64,
-) -> (f64, f64) {
-    if w * time_step > 0.5 {
-        let q = (1.0 - damping * damping).sqrt();
-        let once = (1.0 - decay * (c + damping / q * s)) / (w * w);
-        return (once, (time_step - impulse - 2.0 * damping * w * once) / (w * w));
-    }
-    let (mut before, mut here, mut once, mut twice) = (0.0, time_step, 0.0, 0.0);
-    // `here` is the term of order k of h, that is c_k dt^k.
-    for k in 1..24 {
-        let order = f64::from(k);
-        once += here * time_step / (order + 1.0);
-        twice += here * time_step * time_step / ((order + 1.0) * (order + 2.0));
-        let x = w * time_step;
-        let after = -(2.0 * damping * x * order * here + x * x * before) / (order * (order + 1.0));
-        before = here;
-        here = after;
-    }
-    (once, twice)
 }
 
 /// Checks a period (s, zero allowed) and a damping ratio (0 up to but not including 1).

@@ -185,9 +185,8 @@ impl Record {
             .transpose()?;
         let name = format!("{} {}", crate::format::file_stem(&self.file), first.name);
         let vertical = vertical.map(History::Sampled);
-        let mut motion = GroundMotion::new(name, History::Sampled(horizontal), vertical);
-        motion.provenance = provenance;
-        Ok(motion)
+        let motion = GroundMotion::new(name, History::Sampled(horizontal), vertical);
+        Ok(GroundMotion { provenance, ..motion })
     }
 
     fn require_one_site(&self, one: &Channel, other: &Channel) -> Result<(), MotionError> {

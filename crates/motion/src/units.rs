@@ -1,6 +1,5 @@
 //! Units of acceleration as files and users write them.
 
-use std::fmt;
 use std::str::FromStr;
 
 use crate::error::MotionError;
@@ -34,17 +33,14 @@ impl AccelerationUnit {
     }
 }
 
-impl fmt::Display for AccelerationUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::G => "g",
-            Self::TenthG => "g/10",
-            Self::MetersPerSecondSquared => "m/s2",
-            Self::Gal => "cm/s2",
-            Self::MillimetersPerSecondSquared => "mm/s2",
-        })
-    }
-}
+printed_as!(
+    AccelerationUnit,
+    G = "g",
+    TenthG = "g/10",
+    MetersPerSecondSquared = "m/s2",
+    Gal = "cm/s2",
+    MillimetersPerSecondSquared = "mm/s2"
+);
 
 impl FromStr for AccelerationUnit {
     type Err = MotionError;

@@ -32,9 +32,9 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
 fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let number = |key: &str| {
         let found = field(source, key);
-        let value = found.as_ref().and_then(|(line, text)| {
-            leading_number(text.as_bytes()).map(|(value, _)| (*line, value))
-        });
+        let value = found
+            .as_ref()
+            .and_then(|(line, text)| leading_number(text.as_bytes()).map(|value| (*line, value)));
         value.ok_or_else(|| {
             source.header(
                 found.as_ref().map(|(line, _)| *line),
@@ -72,7 +72,7 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
         record.channels.push(channel);
     }
     let text = |key: &str| field(source, key).map(|(_, text)| text).unwrap_or_default();
-    let stated = |key: &str| leading_number(text(key).as_bytes()).map(|(value, _)| value);
+    let stated = |key: &str| leading_number(text(key).as_bytes());
     let site = Site {
         elevation: stated("STATION ALTITUDE"),
         vs30: stated("VS30").filter(|speed| *speed > 0.0),

@@ -6,7 +6,7 @@
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
 use crate::units::AccelerationUnit;
@@ -49,9 +49,8 @@ fn read_component(
     // The stated duration is the count times the step, not one step less.
     let time_step = stated.1 / stated.0;
     if !source.has(first + 11, "G/10") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             first + 11,
-            Refusal::NotAcceleration,
             "\"UNITS ARE SECONDS AND G/10\"",
             quoted(&source.text(first + 11)),
             "give the volume 1 acceleration file",

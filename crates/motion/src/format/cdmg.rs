@@ -136,8 +136,7 @@ fn read_equal(
     limit: f64,
 ) -> Result<(f64, Vec<f64>, usize), ReadError> {
     let count = super::source::leading_number(source.raw(line))
-        .ok_or_else(|| missing(source, line, "the number of points"))?
-        .0;
+        .ok_or_else(|| missing(source, line, "the number of points"))?;
     let count = super::whole(source, line, "a number of points", count)?;
     let time_step = if source.has(line, "pts/sec") {
         source.number_after(line, "points at").map(|rate| 1.0 / rate)

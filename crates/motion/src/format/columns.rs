@@ -141,9 +141,8 @@ fn refuse_other_quantities(source: &Source<'_>, first: usize) -> Result<(), Read
         }
         for word in ["spectr", "displacement", "velocity", "degree", "period (s)", "counts"] {
             if text.contains(word) {
-                return Err(source.error(
+                return Err(source.not_acceleration(
                     line,
-                    Refusal::NotAcceleration,
                     "accelerations",
                     quoted(&text),
                     "give the acceleration history",

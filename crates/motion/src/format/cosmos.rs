@@ -103,7 +103,7 @@ fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     let mut tables = Vec::new();
     for kind in ["integer-header", "real-header"] {
         let stated = leading_number(source.raw(line)).filter(|_| source.has(line, kind));
-        let (count, _) =
+        let count =
             stated.ok_or_else(|| damaged(source, line, &format!("a line of {kind} values")))?;
         let count = super::whole(source, line, "a number of header values", count)?;
         let columns = format_after(source, line)
@@ -113,8 +113,7 @@ fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
         line = next;
     }
     let comments = leading_number(source.raw(line)).filter(|_| source.has(line, "comment"));
-    let (comments, _) =
-        comments.ok_or_else(|| damaged(source, line, "the number of comment lines"))?;
+    let comments = comments.ok_or_else(|| damaged(source, line, "the number of comment lines"))?;
     if !(0.0..=1e6).contains(&comments) {
         return Err(damaged(source, line, "the number of comment lines"));
     }
@@ -144,8 +143,7 @@ fn read_channel(
     let line = header.data_line;
     let count = leading_number(source.raw(line))
         .filter(|_| source.has(line, "pts"))
-        .ok_or_else(|| damaged(source, line, "a line such as \"7000 acceleration pts\""))?
-        .0;
+        .ok_or_else(|| damaged(source, line, "a line such as \"7000 acceleration pts\""))?;
     let count = super::whole(source, line, "a number of points", count)?;
     let columns =
         format_after(source, line).ok_or_else(|| damaged(source, line, "a Fortran format"))?;
@@ -153,9 +151,8 @@ fn read_channel(
     let quantity = header.integer(2);
     let unit = header.integer(3);
     let refuse = |found: String| {
-        source.error(
+        source.not_acceleration(
             line,
-            Refusal::NotAcceleration,
             "an acceleration channel (quantity 1)",
             found,
             "give the acceleration file of the same record",

@@ -28,9 +28,8 @@ fn sniff(source: &Source<'_>) -> bool {
 
 fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     if source.has(0, "SPECTRA") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             0,
-            Refusal::NotAcceleration,
             "a volume 2 accelerogram",
             "a volume 3 file of response and Fourier spectra",
             "give the volume 2 file of the same record",
@@ -67,9 +66,8 @@ fn read_channel(
     let (accelerations, mut next) =
         read_block(source, record, first + HEADER_LINES, "acc", LARGEST_ACCELERATION * 1000.0)?
             .ok_or_else(|| {
-                source.error(
+                source.not_acceleration(
                     first + HEADER_LINES,
-                    Refusal::NotAcceleration,
                     "a line such as \"7500 points of accel data equally spaced at .010 sec\"",
                     quoted(&source.text(first + HEADER_LINES)),
                     "give the file that holds the accelerations",
@@ -121,7 +119,7 @@ fn read_block(
     if !source.has(line, "points") || !source.has(line, key) {
         return Ok(None);
     }
-    let Some((count, _)) = leading_number(source.raw(line)) else { return Ok(None) };
+    let Some(count) = leading_number(source.raw(line)) else { return Ok(None) };
     let count = super::whole(source, line, "a number of points", count)?;
     let columns = format_in(source, line).unwrap_or(Columns::new(8, 10));
     source.counted(record, line + 1, count, columns, limit).map(Some)

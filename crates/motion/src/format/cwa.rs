@@ -9,7 +9,7 @@ use super::source::{
 };
 use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::{DateOrder, Utc};
@@ -32,9 +32,8 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let (unit_line, unit) = need("#AmplitudeUnit:")?;
     if !unit.to_ascii_lowercase().starts_with("gal") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             unit_line,
-            Refusal::NotAcceleration,
             "gal as unit",
             quoted(&unit),
             "give the acceleration file of the same station",
@@ -128,5 +127,5 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
 
 fn number(source: &Source<'_>, key: &str) -> Option<(usize, f64)> {
     let (line, text) = field(source, key)?;
-    leading_number(text.as_bytes()).map(|(value, _)| (line, value))
+    leading_number(text.as_bytes()).map(|value| (line, value))
 }

@@ -7,7 +7,7 @@ use super::source::{
 };
 use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
@@ -53,16 +53,14 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let need = |key: &str| source.needed(field(source, end, key), key);
     let number = |key: &str| {
         let (line, text) = need(key)?;
-        let value = leading_number(text.as_bytes()).map(|(value, _)| value);
-        value
+        leading_number(text.as_bytes())
             .map(|value| (line, value))
             .ok_or_else(|| source.header(line, format!("a number for {key}"), quoted(&text)))
     };
     let (line, data_type) = need("DATA_TYPE")?;
     if !data_type.eq_ignore_ascii_case("ACCELERATION") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             line,
-            Refusal::NotAcceleration,
             "DATA_TYPE: ACCELERATION",
             quoted(&data_type),
             "give the .ACC.ASC file of the same component",
@@ -70,9 +68,8 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     }
     let (line, text) = need("UNITS")?;
     let unit: AccelerationUnit = text.parse().map_err(|_| {
-        source.error(
+        source.not_acceleration(
             line,
-            Refusal::NotAcceleration,
             "a unit of acceleration, such as cm/s^2",
             quoted(&text),
             "give the .ACC.ASC file of the same component",
@@ -104,7 +101,7 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let name = text("STREAM");
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
     channel.start = start(&text("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"));
-    let number = |key: &str| leading_number(text(key).as_bytes()).map(|(value, _)| value);
+    let number = |key: &str| leading_number(text(key).as_bytes());
     channel.site = Site {
         sensor: text("LOCATION"),
         elevation: number("STATION_ELEVATION_M"),

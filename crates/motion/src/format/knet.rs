@@ -44,7 +44,6 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     record.station = need("Station Code")?.1;
     let (line, text) = need("Sampling Freq")?;
     let rate = leading_number(text.as_bytes())
-        .map(|(rate, _)| rate)
         .filter(|rate| *rate > 0.0)
         .ok_or_else(|| bad(line, "a sampling frequency such as 100Hz", &text))?;
     let (line, text) = need("Scale Factor")?;
@@ -58,7 +57,7 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut used = counts.len();
     let (duration_line, duration) = need("Duration")?;
     // Some state no duration, or none above 0.
-    if let Some((seconds, _)) = leading_number(duration.as_bytes()).filter(|(s, _)| *s > 0.0) {
+    if let Some(seconds) = leading_number(duration.as_bytes()).filter(|s| *s > 0.0) {
         let length = [seconds, rate];
         used = super::check_seconds(source, &mut record, duration_line, length, counts.len())?;
     }
@@ -78,9 +77,8 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     channel.start = field(source, "Record Time")
         .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
         .map(|late| late.later(-LATE));
-    let number = |key: &str| {
-        field(source, key).and_then(|(_, text)| leading_number(text.as_bytes())).map(|(v, _)| v)
-    };
+    let number =
+        |key: &str| field(source, key).and_then(|(_, text)| leading_number(text.as_bytes()));
     channel.site = Site {
         sensor: if borehole { "borehole" } else { "surface" }.to_owned(),
         // -9999 stands for none.

@@ -241,9 +241,8 @@ fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadE
 /// Checks that hold for every format.
 pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     if record.channels.is_empty() {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             (),
-            Refusal::NotAcceleration,
             "an acceleration channel",
             "none",
             "give the file that holds the accelerations",
@@ -427,9 +426,8 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
     };
     let left_out: Vec<Channel> = record.channels.extract_if(.., dead).collect();
     if !left_out.is_empty() && record.channels.is_empty() {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             (),
-            Refusal::NotAcceleration,
             "a channel that moves",
             "one value throughout",
             "give the file that holds the accelerations",

@@ -107,18 +107,12 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
 /// One array of numbers or strings in a row; nothing if it is something else.
 fn array(bytes: &[u8]) -> Option<Array> {
     let rest = bytes.strip_prefix(b"\x93NUMPY")?;
-    let (head, data) = match rest.first()? {
-        1 => {
-            let length = usize::from(u16::from_le_bytes(rest.get(2..4)?.try_into().ok()?));
-            (rest.get(4..4 + length)?, rest.get(4 + length..)?)
-        }
-        2 | 3 => {
-            let length = u32::from_le_bytes(rest.get(2..6)?.try_into().ok()?);
-            let end = usize::try_from(length).ok()?.checked_add(6)?;
-            (rest.get(6..end)?, rest.get(end..)?)
-        }
+    let (start, length) = match rest.first()? {
+        1 => (4, usize::from(zip::two(rest, 2)?)),
+        2 | 3 => (6, zip::size(rest, 2)?),
         _ => return None,
     };
+    let (head, data) = rest.get(start..)?.split_at_checked(length)?;
     let head = std::str::from_utf8(head).ok()?;
     let after =
         |key: &str| head.split_once(key).map(|(_, rest)| rest.trim_start_matches([':', ' ']));

@@ -48,8 +48,13 @@ pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
     Some(pieces)
 }
 
-/// The number at the start of `bytes` after blanks, `=` and `:`, with its text.
-pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
+/// The number at the start of `bytes` after blanks, `=` and `:`.
+pub(crate) fn leading_number(bytes: &[u8]) -> Option<f64> {
+    leading_text(bytes).map(|(value, _)| value)
+}
+
+/// As [`leading_number`] with its text.
+pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
     let rest = &bytes[skip..];
     let mut end = 0;
@@ -72,7 +77,7 @@ pub(crate) fn leading_number(bytes: &[u8]) -> Option<(f64, String)> {
 
 /// As [`leading_number`] with the resolution of the printed digits.
 pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
-    leading_number(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
+    leading_text(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
 }
 
 /// One unit of the last digit of a printed number.

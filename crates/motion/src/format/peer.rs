@@ -6,7 +6,7 @@
 //! 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings surveyed over 2416
 //! files.
 
-use super::source::{LARGEST_ACCELERATION, Source, leading_number, quoted};
+use super::source::{LARGEST_ACCELERATION, Source, leading_number, leading_text, quoted};
 use super::{Format, Told};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
@@ -124,9 +124,9 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
     let line = (0..HEADER_LINES).find(|&line| source.has(line, "NPTS")).unwrap_or(0);
     let after = source.number_after(line, "NPTS").zip(source.number_after(line, "DT"));
-    let before = leading_number(source.raw(line)).and_then(|(count, text)| {
+    let before = leading_text(source.raw(line)).and_then(|(count, text)| {
         let rest = source.find(line, &text)? + text.len();
-        leading_number(&source.raw(line)[rest..]).map(|(step, _)| (count, step))
+        leading_number(&source.raw(line)[rest..]).map(|step| (count, step))
     });
     let (count, time_step) = after.or(before).ok_or_else(|| {
         source.header(
@@ -152,9 +152,8 @@ fn find_unit(
             source.find(line, quantity).is_some_and(|at| at < 4) && !source.has(line, "ACCEL")
         };
         if stated("VELOCITY") || stated("DISPLACEMENT") || source.has(line, "SPECTR") {
-            return Err(source.error(
+            return Err(source.not_acceleration(
                 line,
-                Refusal::NotAcceleration,
                 "an acceleration history",
                 quoted(&source.text(line)),
                 "give the .AT2 file of the same component",
@@ -165,9 +164,8 @@ fn find_unit(
         for key in ["UNITS OF ", "UNITS ARE ", "UNITS: "] {
             let Some((column, word)) = source.word_after(line, key) else { continue };
             return word.parse().map_err(|_| {
-                source.error(
+                source.not_acceleration(
                     (line, column),
-                    Refusal::NotAcceleration,
                     "a unit of acceleration",
                     format!("\"{word}\""),
                     "give the .AT2 file of the same component",

@@ -11,9 +11,8 @@ pub(crate) const HDF5: Format = Format {
     title: "HDF5 and ASDF containers (refused)",
     sniff: |source| source.bytes.starts_with(b"\x89HDF\r\n\x1a\n"),
     read: |source, _| {
-        Err(source.error(
+        Err(source.not_acceleration(
             (),
-            Refusal::NotAcceleration,
             "a strong-motion file",
             "an HDF5 container",
             "export the acceleration series to plain columns first",
@@ -65,9 +64,8 @@ pub(crate) const SLAMMER: Format = Format {
             && parse_number(fields[10]).is_some_and(|step| step > 0.0 && step < 1.0)
     },
     read: |source, _| {
-        Err(source.error(
+        Err(source.not_acceleration(
             0,
-            Refusal::NotAcceleration,
             "an acceleration history",
             "SLAMMER's table of records",
             "give a record file beside it with unit g and the step that this table states for it",
@@ -88,11 +86,5 @@ fn xml(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
             list.join(", ")
         )
     };
-    Err(source.error(
-        (),
-        Refusal::NotAcceleration,
-        "an acceleration history",
-        "XML metadata",
-        remedy,
-    ))
+    Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }

@@ -78,9 +78,8 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
         )
     };
     if integer(bytes, FILE_TYPE, big) != TIME_SERIES || integer(bytes, EVEN, big) != 1 {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             (),
-            Refusal::NotAcceleration,
             "an evenly spaced time series",
             format!(
                 "SAC file type {} (evenly spaced: {})",
@@ -93,9 +92,8 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     // IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
     let dependent = integer(bytes, DEPENDENT, big);
     if matches!(dependent, 6 | 7) && told.recorded().is_none() {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             (),
-            Refusal::NotAcceleration,
             "acceleration as dependent variable",
             if dependent == 6 { "displacement" } else { "velocity" },
             "give the acceleration file of the same channel",

@@ -8,7 +8,7 @@ use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
 use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::Utc;
@@ -36,9 +36,8 @@ fn sniff(source: &Source<'_>) -> bool {
 fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let title = source.text(0).to_ascii_uppercase();
     if !title.contains("ACCELEROGRAM") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             0,
-            Refusal::NotAcceleration,
             "an accelerogram",
             quoted(&title),
             "give the acceleration file of the same record",

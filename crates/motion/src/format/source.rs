@@ -2,7 +2,7 @@
 
 use super::number::split_touching;
 pub(crate) use super::number::{
-    Printed, leading_number, leading_printed, parse_number, resolution,
+    Printed, leading_number, leading_printed, leading_text, parse_number, resolution,
 };
 pub(crate) use super::place::{Columns, Place};
 use crate::error::{ReadError, ReadFailure, Refusal};
@@ -79,7 +79,7 @@ impl<'a> Source<'a> {
     /// The first number that follows `key` on the line, skipping blanks, `=` and `:`.
     pub(crate) fn number_after(&self, line: usize, key: &str) -> Option<f64> {
         let start = self.find(line, key)? + key.len();
-        leading_number(&self.raw(line)[start..]).map(|(value, _)| value)
+        leading_number(&self.raw(line)[start..])
     }
 
     /// As [`Source::number_after`] with the resolution of the printed digits.
@@ -183,6 +183,17 @@ impl<'a> Source<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         self.error(place, Refusal::Damaged, expected, found, remedy)
+    }
+
+    /// The error that the file is sound and holds something else than accelerations.
+    pub(crate) fn not_acceleration(
+        &self,
+        place: impl Into<Place>,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> ReadError {
+        self.error(place, Refusal::NotAcceleration, expected, found, remedy)
     }
 
     /// The error that the header is damaged.

@@ -9,7 +9,7 @@ use super::source::{
 };
 use super::{Format, Told};
 use crate::direction::Direction;
-use crate::error::{ReadError, Refusal};
+use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::utc::{DateOrder, Utc};
@@ -47,10 +47,8 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let need = |key: &str| source.needed(field(source, key), key);
     let numbers = |key: &str| -> Result<(usize, Vec<f64>), ReadError> {
         let (line, text) = need(key)?;
-        let values: Option<Vec<f64>> = list(&text)
-            .iter()
-            .map(|part| leading_number(part.as_bytes()).map(|(value, _)| value))
-            .collect();
+        let values: Option<Vec<f64>> =
+            list(&text).iter().map(|part| leading_number(part.as_bytes())).collect();
         values.map(|values| (line, values)).ok_or_else(|| {
             source.header(line, format!("numbers between slashes for \"{key}\""), quoted(&text))
         })
@@ -58,9 +56,8 @@ fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let (unit_line, unit) = need("UNIDADES DE LOS DATOS")?;
     if !unit.to_ascii_lowercase().contains("gal") {
-        return Err(source.error(
+        return Err(source.not_acceleration(
             unit_line,
-            Refusal::NotAcceleration,
             "Gal (cm/s/s) as unit",
             quoted(&unit),
             "give the acceleration file of the same station",
@@ -135,14 +132,12 @@ fn start(source: &Source<'_>) -> Option<Utc> {
 /// `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
 fn site(source: &Source<'_>) -> Site {
     let signed = |text: &str| {
-        let (value, _) = leading_number(text.trim_start_matches(':').as_bytes())?;
+        let value = leading_number(text.trim_start_matches(':').as_bytes())?;
         Some(if text.trim_end().ends_with(['S', 'W']) { -value } else { value })
     };
     let position = field(source, "COORDENADAS DE LA ESTACION")
         .and_then(|(line, text)| signed(&text).zip(signed(&source.text(line + 1))));
-    let elevation = field(source, "ALTITUD")
-        .and_then(|(_, text)| leading_number(text.as_bytes()))
-        .map(|(height, _)| height);
+    let elevation = field(source, "ALTITUD").and_then(|(_, text)| leading_number(text.as_bytes()));
     Site { elevation, ..Site::default() }.at(position)
 }
 

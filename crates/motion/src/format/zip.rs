@@ -85,7 +85,7 @@ impl Entry<'_> {
     }
 }
 
-fn two(bytes: &[u8], at: usize) -> Option<u16> {
+pub(super) fn two(bytes: &[u8], at: usize) -> Option<u16> {
     Some(u16::from_le_bytes(bytes.get(at..at.checked_add(2)?)?.try_into().ok()?))
 }
 
@@ -93,6 +93,6 @@ fn four(bytes: &[u8], at: usize) -> Option<u32> {
     Some(u32::from_le_bytes(bytes.get(at..at.checked_add(4)?)?.try_into().ok()?))
 }
 
-fn size(bytes: &[u8], at: usize) -> Option<usize> {
+pub(super) fn size(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(four(bytes, at)?).ok()
 }

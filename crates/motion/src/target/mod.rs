@@ -26,21 +26,11 @@ pub enum SiteClass {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChileanZone {
     /// The Andes.
-    One,
+    One = 1,
     /// The central valley.
     Two,
     /// The coast.
     Three,
-}
-
-impl ChileanZone {
-    fn number(self) -> u8 {
-        match self {
-            Self::One => 1,
-            Self::Two => 2,
-            Self::Three => 3,
-        }
-    }
 }
 
 /// Soils of `NCh2745`.
@@ -143,10 +133,10 @@ impl std::fmt::Display for TargetSpectrum {
                 write!(f, "EN 1998-1 type {kind} (a_g {ground} g, ground {site:?}")?;
             }
             Self::NCh433 { zone, site } => {
-                write!(f, "NCh433 (zone {}, soil {site:?}", zone.number())?;
+                write!(f, "NCh433 (zone {}, soil {site:?}", *zone as u8)?;
             }
             Self::NCh2745 { zone, soil, .. } => {
-                write!(f, "NCh2745 (zone {}, soil {soil:?}", zone.number())?;
+                write!(f, "NCh2745 (zone {}, soil {soil:?}", *zone as u8)?;
             }
             Self::Nzs1170 { hazard, return_period, site, fault_distance } => {
                 write!(f, "NZS 1170.5 (Z {hazard}, R {return_period}, site {site:?}")?;

@@ -27,19 +27,17 @@ use crate::sampled::integrate;
 pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
     let (step, rows) = super::common(record)?;
     let time: Vec<f64> = (0..rows).map(|row| row as f64 * step).collect();
-    let mut series = Vec::new();
-    for (channel, name) in record.channels.iter().zip(super::names(&record.channels)) {
-        let name = array_name(&name);
-        let acceleration = channel.acceleration[..rows].to_vec();
-        let (velocity, displacement) = integrate(step, &acceleration, channel.initial_velocity);
-        series.push((format!("{name}_acceleration"), acceleration));
-        series.push((format!("{name}_velocity"), velocity));
-        series.push((format!("{name}_displacement"), displacement));
-    }
     let azimuth: Vec<f64> =
         record.channels.iter().map(|c| c.direction.azimuth.unwrap_or(f64::NAN)).collect();
     let mut arrays = vec![("time".to_owned(), npy(&time)), ("azimuth".to_owned(), npy(&azimuth))];
-    arrays.extend(series.iter().map(|(name, values)| (name.clone(), npy(values))));
+    for (channel, name) in record.channels.iter().zip(super::names(&record.channels)) {
+        let name = array_name(&name);
+        let acceleration = &channel.acceleration[..rows];
+        let (velocity, displacement) = integrate(step, acceleration, channel.initial_velocity);
+        arrays.push((format!("{name}_acceleration"), npy(acceleration)));
+        arrays.push((format!("{name}_velocity"), npy(&velocity)));
+        arrays.push((format!("{name}_displacement"), npy(&displacement)));
+    }
     let head = super::text::head(record, step);
     for key in head.iter().map(|(key, _)| *key).collect::<BTreeSet<_>>() {
         let values =

@@ -225,18 +225,15 @@ pub struct MotionSpec {
 impl MotionSpec {
     /// The files that it is read from: the record, then a vertical component of its own.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let (source, vertical) = match &mut self.source {
-            MotionSource::Record(record) => (Some(&mut record.source), Some(&mut record.vertical)),
-            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => (None, None),
-        };
-        let source = source.and_then(|source| match source {
-            RecordSource::File(file) => Some(file),
-            RecordSource::Bundled(_) => None,
-        });
-        let vertical = vertical.and_then(|vertical| match vertical {
-            Vertical::File(file) => Some(file),
-            Vertical::None | Vertical::Component(_) => None,
-        });
+        let (mut source, mut vertical) = (None, None);
+        if let MotionSource::Record(record) = &mut self.source {
+            if let RecordSource::File(file) = &mut record.source {
+                source = Some(file);
+            }
+            if let Vertical::File(file) = &mut record.vertical {
+                vertical = Some(file);
+            }
+        }
         source.into_iter().chain(vertical)
     }
 

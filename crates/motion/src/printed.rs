@@ -1,0 +1,14 @@
+//! How the members of a closed set are printed.
+
+/// Implements `Display` for an enum without fields: each variant as its word.
+macro_rules! printed_as {
+    ($type:ident, $($variant:ident = $word:literal),+) => {
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(match self {
+                    $(Self::$variant => $word),+
+                })
+            }
+        }
+    };
+}
