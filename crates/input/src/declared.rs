@@ -217,21 +217,12 @@ macro_rules! section {
             )*
         }
 
-        $(#[doc = $help])+
-        $seen static $section: $crate::field::Section = $crate::field::Section {
-            name: $name,
-            help: concat!($($help),+).trim_ascii(),
-            fields: &[$(
-                $crate::field::Field::new(
-                    stringify!($field),
-                    $kind,
-                    $default,
-                    concat!($($text),+).trim_ascii(),
-                ),
-            )*],
-            variants: None,
-            exclusive: &[$($rivals)?],
-        };
+        $crate::table! {
+            $(#[doc = $help])+
+            $seen static $section = $name;
+            $($(#[doc = $text])+ $field = $kind, $default;)*
+            $(at most one of $rivals;)?
+        }
 
         impl $crate::declared::Declared for $type {
             fn section() -> &'static $crate::field::Section {
@@ -250,5 +241,94 @@ macro_rules! section {
                 $($crate::declared::Held::write(&self.$field, writer, stringify!($field));)*
             }
         }
+    };
+}
+
+/// Declares a table that is read by hand: each field once, with what it holds, what an absent one means, and its help,
+/// which is its doc comment; then the fields that depend on one of them, and those of which at most one may be given.
+///
+/// ```
+/// use barrelstack_input::field::{Default, Field, Kind, Range};
+/// use barrelstack_input::table;
+///
+/// const COUNT: Field = Field::new("count", Kind::Integer(1, 9), Default::Required, "How many.");
+///
+/// table! {
+///     /// How values are drawn.
+///     static DRAW = "draw";
+///     /// The form.
+///     kind = Kind::Text, Default::Required;
+///     by kind {
+///         /// One after the other.
+///         "list" with [COUNT] {}
+///         /// At random.
+///         "random" {
+///             /// Start of all numbers.
+///             seed = Kind::Integer(0, 9), Default::Value("1");
+///         } then [COUNT]
+///     }
+///     at most one of &["seed", "kind"];
+/// }
+///
+/// let random = &DRAW.variants.as_ref().unwrap().list[1];
+/// assert_eq!((DRAW.fields[0].help, random.help), ("The form.", "At random."));
+/// assert_eq!(random.fields.iter().map(|field| field.name).collect::<Vec<_>>(), ["seed", "count"]);
+/// ```
+#[macro_export]
+macro_rules! table {
+    (
+        $(#[doc = $help:literal])+
+        $seen:vis static $section:ident = $name:literal;
+        $($(#[doc = $text:literal])+ $field:ident = $kind:expr, $default:expr;)*
+        $(by $tag:ident {$(
+            $(#[doc = $meaning:literal])+
+            $variant:literal $(with [$($first:expr),+])? {
+                $($(#[doc = $own_text:literal])+ $own:ident = $own_kind:expr, $own_default:expr;)*
+            } $(then [$($last:expr),+])?
+        )+})?
+        $(at most one of $rivals:expr;)*
+    ) => {
+        $(#[doc = $help])+
+        $seen static $section: $crate::field::Section = $crate::field::Section {
+            name: $name,
+            help: concat!($($help),+).trim_ascii(),
+            fields: &$crate::fields!($($(#[doc = $text])+ $field = $kind, $default;)*),
+            variants: $crate::table!(@option $($crate::field::Variants {
+                tag: stringify!($tag),
+                list: &[$($crate::field::Variant {
+                    name: $variant,
+                    help: concat!($($meaning),+).trim_ascii(),
+                    fields: &$crate::fields!(
+                        $(with [$($first),+])?
+                        $($(#[doc = $own_text])+ $own = $own_kind, $own_default;)*
+                        $(then [$($last),+])?
+                    ),
+                }),+],
+            })?),
+            exclusive: &[$($rivals),*],
+        };
+    };
+    (@option) => { None };
+    (@option $value:expr) => { Some($value) };
+}
+
+/// A list of fields in the words of [`table!`](crate::table).
+#[macro_export]
+macro_rules! fields {
+    (
+        $(with [$($first:expr),+])?
+        $($(#[doc = $text:literal])+ $field:ident = $kind:expr, $default:expr;)*
+        $(then [$($last:expr),+])?
+    ) => {
+        [
+            $($($first,)+)?
+            $($crate::field::Field::new(
+                stringify!($field),
+                $kind,
+                $default,
+                concat!($($text),+).trim_ascii(),
+            ),)*
+            $($($last,)+)?
+        ]
     };
 }
