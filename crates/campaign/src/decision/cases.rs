@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use barrelstack_fragility::Interval;
 use barrelstack_motion::STANDARD_GRAVITY;
+use barrelstack_report::Cell;
 
 use super::DecisionError;
 use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value};
@@ -54,6 +55,11 @@ impl Measure {
     /// An intensity as printed.
     pub fn shown(&self, intensity: f64) -> f64 {
         self.scale * intensity
+    }
+
+    /// The same as a cell of a table.
+    pub(super) fn cell(&self, intensity: f64) -> Cell {
+        Cell::Number(self.shown(intensity), 3)
     }
 
     /// An interval with its unit, where the cases bound it.

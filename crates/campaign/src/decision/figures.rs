@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use barrelstack_fragility::{Ida, Interval, Returned, Stripe};
-use barrelstack_report::{Axis, Figure, FigureKind, Mark, Plot, Series, SeriesStyle};
+use barrelstack_report::{Axis, Figure, Mark, Plot, Series, SeriesStyle};
 
 use super::cases::{Cases, Measure};
 use super::curve::LimitCurve;
@@ -37,10 +37,6 @@ fn axis(measure: &Measure) -> Axis {
     Axis::new(&measure.label, measure.shown_unit)
 }
 
-fn plot(id: &str, caption: String, plot: Plot) -> Figure {
-    Figure { id: id.to_owned(), caption, kind: FigureKind::Plot(plot) }
-}
-
 /// A chance from 0 to 1 on the vertical axis.
 pub(crate) fn chance_axis(label: &str) -> Axis {
     Axis { range: Some([0.0, 1.0]), ..Axis::new(label, "") }
@@ -72,7 +68,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
             ""
         }
     );
-    plot(
+    Figure::new(
         "fragility",
         caption,
         Plot { x: axis(measure), y: chance_axis("chance of failure"), series, ..Plot::default() },
@@ -98,11 +94,10 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
             }
         })
         .collect();
-    plot(
+    Figure::new(
         "limit-states",
         "Chance of each limit state. Lines are fitted curves; where the cases determine none, dots are the raw \
-         fractions with their 95 % intervals."
-            .to_owned(),
+         fractions with their 95 % intervals.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
@@ -125,12 +120,11 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
         let line = collapse.grid.iter().map(|x| fit.curve.probability(*x)).collect();
         series.push(Series { style: style(0), ..Series::new("all modes", grid(), line) });
     }
-    plot(
+    Figure::new(
         "modes",
         "Chance of collapse in each mode (cumulative incidence). Modes compete: together they are the chance of collapse, \
          and one may become rarer where another takes over. Smooth lines divide the curve of collapse among the modes by \
-         probit regression."
-            .to_owned(),
+         probit regression.",
         Plot { x: axis(measure), y: chance_axis("chance"), series, ..Plot::default() },
     )
 }
@@ -189,7 +183,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
             cases.curves()
         ),
     };
-    Some(plot(
+    Some(Figure::new(
         "ida",
         format!(
             "Incremental dynamic analysis: peak drift of the top while the stack stands against {}. A line that reaches \
@@ -218,11 +212,10 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let bars = SeriesStyle { bar: true, ..style(0) };
     let series =
         vec![Series { style: bars, ..Series::new("lowest to highest share of collapse", x, y) }];
-    plot(
+    Figure::new(
         "tornado",
         "What the varied quantities change: the share of collapse at the least and the most favorable of their values, \
-         or thirds of their values, over all motions and levels. The upright line is the share of all cases."
-            .to_owned(),
+         or thirds of their values, over all motions and levels. The upright line is the share of all cases.",
         Plot {
             x: Axis { range: Some([0.0, 1.0]), ..Axis::new("share of collapse", "") },
             y: Axis::named(effects.iter().map(|effect| effect.factor.clone()).collect()),
@@ -249,7 +242,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
         ),
         points("barrels that burst, range of the assumption", &x, burst(1), assumed, 1),
     ];
-    plot(
+    Figure::new(
         "losses",
         format!(
             "Mean number of barrels, of {}, that fall and that burst. That a barrel bursts is an assumption over the \
@@ -275,11 +268,10 @@ pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
         y.extend([share, share]);
     }
     let area = SeriesStyle { area: true, ..style(0) };
-    plot(
+    Figure::new(
         "contributions",
         "Where the annual rate of collapse comes from: the share of each stretch of intensity. Weak shaking is frequent, \
-         strong shaking fells more."
-            .to_owned(),
+         strong shaking fells more.",
         Plot {
             x: axis(measure).log(),
             y: Axis::new("share of the rate", ""),

@@ -1,14 +1,13 @@
 //! Tables of what matters: varied quantities, and measures of shaking.
 
-use barrelstack_fragility::Interval;
+use barrelstack_fragility::{Demanded, Interval, Measured};
 use barrelstack_report::{Cell, Column, Table};
 
 use super::Decision;
-use super::cases::Measure;
 use super::indices::Sensitivity;
 use super::measures::MeasureRow;
-use super::sensitivity::alike;
-use super::words::{count, percent};
+use super::sensitivity::{Level, alike};
+use super::words::{count, percent, range};
 
 pub(super) fn effects(decision: &Decision) -> Table {
     let mut table = Table::new(
@@ -25,7 +24,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
         table.caption += " Intervals count motions, not cases.";
     }
     let told = |share: f64, interval: Interval| {
-        format!("{} ({} to {})", percent(share), percent(interval.low), percent(interval.high))
+        format!("{} ({})", percent(share), range(interval, percent))
     };
     for effect in &decision.effects {
         for (at, group) in effect.groups.iter().enumerate() {
@@ -35,18 +34,12 @@ pub(super) fn effects(decision: &Decision) -> Table {
                 Cell::text(&group.label),
                 count(group.cases),
                 Cell::text(percent(group.share())),
-                Cell::text(format!(
-                    "{} to {}",
-                    percent(group.interval.low),
-                    percent(group.interval.high)
-                )),
+                Cell::text(range(group.interval, percent)),
             ];
             row.extend(levels.iter().map(|level| {
                 let own = group.levels.iter().find(|own| alike(own.intensity, level.intensity));
-                own.map_or(Cell::Missing, |own| {
-                    let share = f64::from(own.collapsed) / f64::from(own.cases);
-                    Cell::text(told(share, own.interval))
-                })
+                let share = |own: &Level| f64::from(own.collapsed) / f64::from(own.cases);
+                Cell::maybe(own.map(|own| told(share(own), own.interval)))
             }));
             table.rows.push(row);
         }
@@ -56,34 +49,23 @@ pub(super) fn effects(decision: &Decision) -> Table {
 
 /// First and total indices of everything that varies, on every result.
 pub(super) fn indices(all: &[Sensitivity]) -> Table {
-    let mut table = Table::new(
+    let rows = all.iter().flat_map(|of| of.inputs.iter().zip(0..).map(move |one| (of, one)));
+    let result = |of: &Sensitivity, at: i32| {
+        if at == 0 { of.result.replace('_', " ") } else { String::new() }
+    };
+    Table::of(
         "Sobol' indices with 95 % intervals by resampling of blocks.",
+        rows.map(|(of, ((name, index), at))| (result(of, at), of.blocks, name, index)),
         &[
-            ("result", ""),
-            ("quantity", ""),
-            ("first", ""),
-            ("95 % interval (first)", ""),
-            ("total", ""),
-            ("95 % interval (total)", ""),
-            ("blocks", ""),
+            ("result", "", &|(result, ..)| Cell::text(result)),
+            ("quantity", "", &|(_, _, name, _)| Cell::text(*name)),
+            ("first", "", &|(.., of)| Cell::text(share(of.first))),
+            ("95 % interval (first)", "", &|(.., of)| Cell::text(range(of.first_interval, share))),
+            ("total", "", &|(.., of)| Cell::text(share(of.total))),
+            ("95 % interval (total)", "", &|(.., of)| Cell::text(range(of.total_interval, share))),
+            ("blocks", "", &|(_, of, ..)| count(u32::try_from(*of).unwrap_or(u32::MAX))),
         ],
-    );
-    let range = |of: Interval| Cell::text(format!("{} to {}", share(of.low), share(of.high)));
-    for of in all {
-        for (at, (name, index)) in of.inputs.iter().enumerate() {
-            let result = if at == 0 { of.result.replace('_', " ") } else { String::new() };
-            table.rows.push(vec![
-                Cell::text(result),
-                Cell::text(name),
-                Cell::text(share(index.first)),
-                range(index.first_interval),
-                Cell::text(share(index.total)),
-                range(index.total_interval),
-                count(u32::try_from(of.blocks).unwrap_or(u32::MAX)),
-            ]);
-        }
-    }
-    table
+    )
 }
 
 /// A share of two digits behind the point, that may come out a hair below zero.
@@ -93,46 +75,32 @@ fn share(value: f64) -> String {
 }
 
 pub(super) fn measures(decision: &Decision) -> Table {
-    let cases = &decision.cases;
-    let mut table = Table::new(
+    let all = &decision.cases.measures;
+    let median = |row: &MeasureRow| match &row.collapse {
+        Ok(found) => all[row.measure].words(found.fit.curve.median),
+        Err(_) => "no curve".to_owned(),
+    };
+    let collapse = |row: &MeasureRow, digits, of: fn(&Measured) -> Option<f64>| {
+        Cell::number(row.collapse.as_ref().ok().and_then(of), digits)
+    };
+    let drift =
+        |row: &MeasureRow, of: fn(Demanded) -> Option<f64>| Cell::number(row.drift.and_then(of), 2);
+    let proficient = |of: Demanded| Some(of.proficiency).filter(|value| *value > 0.0);
+    Table::of(
         "Intensity measures against collapse and against the drift of stacks that stood, the one under which the \
          outcomes are likeliest on top.",
+        &decision.measures,
         &[
-            ("measure", ""),
-            ("median of collapse", ""),
-            ("dispersion β", ""),
-            ("concordance", ""),
-            ("ln likelihood", ""),
-            ("drift: dispersion", ""),
-            ("drift: dispersion/slope", ""),
-            ("beside", ""),
-            ("p (collapse)", ""),
-            ("p (drift)", ""),
+            ("measure", "", &|row| Cell::text(&all[row.measure].label)),
+            ("median of collapse", "", &|row| Cell::text(median(row))),
+            ("dispersion β", "", &|row| collapse(row, 2, |of| Some(of.fit.curve.dispersion))),
+            ("concordance", "", &|row| collapse(row, 2, |of| Some(of.concordance))),
+            ("ln likelihood", "", &|row| collapse(row, 4, |of| Some(of.fit.ln_likelihood))),
+            ("drift: dispersion", "", &|row| drift(row, |of| Some(of.dispersion))),
+            ("drift: dispersion/slope", "", &|row| drift(row, proficient)),
+            ("beside", "", &|row| Cell::maybe(row.beside.map(|at| &all[at].label))),
+            ("p (collapse)", "", &|row| collapse(row, 2, |of| of.sufficiency)),
+            ("p (drift)", "", &|row| drift(row, |of| of.sufficiency)),
         ],
-    );
-    for row in &decision.measures {
-        table.rows.push(measure_row(row, &cases.measures));
-    }
-    table
-}
-
-fn measure_row(row: &MeasureRow, all: &[Measure]) -> Vec<Cell> {
-    let measure = &all[row.measure];
-    let number = |value: Option<f64>| value.map_or(Cell::Missing, |v| Cell::Number(v, 2));
-    let collapse = row.collapse.as_ref().ok();
-    vec![
-        Cell::text(&measure.label),
-        match &row.collapse {
-            Ok(found) => Cell::text(measure.words(found.fit.curve.median)),
-            Err(_) => Cell::text("no curve"),
-        },
-        number(collapse.map(|found| found.fit.curve.dispersion)),
-        number(collapse.map(|found| found.concordance)),
-        collapse.map_or(Cell::Missing, |found| Cell::Number(found.fit.ln_likelihood, 4)),
-        number(row.drift.map(|found| found.dispersion)),
-        number(row.drift.map(|found| found.proficiency).filter(|value| *value > 0.0)),
-        row.beside.map_or(Cell::Missing, |at| Cell::text(&all[at].label)),
-        number(collapse.and_then(|found| found.sufficiency)),
-        number(row.drift.and_then(|found| found.sufficiency)),
-    ]
+    )
 }

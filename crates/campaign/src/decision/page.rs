@@ -1,16 +1,14 @@
 //! The page of a study: the answer first, then what it rests on.
 
-use barrelstack_fragility::clopper_pearson;
-use barrelstack_report::{
-    Block, Cell, Document, Table, Tone, Verdict, capital, measured, significant,
-};
+use barrelstack_fragility::{Stripe, clopper_pearson};
+use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, measured, significant};
 
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
-use super::hazard::Site;
+use super::hazard::{LimitRate, Site};
 use super::loss::{Breakage, Losses, WINE};
 use super::modes::ModeIncidence;
-use super::words::{self, count, percent};
+use super::words::{self, count, percent, range};
 use super::{Decision, figures, matters};
 use crate::study::Provenance;
 
@@ -21,7 +19,6 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
         verdict: Verdict {
             headline: words::headline(decision),
             sentences: words::sentences(decision),
-            tone: Tone::Neutral,
             ..Verdict::default()
         },
         blocks: blocks(decision, made),
@@ -110,35 +107,24 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
 
 /// Raw counts beside the curve.
 pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
-    let mut table = Table::new(
+    let exact = |of: &Stripe| clopper_pearson(of.failures, of.cases, LEVEL);
+    let fitted = |of: &Stripe| {
+        let fit = curve.fit.as_ref().ok();
+        Cell::maybe(fit.map(|fit| percent(fit.curve.probability(of.intensity))))
+    };
+    Table::of(
         format!("Raw counts of {}, and the curve beside them.", curve.limit.words()),
+        curve.stripes.iter().zip(&curve.intervals),
         &[
-            (measure.label.as_str(), measure.shown_unit),
-            ("cases", ""),
-            ("failed", ""),
-            ("share", ""),
-            ("95 % interval (Wilson)", ""),
-            ("95 % interval (exact)", ""),
-            ("fitted curve", ""),
+            (&measure.label, measure.shown_unit, &|(of, _)| measure.cell(of.intensity)),
+            ("cases", "", &|(of, _)| count(of.cases)),
+            ("failed", "", &|(of, _)| count(of.failures)),
+            ("share", "", &|(of, _)| Cell::text(percent(of.fraction()))),
+            ("95 % interval (Wilson)", "", &|(_, wilson)| Cell::text(range(**wilson, percent))),
+            ("95 % interval (exact)", "", &|(of, _)| Cell::text(range(exact(of), percent))),
+            ("fitted curve", "", &|(of, _)| fitted(of)),
         ],
-    );
-    let range = |low: f64, high: f64| Cell::text(format!("{} to {}", percent(low), percent(high)));
-    for (stripe, wilson) in curve.stripes.iter().zip(&curve.intervals) {
-        let exact = clopper_pearson(stripe.failures, stripe.cases, LEVEL);
-        let fitted = curve.fit.as_ref().map_or(Cell::Missing, |fit| {
-            Cell::text(percent(fit.curve.probability(stripe.intensity)))
-        });
-        table.rows.push(vec![
-            Cell::Number(measure.shown(stripe.intensity), 3),
-            count(stripe.cases),
-            count(stripe.failures),
-            Cell::text(percent(stripe.fraction())),
-            range(wilson.low, wilson.high),
-            range(exact.low, exact.high),
-            fitted,
-        ]);
-    }
-    table
+    )
 }
 
 /// How the curve was made and whether to believe it.
@@ -209,49 +195,41 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
 
 fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
     let measure = cases.measure();
-    let mut table = Table::new(
+    let unit = measure.shown_unit;
+    let failed = |curve: &LimitCurve| {
+        let sum = |of: fn(&Stripe) -> u32| curve.stripes.iter().map(of).sum::<u32>();
+        format!("{} of {}", sum(|of| of.failures), sum(|of| of.cases))
+    };
+    let fitted = |curve: &LimitCurve| curve.fit.as_ref().ok().map(|fit| fit.curve);
+    let shown = |x: f64| {
+        if x.is_finite() { significant(measure.shown(x), 3) } else { "∞".to_owned() }
+    };
+    let interval =
+        |curve: &LimitCurve| fitted(curve).and(curve.median).map(|bounds| range(bounds, shown));
+    let violated =
+        |curve: &LimitCurve| (curve.monotony.deviance != 0.0).then_some(curve.monotony.p);
+    let returned = |curve: &LimitCurve| u32::try_from(curve.returned.len()).unwrap_or(u32::MAX);
+    let remark = |curve: &LimitCurve| match &curve.fit {
+        Ok(_) if curve.violates_order() => "not monotone: use the raw fractions".to_owned(),
+        Ok(_) => String::new(),
+        Err(reason) => words::refusal(reason, |x| measure.words(x)),
+    };
+    Table::of(
         "Fragility of every limit state.",
+        curves,
         &[
-            ("limit state", ""),
-            ("failed", ""),
-            ("median θ", measure.shown_unit),
-            ("95 % interval", measure.shown_unit),
-            ("dispersion β", ""),
-            ("order violated (p)", ""),
-            (&format!("{} that return", cases.curves_are()), ""),
-            ("remark", ""),
-        ],
-    );
-    for curve in curves {
-        let failed: u32 = curve.stripes.iter().map(|s| s.failures).sum();
-        let of: u32 = curve.stripes.iter().map(|s| s.cases).sum();
-        let shown = |x: f64| {
-            if x.is_finite() { significant(measure.shown(x), 3) } else { "∞".to_owned() }
-        };
-        let interval = curve.median.filter(|_| curve.fit.is_ok()).map_or(Cell::Missing, |bounds| {
-            Cell::text(format!("{} to {}", shown(bounds.low), shown(bounds.high)))
-        });
-        let fit = curve.fit.as_ref();
-        table.rows.push(vec![
-            Cell::text(capital(&curve.limit.words())),
-            Cell::text(format!("{failed} of {of}")),
-            fit.map_or(Cell::Missing, |fit| Cell::Number(measure.shown(fit.curve.median), 3)),
-            interval,
-            fit.map_or(Cell::Missing, |fit| Cell::Number(fit.curve.dispersion, 2)),
-            if curve.monotony.deviance == 0.0 {
-                Cell::Missing
-            } else {
-                Cell::Number(curve.monotony.p, 2)
-            },
-            count(u32::try_from(curve.returned.len()).unwrap_or(u32::MAX)),
-            Cell::text(match fit {
-                Ok(_) if curve.violates_order() => "not monotone: use the raw fractions".into(),
-                Ok(_) => String::new(),
-                Err(reason) => words::refusal(reason, |x| measure.words(x)),
+            ("limit state", "", &|of| Cell::text(capital(&of.limit.words()))),
+            ("failed", "", &|of| Cell::text(failed(of))),
+            ("median θ", unit, &|of| {
+                fitted(of).map_or(Cell::Missing, |of| measure.cell(of.median))
             }),
-        ]);
-    }
-    table
+            ("95 % interval", unit, &|of| Cell::maybe(interval(of))),
+            ("dispersion β", "", &|of| Cell::number(fitted(of).map(|of| of.dispersion), 2)),
+            ("order violated (p)", "", &|of| Cell::number(violated(of), 2)),
+            (&format!("{} that return", cases.curves_are()), "", &|of| count(returned(of))),
+            ("remark", "", &|of| Cell::text(remark(of))),
+        ],
+    )
 }
 
 /// Cases that collapsed in each mode.
@@ -266,7 +244,7 @@ fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
         &named,
     );
     for (row, stripe) in modes[0].stripes.iter().enumerate() {
-        let mut cells = vec![Cell::Number(measure.shown(stripe.intensity), 3), count(stripe.cases)];
+        let mut cells = vec![measure.cell(stripe.intensity), count(stripe.cases)];
         cells.extend(modes.iter().map(|mode| count(mode.stripes[row].failures)));
         table.rows.push(cells);
     }
@@ -291,19 +269,14 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
     for loss in &losses.levels {
         let [few, central, many] = loss.burst;
         let mut cells = vec![
-            Cell::Number(measure.shown(loss.intensity), 3),
+            measure.cell(loss.intensity),
             count(loss.cases as f64),
             Cell::Measured(loss.fallen, 1),
-            Cell::text(format!(
-                "{} to {}",
-                measured(loss.interval.low, 1),
-                measured(loss.interval.high, 1)
-            )),
+            Cell::text(range(loss.interval, |barrels| measured(barrels, 1))),
             Cell::Measured(central, 1),
             Cell::text(format!("{} to {}", measured(few, 1), measured(many, 1))),
         ];
-        let bursts = loss.burst_by_force.map_or(Cell::Missing, |burst| Cell::Measured(burst, 1));
-        cells.extend(by_force.then_some(bursts));
+        cells.extend(by_force.then(|| Cell::measured(loss.burst_by_force, 1)));
         cells.push(Cell::Measured(1000.0 * WINE * central, 0));
         table.rows.push(cells);
     }
@@ -353,34 +326,24 @@ fn assumptions() -> Vec<Block> {
 }
 
 fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
-    let mut table = Table::new(
+    let fitted = |of: &LimitRate| Cell::number(of.fitted.map(|rate| rate.low), 2);
+    let interval = |of: &LimitRate| of.interval.map(|of| range(of, |rate| significant(rate, 2)));
+    let once = |of: &LimitRate| {
+        let used = of.fitted.as_ref().unwrap_or(&of.raw).low;
+        Cell::number((used > 0.0).then(|| 1.0 / used), 2)
+    };
+    let table = Table::of(
         format!("What it means at the site of {}, for one stack.", site.hazard.file),
+        &site.limits,
         &[
-            ("limit state", ""),
-            ("annual rate (fitted)", "1/year"),
-            ("95 % interval", "1/year"),
-            ("annual rate (raw fractions)", "1/year"),
-            ("once in", "years"),
-            (&format!("chance in {} years", site.years), ""),
+            ("limit state", "", &|of| Cell::text(capital(&of.limit.words()))),
+            ("annual rate (fitted)", "1/year", &|of| fitted(of)),
+            ("95 % interval", "1/year", &|of| Cell::maybe(interval(of))),
+            ("annual rate (raw fractions)", "1/year", &|of| Cell::Number(of.raw.low, 2)),
+            ("once in", "years", &|of| once(of)),
+            (&format!("chance in {} years", site.years), "", &|of| Cell::text(percent(of.chance))),
         ],
     );
-    for limit in &site.limits {
-        let used = limit.fitted.as_ref().unwrap_or(&limit.raw).low;
-        table.rows.push(vec![
-            Cell::text(capital(&limit.limit.words())),
-            limit.fitted.as_ref().map_or(Cell::Missing, |rate| Cell::Number(rate.low, 2)),
-            limit.interval.map_or(Cell::Missing, |bounds| {
-                Cell::text(format!(
-                    "{} to {}",
-                    significant(bounds.low, 2),
-                    significant(bounds.high, 2)
-                ))
-            }),
-            Cell::Number(limit.raw.low, 2),
-            if used > 0.0 { Cell::Number(1.0 / used, 2) } else { Cell::Missing },
-            Cell::text(percent(limit.chance)),
-        ]);
-    }
     let lost = site.lost.as_ref().map_or_else(
         || "What a stack is expected to lose in a year is not known, since the study does not tell what falls.".to_owned(),
         |lost| {
@@ -412,26 +375,26 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
 }
 
 fn motions(decision: &Decision, made: &Provenance) -> Table {
-    let mut table = Table::new(
-        "The motions, with the cases of each.",
-        &[("motion", ""), ("source", ""), ("cases", ""), ("collapsed", "")],
-    );
     let mut counts = vec![(0_u32, 0_u32); decision.cases.records.len()];
     for case in &decision.cases.all {
         let (cases, collapsed) = &mut counts[case.record as usize];
         *cases += 1;
         *collapsed += u32::from(case.collapsed);
     }
-    for (name, (cases, collapsed)) in decision.cases.records.iter().zip(counts) {
-        let source = made.motions.iter().find(|motion| motion.name == *name);
-        table.rows.push(vec![
-            Cell::text(name),
-            source.map_or(Cell::Missing, |motion| Cell::text(&motion.source)),
-            count(cases),
-            count(collapsed),
-        ]);
-    }
-    table
+    let source = |name: &str| {
+        let found = made.motions.iter().find(|motion| motion.name == name);
+        Cell::maybe(found.map(|motion| &motion.source))
+    };
+    Table::of(
+        "The motions, with the cases of each.",
+        decision.cases.records.iter().zip(counts),
+        &[
+            ("motion", "", &|(name, _)| Cell::text(*name)),
+            ("source", "", &|(name, _)| source(name)),
+            ("cases", "", &|(_, (cases, _))| count(*cases)),
+            ("collapsed", "", &|(_, (_, collapsed))| count(*collapsed)),
+        ],
+    )
 }
 
 fn provenance(made: &Provenance) -> Vec<(String, String)> {

@@ -1,6 +1,6 @@
 //! What the page says in words: verdict and warnings.
 
-use barrelstack_fragility::{FitError, wilson};
+use barrelstack_fragility::{FitError, Interval, wilson};
 use barrelstack_report::{Cell, capital, measured, significant};
 
 use super::Decision;
@@ -25,11 +25,23 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
+/// The ends of an interval as `told` says each.
+pub(crate) fn range(of: Interval, told: impl Fn(f64) -> String) -> String {
+    format!("{} to {}", told(of.low), told(of.high))
+}
+
 /// A count as a cell: all of its digits and no others.
 pub(super) fn count(count: impl Into<f64>) -> Cell {
     let count: f64 = count.into();
     let digits = format!("{count:.0}").len();
     Cell::Number(count, digits)
+}
+
+/// What the reader must know of runs without a verdict, where there are any.
+pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
+    (lost > 0).then(|| {
+        format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables says why.")
+    })
 }
 
 /// A collapse once in how many years.
@@ -100,10 +112,9 @@ pub(super) fn headline(decision: &Decision) -> String {
             let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
             let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
             format!(
-                "{collapsed} of {} cases collapse: {} to {} with 95 % confidence.",
+                "{collapsed} of {} cases collapse: {} with 95 % confidence.",
                 cases.all.len(),
-                percent(share.low),
-                percent(share.high)
+                range(share, percent)
             )
         }
         (Err(_), _) => format!("{collapsed} of {} cases collapse.", cases.all.len()),
@@ -155,12 +166,11 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
         decision.losses.as_ref().ok().and_then(|losses| Some((losses, losses.levels.last()?)))
     {
         said.push(format!(
-            "At {} a stack of {} barrels loses {} of them on average ({} to {} with 95 % confidence).",
+            "At {} a stack of {} barrels loses {} of them on average ({} with 95 % confidence).",
             measure.words(last.intensity),
             losses.barrels,
             measured(last.fallen, 1),
-            measured(last.interval.low, 1),
-            measured(last.interval.high, 1)
+            range(last.interval, |barrels| measured(barrels, 1))
         ));
     }
     if let Some(site) = &decision.site {

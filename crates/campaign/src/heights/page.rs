@@ -1,14 +1,15 @@
 //! The page: how high is safe, for someone with a minute.
 
-use barrelstack_fragility::{Interval, wilson};
+use barrelstack_fragility::{Fit, Interval, wilson};
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Table, Tone, Verdict,
-    significant,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
 
 use super::plan::{HEIGHTS, VELOCITIES};
 use super::{AtLevel, Heights, field};
-use crate::decision::{LimitCurve, chance_axis, heading, percent, points, refusal, text};
+use crate::decision::{
+    LimitCurve, chance_axis, heading, left_out, percent, points, range, refusal, text,
+};
 use crate::scenario::View;
 use crate::scenario::catalog;
 
@@ -25,7 +26,6 @@ pub(super) fn document(all: &Heights) -> Document {
         verdict: Verdict {
             headline: headline(all),
             sentences: sentences(all),
-            tone: Tone::Neutral,
             ..Verdict::default()
         },
         blocks: blocks(all),
@@ -182,9 +182,18 @@ fn blocks(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-fn height_columns() -> Vec<(&'static str, &'static str)> {
-    let names = ["2 levels", "3 levels", "4 levels", "5 levels", "6 levels"];
-    [("shaking, by PGV", ""), ("felt as", "")].into_iter().chain(names.map(|n| (n, ""))).collect()
+/// Shaking down, height across.
+fn by_height(caption: String, cell: impl Fn(u32, f64) -> Cell) -> Table {
+    let names = HEIGHTS.map(|levels| format!("{levels} levels"));
+    let mut columns = vec![("shaking, by PGV", ""), ("felt as", "")];
+    columns.extend(names.iter().map(|name| (name.as_str(), "")));
+    let mut table = Table::new(caption, &columns);
+    for velocity in VELOCITIES {
+        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
+        row.extend(HEIGHTS.map(|levels| cell(levels, velocity)));
+        table.rows.push(row);
+    }
+    table
 }
 
 fn judged(at: &AtLevel) -> Cell {
@@ -206,42 +215,28 @@ fn judged(at: &AtLevel) -> Cell {
     )
 }
 
-/// The card: shaking down, height across.
 fn card(all: &Heights) -> Table {
-    let mut table = Table::new(
+    let rack = &all.request.rack;
+    by_height(
         format!(
-            "Chance that a stack on {} racks collapses, by height and strength of shaking.",
-            all.request.rack
+            "Chance that a stack on {rack} racks collapses, by height and strength of shaking."
         ),
-        &height_columns(),
-    );
-    for velocity in VELOCITIES {
-        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
-        row.extend(
-            HEIGHTS
-                .map(|levels| worse(all, levels, velocity).map_or(Cell::Missing, |at| judged(&at))),
-        );
-        table.rows.push(row);
-    }
-    table
+        |levels, velocity| worse(all, levels, velocity).map_or(Cell::Missing, |at| judged(&at)),
+    )
 }
 
 fn direction(all: &Heights, view: View) -> Table {
-    let mut table = Table::new(
+    by_height(
         format!("Collapse under shaking {}: collapsed stacks of those run.", view.words()),
-        &height_columns(),
-    );
-    for velocity in VELOCITIES {
-        let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
-        row.extend(HEIGHTS.map(|levels| {
+        |levels, velocity| {
             let found = all.of(levels, view).and_then(|height| height.at(velocity));
-            found.map_or(Cell::Missing, |at| {
-                Cell::text(format!("{} of {}", at.stripe.failures, at.stripe.cases))
-            })
-        }));
-        table.rows.push(row);
-    }
-    table
+            Cell::maybe(
+                found.map(|AtLevel { stripe, .. }| {
+                    format!("{} of {}", stripe.failures, stripe.cases)
+                }),
+            )
+        },
+    )
 }
 
 fn level_axis() -> Axis {
@@ -265,18 +260,12 @@ fn chart(all: &Heights) -> Figure {
         let (y, bounds) = (found.iter().map(|f| f.1), found.iter().map(|f| f.2));
         series.push(points(&shaking(VELOCITIES[at]), &x, y, bounds, index));
     }
-    Figure {
-        id: "height-chart".into(),
-        caption: "Chance of collapse against height in the weaker direction, at three strengths of shaking. Upright bars: \
-                  95 % confidence."
-            .into(),
-        kind: FigureKind::Plot(Plot {
-            x: level_axis(),
-            y: chance_axis("chance of collapse"),
-            series,
-            ..Plot::default()
-        }),
-    }
+    Figure::new(
+        "height-chart",
+        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Upright bars: 95 % \
+         confidence.",
+        Plot { x: level_axis(), y: chance_axis("chance of collapse"), series, ..Plot::default() },
+    )
 }
 
 /// The PGV at which half of the stacks collapse, against height.
@@ -302,62 +291,47 @@ fn medians(all: &Heights) -> Figure {
         let (y, bounds) = (found.iter().map(|f| f.1), found.iter().map(|f| f.2));
         series.push(points(view.words(), &x, y, bounds, index));
     }
-    Figure {
-        id: "medians".into(),
-        caption: "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. \
-                  A height without a dot has no curve: the table says why."
-            .into(),
-        kind: FigureKind::Plot(Plot {
+    Figure::new(
+        "medians",
+        "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. A height \
+         without a dot has no curve: the table says why.",
+        Plot {
             x: level_axis(),
             y: Axis::new("median PGV of collapse", "cm/s"),
             series,
             ..Plot::default()
-        }),
-    }
+        },
+    )
 }
 
 fn median_table(all: &Heights) -> Table {
-    let mut table = Table::new(
+    let number = |curve: &LimitCurve, scale: f64, of: fn(&Fit) -> f64| {
+        Cell::number(curve.fit.as_ref().ok().map(|fit| scale * of(fit)), 3)
+    };
+    let shown = |x: f64| if x.is_finite() { significant(100.0 * x, 3) } else { "∞".to_owned() };
+    let interval = |pgv: &LimitCurve| {
+        pgv.median.filter(|_| pgv.fit.is_ok()).map(|bounds| range(bounds, shown))
+    };
+    let remark = |pgv: &LimitCurve| match &pgv.fit {
+        Ok(_) if pgv.violates_order() => "not monotone: use the counts".to_owned(),
+        Ok(_) => String::new(),
+        Err(reason) => refusal(reason, shaking),
+    };
+    let g = 1.0 / barrelstack_motion::STANDARD_GRAVITY;
+    Table::of(
         "Fragility by height and direction: lognormal curves of greatest likelihood.",
+        all.heights.iter().map(|height| (height, &height.by_velocity, &height.by_acceleration)),
         &[
-            ("levels", ""),
-            ("shaken", ""),
-            ("median PGV", "cm/s"),
-            ("95 % interval", "cm/s"),
-            ("dispersion", ""),
-            ("median PGA", "g"),
-            ("dispersion (PGA)", ""),
-            ("remark", ""),
+            ("levels", "", &|(height, ..)| Cell::text(height.levels.to_string())),
+            ("shaken", "", &|(height, ..)| Cell::text(height.view.words())),
+            ("median PGV", "cm/s", &|(_, pgv, _)| number(pgv, 100.0, |fit| fit.curve.median)),
+            ("95 % interval", "cm/s", &|(_, pgv, _)| Cell::maybe(interval(pgv))),
+            ("dispersion", "", &|(_, pgv, _)| number(pgv, 1.0, |fit| fit.curve.dispersion)),
+            ("median PGA", "g", &|(.., pga)| number(pga, g, |fit| fit.curve.median)),
+            ("dispersion (PGA)", "", &|(.., pga)| number(pga, 1.0, |fit| fit.curve.dispersion)),
+            ("remark", "", &|(_, pgv, _)| Cell::text(remark(pgv))),
         ],
-    );
-    for height in &all.heights {
-        let (pgv, pga) = (&height.by_velocity, &height.by_acceleration);
-        let number =
-            |curve: &LimitCurve, of: fn(&barrelstack_fragility::Fit) -> f64, scale: f64| {
-                curve.fit.as_ref().map_or(Cell::Missing, |fit| Cell::Number(scale * of(fit), 3))
-            };
-        let g = 1.0 / barrelstack_motion::STANDARD_GRAVITY;
-        table.rows.push(vec![
-            Cell::text(height.levels.to_string()),
-            Cell::text(height.view.words()),
-            number(pgv, |fit| fit.curve.median, 100.0),
-            pgv.median.filter(|_| pgv.fit.is_ok()).map_or(Cell::Missing, |bounds| {
-                let shown = |x: f64| {
-                    if x.is_finite() { significant(100.0 * x, 3) } else { "∞".to_owned() }
-                };
-                Cell::text(format!("{} to {}", shown(bounds.low), shown(bounds.high)))
-            }),
-            number(pgv, |fit| fit.curve.dispersion, 1.0),
-            number(pga, |fit| fit.curve.median, g),
-            number(pga, |fit| fit.curve.dispersion, 1.0),
-            match &pgv.fit {
-                Ok(_) if pgv.violates_order() => Cell::text("not monotone: use the counts"),
-                Ok(_) => Cell::text(""),
-                Err(reason) => Cell::text(refusal(reason, shaking)),
-            },
-        ]);
-    }
-    table
+    )
 }
 
 fn rests_on(all: &Heights) -> Vec<String> {
@@ -392,12 +366,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
 /// Warnings, the most important first.
 pub(super) fn warnings(all: &Heights) -> Vec<String> {
     let mut said = all.ends.clone();
-    if all.left_out > 0 {
-        said.push(format!(
-            "{} of {} runs have no verdict and are left out; the column `error` of the tables says why.",
-            all.left_out, all.runs
-        ));
-    }
+    said.extend(left_out(all.left_out, all.runs));
     for height in &all.heights {
         for fall in height.by_velocity.monotony.significant(0.05) {
             said.push(format!(

@@ -2,12 +2,11 @@
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Table, Tone, Verdict,
-    significant,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
-use crate::decision::{heading, percent, points, text};
+use crate::decision::{heading, left_out, percent, points, text};
 
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
@@ -29,7 +28,6 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         verdict: Verdict {
             headline: headline(all),
             sentences: sentences(all),
-            tone: Tone::Neutral,
             ..Verdict::default()
         },
         blocks,
@@ -148,48 +146,37 @@ fn table(all: &Ranking) -> Table {
     } else {
         ("collapse", "barrels fallen", "barrels burst")
     };
-    let mut table = Table::new(
-        format!("Every protection that was tried, {}; in brackets 95 % intervals.", per(all)),
-        &[
-            ("protection", ""),
-            ("cost of a stack", "US$"),
-            ("barrels elsewhere", ""),
-            (collapses, ""),
-            (fallen, ""),
-            (burst, ""),
-            ("fewer fall, same motions", ""),
-            ("fallen when badly kept", ""),
-            ("weaker", ""),
-            ("motions", ""),
-        ],
-    );
-    for one in &all.all {
-        let name = if one.on_front {
-            Cell::Rated(Rating::Good, format!("✓ {}", one.protection.name))
-        } else {
-            Cell::text(one.protection.name.clone())
-        };
+    let name = |one: &Ranked| match &one.protection.name {
+        name if one.on_front => Cell::Rated(Rating::Good, format!("✓ {name}")),
+        name => Cell::text(name),
+    };
+    let cost = |one: &Ranked| {
         let [low, high] = one.protection.cost;
-        table.rows.push(vec![
-            name,
-            Cell::text(if high > 0.0 { format!("{low:.0}–{high:.0}") } else { "0".to_owned() }),
-            Cell::text(one.protection.moved.to_string()),
-            Cell::text(if is_site(all) {
-                interval(all, &one.collapse)
-            } else {
-                shares(&one.collapse)
-            }),
-            Cell::text(interval(all, &one.fallen)),
-            Cell::text(interval(all, &one.burst)),
-            one.saved.as_ref().map_or(Cell::Missing, |saved| Cell::text(interval(all, saved))),
-            one.worn.as_ref().map_or(Cell::Missing, |(words, worn)| {
-                Cell::text(format!("{} {words}", interval(all, worn)))
-            }),
-            Cell::text(one.direction.words()),
-            Cell::text(one.motions.to_string()),
-        ]);
-    }
-    table
+        if high > 0.0 { format!("{low:.0}–{high:.0}") } else { "0".to_owned() }
+    };
+    let collapse = |one: &Ranked| {
+        if is_site(all) { interval(all, &one.collapse) } else { shares(&one.collapse) }
+    };
+    let saved = |one: &Ranked| one.saved.as_ref().map(|saved| interval(all, saved));
+    let worn = |one: &Ranked| {
+        one.worn.as_ref().map(|(words, worn)| format!("{} {words}", interval(all, worn)))
+    };
+    Table::of(
+        format!("Every protection that was tried, {}; in brackets 95 % intervals.", per(all)),
+        &all.all,
+        &[
+            ("protection", "", &|one| name(one)),
+            ("cost of a stack", "US$", &|one| Cell::text(cost(one))),
+            ("barrels elsewhere", "", &|one| Cell::text(one.protection.moved.to_string())),
+            (collapses, "", &|one| Cell::text(collapse(one))),
+            (fallen, "", &|one| Cell::text(interval(all, &one.fallen))),
+            (burst, "", &|one| Cell::text(interval(all, &one.burst))),
+            ("fewer fall, same motions", "", &|one| Cell::maybe(saved(one))),
+            ("fallen when badly kept", "", &|one| Cell::maybe(worn(one))),
+            ("weaker", "", &|one| Cell::text(one.direction.words())),
+            ("motions", "", &|one| Cell::text(one.motions.to_string())),
+        ],
+    )
 }
 
 fn legend(all: &Ranking) -> String {
@@ -208,57 +195,48 @@ fn legend(all: &Ranking) -> String {
 
 /// Cost against loss.
 fn chart(all: &Ranking) -> Figure {
-    let of = |front: bool| {
-        let last = all.all.iter().map(|one| one.round).max();
-        let some: Vec<&Ranked> =
-            all.all.iter().filter(|one| one.on_front == front && Some(one.round) == last).collect();
-        let x: Vec<f64> = some.iter().map(|one| one.cost()).collect();
-        let bounds: Vec<Interval> = some
-            .iter()
-            .map(|one| Interval { low: one.fallen.low, high: one.fallen.high })
-            .collect();
-        (x, some.iter().map(|one| one.fallen.mean).collect::<Vec<_>>(), bounds)
-    };
+    let last = all.all.iter().map(|one| one.round).max();
     let series = [(true, "nothing beats it in both"), (false, "others")]
         .into_iter()
         .enumerate()
         .map(|(index, (front, label))| {
-            let (x, y, bounds) = of(front);
-            points(label, &x, y.into_iter(), bounds.into_iter(), index)
+            let last = all.all.iter().filter(|one| Some(one.round) == last);
+            let some: Vec<&Ranked> = last.filter(|one| one.on_front == front).collect();
+            let x: Vec<f64> = some.iter().map(|one| one.cost()).collect();
+            let bounds = |one: &&Ranked| Interval { low: one.fallen.low, high: one.fallen.high };
+            let means = some.iter().map(|one| one.fallen.mean);
+            points(label, &x, means, some.iter().map(bounds), index)
         })
         .collect();
     let fallen = if is_site(all) { "barrels fallen a year" } else { "barrels fallen" };
-    Figure {
-        id: "cost-and-loss".into(),
-        caption: format!(
+    Figure::new(
+        "cost-and-loss",
+        format!(
             "Barrels that fall against what a protection costs, {}, of those that went through all rounds. Upright \
              bars: 95 % intervals. The table names them.",
             per(all)
         ),
-        kind: FigureKind::Plot(Plot {
+        Plot {
             x: Axis::new("cost of a stack", "US$"),
             y: Axis::new(fallen, ""),
             series,
             ..Plot::default()
-        }),
-    }
+        },
+    )
 }
 
 /// What each changes, to be tried by hand.
 fn changes(all: &Ranking) -> Table {
-    let mut table = Table::new(
+    let tried = all.all.iter().map(|one| &one.protection);
+    Table::of(
         "What each protection changes in the scenario, and where its cost comes from.",
-        &[("protection", ""), ("changes", ""), ("cost", "")],
-    );
-    let tried = all.all.iter().filter(|one| one.protection.kind != Kind::AsItIs);
-    for one in tried {
-        table.rows.push(vec![
-            Cell::text(one.protection.name.clone()),
-            Cell::text(one.protection.changes.join("; ")),
-            Cell::text(one.protection.source.clone()),
-        ]);
-    }
-    table
+        tried.filter(|one| one.kind != Kind::AsItIs),
+        &[
+            ("protection", "", &|one| Cell::text(&one.name)),
+            ("changes", "", &|one| Cell::text(one.changes.join("; "))),
+            ("cost", "", &|one| Cell::text(&one.source)),
+        ],
+    )
 }
 
 fn rests_on(all: &Ranking) -> Vec<String> {
@@ -290,13 +268,6 @@ fn rests_on(all: &Ranking) -> Vec<String> {
 }
 
 fn warnings(all: &Ranking) -> Vec<String> {
-    let left_out: usize = all.all.iter().map(|one| one.left_out).sum();
-    let mut said = Vec::new();
-    if left_out > 0 {
-        said.push(format!(
-            "{left_out} of {} runs have no verdict and are left out; the column `error` of the tables says why.",
-            all.runs
-        ));
-    }
-    said
+    let lost = all.all.iter().map(|one| one.left_out).sum();
+    left_out(lost, all.runs).into_iter().collect()
 }

@@ -2,13 +2,13 @@
 
 use barrelstack_fragility::Stripe;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Rating, Series, Table, Verdict,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Series, Table, Verdict,
 };
 
-use barrelstack_input::listing::{Setting, Source};
+use barrelstack_input::listing::Source;
 
 use super::{Capacity, Scored, Sheet};
-use crate::decision::{chance_axis, heading, percent, points, text};
+use crate::decision::{chance_axis, heading, left_out, percent, points, text};
 
 pub(super) fn document(sheet: &Sheet) -> Document {
     let protocol = &sheet.protocol;
@@ -127,7 +127,7 @@ fn table(sheet: &Sheet) -> Table {
             if is_weakest { Cell::Rated(Rating::Poor, bears) } else { Cell::text(bears) },
         ];
         cells.extend(velocities.iter().map(|velocity| {
-            row.at(*velocity).map_or(Cell::Missing, |stripe| Cell::text(percent(stripe.fraction())))
+            Cell::maybe(row.at(*velocity).map(|stripe| percent(stripe.fraction())))
         }));
         table.rows.push(cells);
     }
@@ -148,31 +148,30 @@ fn chart(sheet: &Sheet) -> Figure {
             points(&label(row), &x, y, row.curve.intervals.iter().copied(), index)
         }
     });
-    Figure {
-        id: "rockscore".into(),
-        caption: "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine none, \
-                  dots are the shares with their 95 % intervals."
-            .into(),
-        kind: FigureKind::Plot(Plot {
+    Figure::new(
+        "rockscore",
+        "Chance of collapse against peak ground velocity. Lines are fitted curves; where the runs determine none, dots \
+         are the shares with their 95 % intervals.",
+        Plot {
             x: Axis::new("peak ground velocity", "cm/s"),
             y: chance_axis("chance of collapse"),
             series: series.collect(),
             ..Plot::default()
-        }),
-    }
+        },
+    )
 }
 
 fn inputs(sheet: &Sheet) -> Table {
-    let columns = [("input", ""), ("value", ""), ("meaning", "")];
-    let mut table =
-        Table::new("Inputs that differ from their defaults. Quantities are in SI units.", &columns);
-    let row = |setting: Setting| {
-        vec![Cell::text(setting.path), Cell::text(setting.value), Cell::text(setting.help)]
-    };
-    let given =
-        sheet.scenario.settings().into_iter().filter(|setting| setting.source == Source::Given);
-    table.rows = given.map(row).collect();
-    table
+    let settings = sheet.scenario.settings().into_iter();
+    Table::of(
+        "Inputs that differ from their defaults. Quantities are in SI units.",
+        settings.filter(|setting| setting.source == Source::Given),
+        &[
+            ("input", "", &|setting| Cell::text(&setting.path)),
+            ("value", "", &|setting| Cell::text(&setting.value)),
+            ("meaning", "", &|setting| Cell::text(setting.help)),
+        ],
+    )
 }
 
 fn rules(sheet: &Sheet) -> Vec<String> {
@@ -209,10 +208,6 @@ fn rules(sheet: &Sheet) -> Vec<String> {
 }
 
 fn warnings(sheet: &Sheet) -> Vec<String> {
-    let left_out: usize = sheet.rows.iter().map(|row| row.left_out).sum();
-    let runs: usize = sheet.rows.iter().map(|row| row.runs).sum();
-    let lost = (left_out > 0).then(|| {
-        format!("{left_out} of {runs} runs have no verdict and are left out; the column `error` of the tables says why.")
-    });
-    lost.into_iter().collect()
+    let sum = |of: fn(&Scored) -> usize| sheet.rows.iter().map(of).sum();
+    left_out(sum(|row| row.left_out), sum(|row| row.runs)).into_iter().collect()
 }
