@@ -60,19 +60,12 @@ pub fn drop(
     let mut facts = vec![("impacts".to_owned(), found.impacts.to_string())];
     let scenario;
     if let (Some(striker), Some((log_ratio, half))) = (striker, found.log_ratio) {
-        let whole = |ratio: f64| {
-            let nodes = f64::from(striker.nodes);
-            restitution::damping(striker.stiffness * nodes, ratio, striker.mass) / nodes
+        let per_node = |ratio: f64| striker.constants(ratio).1 / f64::from(striker.nodes);
+        let estimate = |name: &str, dimension, of: &dyn Fn(f64) -> f64| {
+            Estimate::of_log(name, log_ratio, half, dimension, |log| of(math::exp(log)))
         };
-        let estimate = |name: &str, of: &dyn Fn(f64) -> f64, dimension| Estimate {
-            name: name.to_owned(),
-            value: of(math::exp(log_ratio)),
-            low: of(math::exp(log_ratio - half)),
-            high: of(math::exp(log_ratio + half)),
-            dimension,
-        };
-        estimates.push(estimate("damping ratio", &|ratio| ratio, Dimension::NONE));
-        let damping = estimate("damping c", &whole, Dimension::DAMPING);
+        estimates.push(estimate("damping ratio", Dimension::NONE, &|ratio| ratio));
+        let damping = estimate("damping c", Dimension::DAMPING, &per_node);
         scenario = format!(
             "[interface.{interface}]\nstiffness = {}\ndamping = {}\n",
             quoted(striker.stiffness, Dimension::STIFFNESS),
@@ -247,13 +240,8 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     let plain = fit(&[0.0, 0.0, math::log(e)], &|points| points.iter().map(bounce).collect());
     let (log_e, half) = log_interval(plain.as_ref(), 2)
         .ok_or_else(|| table.unsuited("the times do not follow a bounce sequence"))?;
-    let restitution = Estimate {
-        name: "restitution".to_owned(),
-        value: math::exp(log_e),
-        low: math::exp(log_e - half),
-        high: math::exp(log_e + half),
-        dimension: Dimension::NONE,
-    };
+    let restitution =
+        Estimate::of_log("restitution", log_e, half, Dimension::NONE, |log| math::exp(log));
     let mut warnings = Vec::new();
     let picture =
         |fit: Option<Fit>| bounces(&times, &fit.map(|fit| fit.residuals).unwrap_or_default(), unit);

@@ -1,6 +1,6 @@
 //! Pictures of tests: what was measured beside what the fitted parameters give.
 
-use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
+use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
 use super::Estimate;
 
@@ -46,6 +46,5 @@ pub(super) fn span(values: &[f64]) -> [f64; 2] {
 pub(super) fn figure(id: &str, caption: &str, [x, y]: [Axis; 2], series: Vec<Series>) -> Figure {
     // What lies in time can be looked at closely.
     let interactive = series.iter().all(|one| one.range.is_empty() && !one.style.points);
-    let plot = Plot { x, y, series, interactive, ..Plot::default() };
-    Figure { id: id.to_owned(), caption: caption.to_owned(), kind: FigureKind::Plot(plot) }
+    Figure::new(id, caption, Plot { x, y, series, interactive, ..Plot::default() })
 }

@@ -1,6 +1,6 @@
 //! The page of a calibration: the parameters, and what was measured beside the fit.
 
-use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, capital, significant};
+use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, significant};
 
 use super::{Calibration, Estimate};
 
@@ -19,17 +19,22 @@ impl Calibration {
             blocks.push(Block::Table(self.correlations()));
         }
         if !self.facts.is_empty() {
-            let mut table = Table::new("What they rest on.", &[("fact", ""), ("value", "")]);
-            let cells =
-                |(name, value): &(String, String)| vec![Cell::text(name), Cell::text(value)];
-            table.rows = self.facts.iter().map(cells).collect();
-            blocks.push(Block::Table(table));
+            blocks.push(Block::Table(Table::of(
+                "What they rest on.",
+                &self.facts,
+                &[
+                    ("fact", "", &|(name, _)| Cell::text(name)),
+                    ("value", "", &|(_, value)| Cell::text(value)),
+                ],
+            )));
         }
         if !self.scenario.is_empty() {
-            let mut table = Table::new("Lines to paste into a scenario.", &[("scenario", "")]);
-            table.rows = self.scenario.lines().map(|line| vec![Cell::text(line)]).collect();
             blocks.push(heading("For a scenario"));
-            blocks.push(Block::Table(table));
+            blocks.push(Block::Table(Table::of(
+                "Lines to paste into a scenario.",
+                self.scenario.lines(),
+                &[("scenario", "", &|line| Cell::text(*line))],
+            )));
         }
         Document {
             title: self.title.clone(),
@@ -40,7 +45,6 @@ impl Calibration {
                      as exact, are not in them."
                         .to_owned(),
                 ],
-                tone: Tone::Neutral,
                 ..Verdict::default()
             },
             blocks,
@@ -65,23 +69,18 @@ impl Calibration {
     }
 
     fn parameters(&self) -> Table {
-        let mut table = Table::new(
+        let bound = |value: f64| Cell::number(Some(value).filter(|value| value.is_finite()), 4);
+        Table::of(
             "What the test gives, with 95 % intervals.",
-            &[("parameter", ""), ("value", ""), ("from", ""), ("to", ""), ("unit", "")],
-        );
-        let bound =
-            |value: f64| if value.is_finite() { Cell::Number(value, 4) } else { Cell::Missing };
-        let cells = |estimate: &Estimate| {
-            vec![
-                Cell::text(&estimate.name),
-                bound(estimate.value),
-                bound(estimate.low),
-                bound(estimate.high),
-                Cell::text(estimate.unit()),
-            ]
-        };
-        table.rows = self.estimates.iter().map(cells).collect();
-        table
+            &self.estimates,
+            &[
+                ("parameter", "", &|of| Cell::text(&of.name)),
+                ("value", "", &|of| bound(of.value)),
+                ("from", "", &|of| bound(of.low)),
+                ("to", "", &|of| bound(of.high)),
+                ("unit", "", &|of| Cell::text(of.unit())),
+            ],
+        )
     }
 
     fn correlations(&self) -> Table {

@@ -88,11 +88,6 @@ impl Tunable {
         Ok(Self { parameters: parameters.to_vec(), barrel_rack, rack_ground, basis })
     }
 
-    /// The point of the scenario's own values.
-    pub(super) fn origin(&self) -> Vec<f64> {
-        vec![0.0; self.parameters.len()]
-    }
-
     /// The parameters, in the order of a point.
     pub(super) fn parameters(&self) -> &[Parameter] {
         &self.parameters
@@ -137,15 +132,12 @@ impl Tunable {
             match parameter {
                 Parameter::Stiffness => constants.stiffness *= factor,
                 Parameter::Damping => constants.damping *= factor,
-                Parameter::FrictionBarrelRack if barrel_rack => {
-                    constants.kinetic *= factor;
-                    constants.rest *= factor;
+                Parameter::FrictionBarrelRack | Parameter::FrictionRackGround => {
+                    if (*parameter == Parameter::FrictionBarrelRack) == barrel_rack {
+                        constants.kinetic *= factor;
+                        constants.rest *= factor;
+                    }
                 }
-                Parameter::FrictionRackGround if !barrel_rack => {
-                    constants.kinetic *= factor;
-                    constants.rest *= factor;
-                }
-                Parameter::FrictionBarrelRack | Parameter::FrictionRackGround => {}
             }
         }
         constants

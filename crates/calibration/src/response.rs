@@ -64,7 +64,7 @@ pub fn response(
 ) -> Result<Calibration, CalibrateError> {
     let measured = Measured::read(table, until)?;
     let simulator = Simulator::new(scenario, &measured, parameters, tell)?;
-    let simulated = simulator.first()?;
+    let mut warnings: Vec<String> = simulator.first()?.into_iter().collect();
     let rows = measured.times.len();
     let values = rows * measured.channels.len();
     if values <= parameters.len() + 1 {
@@ -114,7 +114,6 @@ pub fn response(
         found = weighted(&simulator, start, &measured, &scatter)?;
     }
 
-    let mut warnings = simulated.warnings;
     warnings.push(
         "the 95 % intervals of a recorded response are somewhat too narrow: they have held the truth in about 90 % of \
          made records"
@@ -227,15 +226,9 @@ fn estimates(
     let known = |at: usize| found.covariance.as_ref().filter(|_| found.matters[at]);
     let estimate = |(at, parameter): (usize, &Parameter)| {
         let half = known(at).map_or(f64::INFINITY, |c| t * c[place(at)][place(at)].sqrt());
-        let value = |log: f64| simulator.tunable.start(*parameter) * math::exp(log);
-        let log = found.parameters[at];
-        Estimate {
-            name: parameter.name().to_owned(),
-            value: value(log),
-            low: value(log - half),
-            high: value(log + half),
-            dimension: simulator.tunable.dimension(*parameter),
-        }
+        let (tunable, log) = (&simulator.tunable, found.parameters[at]);
+        let value = |log: f64| tunable.start(*parameter) * math::exp(log);
+        Estimate::of_log(parameter.name(), log, half, tunable.dimension(*parameter), value)
     };
     let estimates = parameters.iter().enumerate().map(estimate).collect();
     let correlation = found.covariance.as_ref().map(|covariance| normalized(covariance));

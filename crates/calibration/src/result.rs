@@ -49,6 +49,18 @@ impl Estimate {
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
+    /// An estimate of what `of` makes of a logarithm whose interval has equal arms.
+    pub(super) fn of_log(
+        name: &str,
+        log: f64,
+        half: f64,
+        dimension: Dimension,
+        of: impl Fn(f64) -> f64,
+    ) -> Self {
+        let [value, low, high] = [log, log - half, log + half].map(of);
+        Self { name: name.to_owned(), value, low, high, dimension }
+    }
+
     /// Whether a value lies within the interval.
     pub fn covers(&self, value: f64) -> bool {
         self.low <= value && value <= self.high

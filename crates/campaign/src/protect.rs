@@ -31,7 +31,7 @@ pub(crate) use options::{changed, slug};
 pub(crate) use plan::{NAPA, shaken};
 pub use rank::Estimate;
 
-use rank::{Quantity, Runs, weights};
+use rank::{FALLEN, Runs, weights};
 use search::{Search, Trial};
 
 /// Levels of peak ground velocity (m/s) that are shaken where nothing else is asked for.
@@ -314,15 +314,14 @@ fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
         (&trial.runs[trial.worse(weights)], middle(&trial.protection))
     };
     let judged: Vec<(&Runs, f64)> = open.iter().map(judged).collect();
-    let kept = rank::contenders(&judged, Quantity::Fallen, weights);
+    let kept = rank::contenders(&judged, weights);
     kept.into_iter().map(|at| open[at]).collect()
 }
 
 /// Of each kind of protection the two under which fewest barrels fall.
 fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
-    let fallen = |trial: &Trial| {
-        trial.runs[trial.worse(weights)].estimate(Quantity::Fallen, weights, 1.0).mean
-    };
+    let fallen =
+        |trial: &Trial| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
     let mut sorted: Vec<&Trial> = open.iter().map(|at| &trials[*at]).collect();
     sorted.sort_by(|a, b| fallen(a).total_cmp(&fallen(b)));
     let mut best: Vec<&Protection> = Vec::new();
@@ -354,13 +353,13 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64]) -> Ranked {
     let barrels = stack.stack().map_or(0, |stack| stack.levels * stack.columns);
     let most = f64::from(barrels);
     let saved = (trial.protection.kind != Kind::AsItIs)
-        .then(|| runs.less_than(&base.runs[base.worse(weights)], Quantity::Fallen, weights))
+        .then(|| runs.less_than(&base.runs[base.worse(weights)], FALLEN, weights))
         .flatten();
     Ranked {
         protection: trial.protection.clone(),
-        collapse: runs.estimate(Quantity::Collapsed, weights, 1.0),
-        fallen: runs.estimate(Quantity::Fallen, weights, most),
-        burst: runs.estimate(Quantity::Burst, weights, most),
+        collapse: runs.estimate(|run| run.collapsed, weights, 1.0),
+        fallen: runs.estimate(FALLEN, weights, most),
+        burst: runs.estimate(|run| run.burst, weights, most),
         saved,
         direction: *view,
         motions: runs.motions(),

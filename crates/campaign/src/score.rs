@@ -69,6 +69,11 @@ impl Capacity {
         })
     }
 
+    /// Its 95 % interval, where there is one.
+    pub(crate) fn interval(self) -> Option<Interval> {
+        if let Self::Fitted(_, interval) = self { interval } else { None }
+    }
+
     /// The velocity (m/s) that counts: what is below the lowest level counts as nothing.
     pub fn velocity(self) -> f64 {
         match self {

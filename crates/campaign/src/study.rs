@@ -65,6 +65,7 @@ pub use folder::{MotionSource, Provenance};
 pub use grow::Common;
 pub use ida::Hunt;
 pub use plan::Chunk;
+pub(crate) use setting::word;
 pub use stop::{StopRule, Tally};
 pub use table::StudyTable;
 
@@ -191,16 +192,7 @@ impl Study {
 
     /// Whether the number of cases depends on what becomes of them.
     pub fn is_adaptive(&self) -> bool {
-        match &self.design {
-            Design::Ida(_) => true,
-            Design::MonteCarlo { half_width, .. } => half_width.is_some(),
-            Design::FullFactorial
-            | Design::OneAtATime { .. }
-            | Design::LatinHypercube { .. }
-            | Design::Sobol { .. }
-            | Design::Saltelli { .. }
-            | Design::Stripes => false,
-        }
+        matches!(self.design, Design::Ida(_) | Design::MonteCarlo { half_width: Some(_), .. })
     }
 
     /// What a chunk has: "cases", or "hunts" of an incremental dynamic analysis.

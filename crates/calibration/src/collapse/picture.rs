@@ -1,6 +1,6 @@
 //! Pictures of collapses: what was seen beside what the stacks with the found values do.
 
-use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
+use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
 use super::ensemble::Seen;
 use super::observed::Time;
@@ -43,7 +43,7 @@ fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
     }
     let caption = "How much of the weight of the simulations goes as the test was seen to go.";
     let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share of the weight", "") };
-    rows.figure("collapse-modes", caption, x, "simulated", None)
+    rows.figure("collapse-modes", caption, x, None)
 }
 
 /// When things happened; none where no time was seen.
@@ -76,7 +76,7 @@ fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
     }
     let caption = "When it was seen, and when it happens in the simulations: the middle 90 % of the weight of those in \
                    which it does. A row without a bar happens in none.";
-    rows.figure("collapse-times", caption, Axis::new("time", "s"), "simulated", Some(seen))
+    rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(seen))
 }
 
 /// The times between which the middle of the weight lies; not a number where there is none.
@@ -110,17 +110,10 @@ impl Rows {
     }
 
     /// The picture; `seen` has a dot for every row.
-    fn figure(
-        self,
-        id: &str,
-        caption: &str,
-        x: Axis,
-        label: &str,
-        seen: Option<Vec<f64>>,
-    ) -> Option<Figure> {
+    fn figure(self, id: &str, caption: &str, x: Axis, seen: Option<Vec<f64>>) -> Option<Figure> {
         let rows = (0..self.names.len()).map(Axis::row).collect();
         let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
-        let bars = Series { style, ..Series::new(label, self.x, self.y) };
+        let bars = Series { style, ..Series::new("simulated", self.x, self.y) };
         let seen = seen.map(|seen| measured("seen", seen, rows, 1));
         let plot = Plot {
             x,
@@ -128,10 +121,6 @@ impl Rows {
             series: std::iter::once(bars).chain(seen).collect(),
             ..Plot::default()
         };
-        (!plot.y.names.is_empty()).then(|| Figure {
-            id: id.to_owned(),
-            caption: caption.to_owned(),
-            kind: FigureKind::Plot(plot),
-        })
+        (!plot.y.names.is_empty()).then(|| Figure::new(id, caption, plot))
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use barrelstack::assemble::assemble;
 use barrelstack::outcome::Outcome;
 use barrelstack::pool;
-use barrelstack::run::{Run, time_step};
+use barrelstack::run::{Run, RunFailure, time_step};
 use barrelstack::scenario::{Dimension, Scenario};
 
 use crate::parameters::{Parameter, Tunable};
@@ -76,11 +76,6 @@ pub(super) struct Simulator<'a> {
 /// Hears again and again how many simulations were begun, from several threads, and may stop them.
 pub(super) type Tell<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
-/// What the first simulation says.
-pub(super) struct First {
-    pub(super) warnings: Vec<String>,
-}
-
 impl<'a> Simulator<'a> {
     pub(super) fn new(
         scenario: &Scenario,
@@ -94,7 +89,7 @@ impl<'a> Simulator<'a> {
         let scale = scenario.run.similitude.sqrt();
         // One step for all simulations, so that a change of step does not pass for an effect of a
         // parameter; the step of a run is a small share of the critical one.
-        let assembly = assemble(&scenario).map_err(barrelstack::run::RunFailure::from)?;
+        let assembly = assemble(&scenario).map_err(RunFailure::from)?;
         let step = time_step(&scenario, &assembly)? / scale;
         scenario.run.step = Some(step);
         // Two steps more, so that the last row lies between samples.
@@ -116,9 +111,9 @@ impl<'a> Simulator<'a> {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Runs the scenario as it is, and checks that it shows the channels that were recorded.
-    pub(super) fn first(&self) -> Result<First, CalibrateError> {
-        let run = self.run(&self.tunable.origin())?;
+    /// Runs the scenario as it is, and checks that it shows the channels that were recorded; what to warn of.
+    pub(super) fn first(&self) -> Result<Option<String>, CalibrateError> {
+        let run = self.run(&vec![0.0; self.tunable.parameters().len()])?;
         if self.stopped() {
             return Err(CalibrateError::Stopped);
         }
@@ -135,21 +130,17 @@ impl<'a> Simulator<'a> {
                 )));
             }
         }
-        let mut warnings = Vec::new();
         match &run.outcome {
-            Outcome::Collapse { time, .. } => warnings.push(format!(
+            Outcome::Collapse { time, .. } => Ok(Some(format!(
                 "with the values of the scenario the stack collapses at {time:.2} s, within the window: end \
                  it before"
-            )),
-            Outcome::Invalid { reason } => {
-                return Err(CalibrateError::Scenario(reason.clone()));
-            }
-            Outcome::Stable | Outcome::NotJudged => {}
+            ))),
+            Outcome::Invalid { reason } => Err(CalibrateError::Scenario(reason.clone())),
+            Outcome::Stable | Outcome::NotJudged => Ok(None),
         }
-        Ok(First { warnings })
     }
 
-    fn run(&self, point: &[f64]) -> Result<Run, barrelstack::run::RunFailure> {
+    fn run(&self, point: &[f64]) -> Result<Run, RunFailure> {
         let count = self.count.fetch_add(1, Ordering::Relaxed) + 1;
         self.tunable.at(&self.scenario, point).run_watched(&mut |_| {
             if (self.tell)(count).is_break() {

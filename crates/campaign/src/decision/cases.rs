@@ -8,7 +8,7 @@ use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::Cell;
 
 use super::DecisionError;
-use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value};
+use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value, word};
 use crate::watch::Ending;
 
 /// An intensity measure and how it is printed.
@@ -448,10 +448,5 @@ const FEWEST_OF_LEVEL: usize = 8;
 
 /// A value of a factor as text.
 pub(super) fn told(value: Option<Value>) -> String {
-    match value {
-        Some(Value::Integer(number)) => number.to_string(),
-        Some(Value::Number(number)) => crate::scenario::quantity::plain(number),
-        Some(Value::Text(text)) => text,
-        None => String::new(),
-    }
+    value.as_ref().map_or_else(String::new, word)
 }

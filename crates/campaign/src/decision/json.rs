@@ -112,15 +112,15 @@ described! {
     }
 
     /// What was counted at one level.
-    pub struct RawShare {
+    pub struct RawShare of at: &(&Stripe, &Interval) {
         /// The level.
-        pub intensity: f64 as "of the measure",
+        pub intensity: f64 as "of the measure" = at.0.intensity,
         /// Cases.
-        pub cases: u32,
+        pub cases: u32 = at.0.cases,
         /// Those that reached the limit state.
-        pub failures: u32,
+        pub failures: u32 = at.0.failures,
         /// 95 % interval of the chance (Wilson).
-        pub interval: [Option<f64>; 2] as "1",
+        pub interval: [Option<f64>; 2] as "1" = bounds(*at.1),
     }
 
     /// The band of a curve at one intensity.
@@ -350,11 +350,5 @@ pub(crate) fn bounds(interval: Interval) -> [Option<f64>; 2] {
 }
 
 fn raw(stripes: &[Stripe], intervals: &[Interval]) -> Vec<RawShare> {
-    let each = stripes.iter().zip(intervals).map(|(stripe, interval)| RawShare {
-        intensity: stripe.intensity,
-        cases: stripe.cases,
-        failures: stripe.failures,
-        interval: bounds(*interval),
-    });
-    each.collect()
+    stripes.iter().zip(intervals).map(|at| RawShare::of(&at)).collect()
 }

@@ -1,5 +1,6 @@
 //! The numbers of the page for programs, in SI units.
 
+use barrelstack_fragility::{Interval, Stripe};
 use barrelstack_report::described;
 
 use super::{AsRecorded, Height, Heights};
@@ -65,17 +66,17 @@ described! {
     }
 
     /// What becomes of stacks at one level of shaking.
-    pub struct LevelRow {
+    pub struct LevelRow of at: &((&Stripe, &Interval), &f64) {
         /// Peak ground velocity.
-        pub pgv: f64 as "m/s",
+        pub pgv: f64 as "m/s" = at.0.0.intensity,
         /// Runs with a verdict.
-        pub cases: u32,
+        pub cases: u32 = at.0.0.cases,
         /// Runs that collapse.
-        pub collapsed: u32,
+        pub collapsed: u32 = at.0.0.failures,
         /// 95 % interval of the chance of collapse (Wilson).
-        pub interval: [Option<f64>; 2] as "1",
+        pub interval: [Option<f64>; 2] as "1" = bounds(*at.0.1),
         /// Mean share of the barrels that fall.
-        pub fallen_share: f64 as "1",
+        pub fallen_share: f64 as "1" = *at.1,
     }
 
     /// A lognormal curve of the chance of collapse.
@@ -96,12 +97,5 @@ described! {
 fn levels(height: &Height) -> Vec<LevelRow> {
     let curve = &height.by_velocity;
     let at = curve.stripes.iter().zip(&curve.intervals).zip(&height.fallen);
-    at.map(|((stripe, interval), fallen)| LevelRow {
-        pgv: stripe.intensity,
-        cases: stripe.cases,
-        collapsed: stripe.failures,
-        interval: bounds(*interval),
-        fallen_share: *fallen,
-    })
-    .collect()
+    at.map(|at| LevelRow::of(&at)).collect()
 }

@@ -11,10 +11,10 @@ pub(super) const LEVEL: f64 = 0.95;
 
 /// What became of a stack in one run, as shares of its barrels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Outcome {
-    collapsed: f64,
-    fallen: f64,
-    burst: f64,
+pub(super) struct Outcome {
+    pub(super) collapsed: f64,
+    pub(super) fallen: f64,
+    pub(super) burst: f64,
 }
 
 impl Outcome {
@@ -27,6 +27,9 @@ impl Outcome {
         }
     }
 }
+
+/// The quantity by which protections are judged: barrels that fall.
+pub(super) const FALLEN: Quantity = |run| run.fallen;
 
 /// All runs of a stack in one direction: by motion, and of each by level of shaking.
 #[derive(Clone, Debug, Default)]
@@ -48,22 +51,7 @@ pub struct Estimate {
 }
 
 /// A quantity of the runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    Collapsed,
-    Fallen,
-    Burst,
-}
-
-impl Quantity {
-    fn of(self, outcome: &Outcome) -> f64 {
-        match self {
-            Self::Collapsed => outcome.collapsed,
-            Self::Fallen => outcome.fallen,
-            Self::Burst => outcome.burst,
-        }
-    }
-}
+pub(super) type Quantity = fn(&Outcome) -> f64;
 
 impl Runs {
     /// Adds the cases of a round at levels of shaking (m/s).
@@ -87,7 +75,7 @@ impl Runs {
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
-                let sum: f64 = runs.iter().map(|run| quantity.of(run)).sum();
+                let sum: f64 = runs.iter().map(quantity).sum();
                 (!runs.is_empty()).then(|| sum / runs.len() as f64)
             };
             levels
@@ -166,13 +154,13 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
 /// Who goes on to the next round: of those that are not worse than a cheaper one beyond doubt, the better half by mean,
 /// and four at least; the first, the stack as it is, always.
 ///
-/// `cost` is the middle of what each costs, `worse` the quantity by which they are judged.
-pub(super) fn contenders(all: &[(&Runs, f64)], quantity: Quantity, weights: &[f64]) -> Vec<usize> {
+/// Beside the runs of each stands the middle of what it costs.
+pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64]) -> Vec<usize> {
     const LEAST: usize = 4;
-    let mean = |at: usize| all[at].0.estimate(quantity, weights, 1.0).mean;
+    let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
     let beaten = |at: usize| {
         all.iter().any(|(runs, cost)| {
-            let less = runs.less_than(all[at].0, quantity, weights);
+            let less = runs.less_than(all[at].0, FALLEN, weights);
             *cost <= all[at].1 && less.is_some_and(|less| less.low > 0.0)
         })
     };
@@ -220,9 +208,9 @@ mod tests {
             runs(&rows)
         };
         let (one, other) = (of(&one), of(&other));
-        let less = one.less_than(&other, Quantity::Fallen, &[1.0]).unwrap();
+        let less = one.less_than(&other, FALLEN, &[1.0]).unwrap();
         assert!((less.mean - 1.25).abs() < 1e-12 && less.low > 1.0, "{less:?}");
-        let [a, b] = [&one, &other].map(|runs| runs.estimate(Quantity::Fallen, &[1.0], 8.0));
+        let [a, b] = [&one, &other].map(|runs| runs.estimate(FALLEN, &[1.0], 8.0));
         assert!(a.high > b.low, "{a:?} {b:?}");
     }
 
@@ -265,6 +253,6 @@ mod tests {
         let good = of([1.0, 0.0, 1.0, 0.0]);
         let dear = of([4.0, 5.0, 4.0, 4.0]);
         let all = [(&base, 0.0), (&dear, 90.0), (&good, 10.0)];
-        assert_eq!(contenders(&all, Quantity::Fallen, &[1.0]), [0, 2]);
+        assert_eq!(contenders(&all, &[1.0]), [0, 2]);
     }
 }

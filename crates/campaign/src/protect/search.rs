@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use barrelstack::check;
 use barrelstack::variants::planes;
 
-use super::rank::{Quantity, Runs};
+use super::rank::{FALLEN, Runs};
 use super::{ProtectError, Protection, Ranked, Reached, Request, middle, plan};
 use crate::decision::Cases;
 use crate::pool;
@@ -39,7 +39,7 @@ impl Trial {
 
     /// The direction in which more barrels fall.
     pub(super) fn worse(&self, weights: &[f64]) -> usize {
-        let fallen = |at: usize| self.runs[at].estimate(Quantity::Fallen, weights, 1.0).mean;
+        let fallen = |at: usize| self.runs[at].estimate(FALLEN, weights, 1.0).mean;
         (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
     }
 }
@@ -135,7 +135,7 @@ impl Search<'_> {
                 let Some(one) = one.first() else { continue };
                 let most = one.stacks[0].1.stack().map_or(0, |stack| stack.levels * stack.columns);
                 let runs = &one.runs[one.worse(weights)];
-                let fallen = runs.estimate(Quantity::Fallen, weights, f64::from(most));
+                let fallen = runs.estimate(FALLEN, weights, f64::from(most));
                 if found.worn.as_ref().is_none_or(|(_, worst)| worst.mean < fallen.mean) {
                     found.worn = Some((words.to_owned(), fallen));
                 }

@@ -1,6 +1,5 @@
 //! The score sheet for programs, in SI units.
 
-use barrelstack_fragility::Interval;
 use barrelstack_report::described;
 
 use super::{Capacity, Scored, Sheet};
@@ -27,51 +26,35 @@ described! {
         /// The chance of collapse at which the velocity is the score.
         pub chance: f64 as "1" = sheet.protocol.chance,
         /// Every state in every direction.
-        pub states: Vec<StateRow> = sheet.rows.iter().map(|row| StateRow::of(row, sheet)).collect(),
+        pub states: Vec<StateRow> = sheet.rows.iter().map(|row| StateRow::of(&(row, sheet))).collect(),
     }
 
     /// A stack in one state, shaken in one direction.
-    pub struct StateRow {
+    pub struct StateRow of row: &(&Scored, &Sheet) {
         /// The state.
-        pub state: String,
+        pub state: String = row.0.state.name.clone(),
         /// What it changes, as overrides of the scenario.
-        pub changes: Vec<String>,
+        pub changes: Vec<String> = row.0.state.changes.clone(),
         /// The direction of shaking.
-        pub direction: &'static str ["transverse", "longitudinal"],
+        pub direction: &'static str ["transverse", "longitudinal"] = row.0.view.name(),
         /// The velocity at which the chance is reached.
-        pub velocity: f64 as "m/s",
+        pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
         /// Whether it comes from a curve, is the highest at which none collapsed, or lies beyond all levels.
-        pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"],
+        pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
+            match row.0.capacity {
+                Capacity::Fitted(..) => "curve",
+                Capacity::Between(..) => "between-levels",
+                Capacity::Above(_) => "above-all-levels",
+                Capacity::Below(_) => "below-all-levels",
+            },
         /// Its 95 % interval, for which the runs of one motion go together; null where there is none.
-        pub interval: Option<[f64; 2]> as "m/s",
+        pub interval: Option<[f64; 2]> as "m/s" = row.0.capacity.interval().map(|of| [of.low, of.high]),
         /// Share that collapsed at each of the velocities; null where no run has a verdict.
-        pub collapsed: Vec<Option<f64>> as "1",
+        pub collapsed: Vec<Option<f64>> as "1" = row.1.protocol.velocities.iter()
+            .map(|velocity| row.0.at(*velocity).map(|stripe| stripe.fraction())).collect(),
         /// Runs.
-        pub runs: usize,
+        pub runs: usize = row.0.runs,
         /// Runs without a verdict.
-        pub runs_without_verdict: usize,
-    }
-}
-
-impl StateRow {
-    fn of(row: &Scored, sheet: &Sheet) -> Self {
-        let share = |velocity: &f64| row.at(*velocity).map(|stripe| stripe.fraction());
-        let (found, interval) = match row.capacity {
-            Capacity::Fitted(_, interval) => ("curve", interval),
-            Capacity::Between(..) => ("between-levels", None),
-            Capacity::Above(_) => ("above-all-levels", None),
-            Capacity::Below(_) => ("below-all-levels", None),
-        };
-        Self {
-            state: row.state.name.clone(),
-            changes: row.state.changes.clone(),
-            direction: row.view.name(),
-            velocity: row.capacity.velocity(),
-            found,
-            interval: interval.map(|Interval { low, high }| [low, high]),
-            collapsed: sheet.protocol.velocities.iter().map(share).collect(),
-            runs: row.runs,
-            runs_without_verdict: row.left_out,
-        }
+        pub runs_without_verdict: usize = row.0.left_out,
     }
 }

@@ -110,16 +110,9 @@ fn table(sheet: &Sheet) -> Table {
     );
     let weakest = sheet.weakest();
     for row in &sheet.rows {
-        let interval = match row.capacity {
-            Capacity::Fitted(_, Some(interval)) => {
-                format!(" ({}–{})", shown(interval.low), shown(interval.high))
-            }
-            Capacity::Fitted(_, None)
-            | Capacity::Between(..)
-            | Capacity::Above(_)
-            | Capacity::Below(_) => String::new(),
-        };
-        let bears = format!("{}{interval}", bears(row.capacity));
+        let interval = row.capacity.interval();
+        let interval = interval.map(|of| format!(" ({}–{})", shown(of.low), shown(of.high)));
+        let bears = bears(row.capacity) + &interval.unwrap_or_default();
         let is_weakest = weakest.is_some_and(|weakest| std::ptr::eq(weakest, row));
         let mut cells = vec![
             Cell::text(row.state.name.clone()),

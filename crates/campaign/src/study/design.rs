@@ -142,6 +142,10 @@ fn below(random: &mut Random, count: usize) -> usize {
 impl Cases {
     pub(super) fn new(study: &Study) -> Self {
         let axes = study.axes();
+        let axis = |dimension: usize, name: &str| {
+            let shift = seed_of(study.seed, &format!("shift of {name}")) >> 32;
+            Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
+        };
         match &study.design {
             Design::FullFactorial | Design::Stripes | Design::Ida(_) => Self::Crossed,
             Design::OneAtATime { quantiles, draws } => Self::OneAtATime {
@@ -161,22 +165,16 @@ impl Cases {
                 Self::Sampled(Sampling::LatinHypercube(axes.iter().map(permutation).collect()))
             }
             Design::Saltelli { .. } => {
-                let axis = |(at, name): (usize, &String)| {
-                    [(at, ""), (at + axes.len(), " exchanged")].map(|(dimension, which)| {
-                        let shift = seed_of(study.seed, &format!("shift of {name}{which}")) >> 32;
-                        Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
-                    })
+                let pair = |(at, name): (usize, &String)| {
+                    [axis(at, name), axis(at + axes.len(), &format!("{name} exchanged"))]
                 };
                 let exchanged = study.varied().into_iter().map(|(at, _)| at).collect();
-                let axes = axes.iter().enumerate().map(axis).collect();
+                let axes = axes.iter().enumerate().map(pair).collect();
                 Self::Sampled(Sampling::Saltelli { axes, exchanged })
             }
             Design::Sobol { .. } => {
-                let axis = |(dimension, axis): (usize, &String)| {
-                    let shift = seed_of(study.seed, &format!("shift of {axis}")) >> 32;
-                    Axis::new(dimension, u32::try_from(shift).unwrap_or_default())
-                };
-                Self::Sampled(Sampling::Sobol(axes.iter().enumerate().map(axis).collect()))
+                let all = axes.iter().enumerate().map(|(at, name)| axis(at, name));
+                Self::Sampled(Sampling::Sobol(all.collect()))
             }
         }
     }

@@ -360,17 +360,10 @@ impl Study {
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
             stop: self.stop_rule(),
             drawn: self.drawn(),
-            varied: match self.design {
-                Design::Saltelli { .. } => {
-                    self.varied().into_iter().map(|(_, name)| name).collect()
-                }
-                Design::FullFactorial
-                | Design::OneAtATime { .. }
-                | Design::LatinHypercube { .. }
-                | Design::Sobol { .. }
-                | Design::MonteCarlo { .. }
-                | Design::Stripes
-                | Design::Ida(_) => Vec::new(),
+            varied: if matches!(self.design, Design::Saltelli { .. }) {
+                self.varied().into_iter().map(|(_, name)| name).collect()
+            } else {
+                Vec::new()
             },
             common: self.common()?,
             motions,

@@ -29,11 +29,16 @@ impl Setting {
 
     /// The value in words that tell it from every other, for the identity of a case.
     pub(super) fn word(&self) -> String {
-        match &self.value {
-            Value::Number(value) => crate::scenario::quantity::plain(*value),
-            Value::Integer(value) => value.to_string(),
-            Value::Text(text) => text.clone(),
-        }
+        word(&self.value)
+    }
+}
+
+/// A value of a table in words that tell it from every other.
+pub(crate) fn word(value: &Value) -> String {
+    match value {
+        Value::Number(value) => crate::scenario::quantity::plain(*value),
+        Value::Integer(value) => value.to_string(),
+        Value::Text(text) => text.clone(),
     }
 }
 

@@ -18,16 +18,9 @@ use crate::watch::Ending;
 /// What became of a case.
 pub(super) struct Told {
     pub(super) result: CaseResult,
-    /// Where things went; none of a case in a plane, or without a verdict.
-    ways: Option<Ways>,
-}
-
-/// Directions of a case in space.
-struct Ways {
-    /// In which the first body left its seat.
-    first: Option<Heading>,
-    /// In which each fallen barrel came to lie from where it stood.
-    debris: Vec<Heading>,
+    /// Where the first body left its seat to, and each fallen barrel came to lie from where it stood; none of a case
+    /// in a plane, or without a verdict.
+    ways: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
 /// Of a case in a plane, or one that could not run.
@@ -39,7 +32,7 @@ impl From<CaseResult> for Told {
 
 impl From<InSpace> for Told {
     fn from(case: InSpace) -> Self {
-        let ways = case.ways().map(|(first, debris)| Ways { first, debris: debris.to_vec() });
+        let ways = case.ways().map(|(first, debris)| (first, debris.to_vec()));
         Self { ways, result: case.result }
     }
 }
@@ -75,5 +68,5 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<T
 
 /// The values of a case in the columns of space.
 pub(super) fn values(told: &Told) -> impl Iterator<Item = Option<Value>> {
-    columns::values(told.ways.as_ref().map(|ways| (ways.first, ways.debris.as_slice())))
+    columns::values(told.ways.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }
