@@ -34,7 +34,7 @@ use crate::study::{
     Collected, Column, Provenance, Role, StudyError, StudyTable, manifest_of, read_shards,
 };
 
-pub(crate) use figures::{chance_axis, points};
+pub(crate) use figures::{chance_axis, fitted, points, raw};
 pub use json::DecisionDocument;
 pub(crate) use json::bounds;
 pub(crate) use page::{heading, text};

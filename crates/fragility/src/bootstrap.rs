@@ -1,7 +1,7 @@
 //! Confidence by drawing counts from a fitted curve.
 
 use crate::curve::Lognormal;
-use crate::evidence::{Evidence, Stripe, evidence};
+use crate::evidence::{Stripe, evidence};
 use crate::fit::{Dispersion, FitError, fit};
 use crate::math::{ln, normal, normal_quantile, quantile};
 use crate::proportion::Interval;
@@ -60,30 +60,6 @@ fn bias(ascending: &[f64], value: f64) -> f64 {
     normal_quantile(share.clamp(1.0 / (n + 1.0), n / (n + 1.0)))
 }
 
-/// Collects the curves of `replicates` data sets; at least half of them must determine one.
-fn collect(
-    fitted: Lognormal,
-    replicates: usize,
-    dispersion: Dispersion,
-    mut sample: impl FnMut(&mut Vec<Evidence>),
-) -> Result<Replicates, FitError> {
-    let curves = Vec::with_capacity(replicates);
-    let mut found = Replicates { fitted, curves, refused: 0 };
-    let mut drawn = vec![];
-    for _ in 0..replicates {
-        drawn.clear();
-        sample(&mut drawn);
-        match fit(&drawn, dispersion) {
-            Ok(fit) => found.curves.push(fit.curve),
-            Err(_) => found.refused += 1,
-        }
-    }
-    if found.curves.is_empty() || found.curves.len() < found.refused {
-        return Err(FitError::Unstable { usable: found.curves.len(), replicates });
-    }
-    Ok(found)
-}
-
 /// How many of `cases` fail when each does with a chance.
 pub(crate) fn binomial(cases: u32, chance: f64, uniform: &mut impl FnMut() -> f64) -> u32 {
     (0..cases).map(|_| u32::from(uniform() < chance)).sum()
@@ -112,9 +88,17 @@ pub fn simulate(
     replicates: usize,
     mut uniform: impl FnMut() -> f64,
 ) -> Result<Replicates, FitError> {
-    let found = fit(&evidence(stripes), dispersion)?;
-    let chance = |i: usize| found.curve.probability(stripes[i].intensity);
-    collect(found.curve, replicates, dispersion, |into| {
-        into.extend(evidence(&drawn(stripes, chance, &mut uniform)));
-    })
+    let fitted = fit(&evidence(stripes), dispersion)?.curve;
+    let chance = |i: usize| fitted.probability(stripes[i].intensity);
+    let mut found = Replicates { fitted, curves: Vec::with_capacity(replicates), refused: 0 };
+    for _ in 0..replicates {
+        match fit(&evidence(&drawn(stripes, chance, &mut uniform)), dispersion) {
+            Ok(fit) => found.curves.push(fit.curve),
+            Err(_) => found.refused += 1,
+        }
+    }
+    if found.curves.is_empty() || found.curves.len() < found.refused {
+        return Err(FitError::Unstable { usable: found.curves.len(), replicates });
+    }
+    Ok(found)
 }

@@ -278,11 +278,6 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
 }
 
 fn readme(notes: &[String], about: &str) -> String {
-    let mut text = format!("{about}\n");
-    for note in notes {
-        text.push_str("- ");
-        text.push_str(note);
-        text.push('\n');
-    }
-    text
+    let notes: String = notes.iter().map(|note| format!("- {note}\n")).collect();
+    format!("{about}\n{notes}")
 }

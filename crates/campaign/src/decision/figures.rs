@@ -42,21 +42,33 @@ pub(crate) fn chance_axis(label: &str) -> Axis {
     Axis { range: Some([0.0, 1.0]), ..Axis::new(label, "") }
 }
 
+/// The fitted curve of a limit state, where there is one; intensities times a scale.
+pub(crate) fn fitted(curve: &LimitCurve, scale: f64, label: &str) -> Option<Series> {
+    let fit = curve.fit.as_ref().ok()?;
+    let (x, y) = curve.grid.iter().map(|x| (scale * x, fit.curve.probability(*x))).unzip();
+    Some(Series::new(label, x, y))
+}
+
+/// The raw fractions of a limit state with their intervals.
+pub(crate) fn raw(curve: &LimitCurve, scale: f64, label: &str, index: usize) -> Series {
+    let x: Vec<f64> = curve.stripes.iter().map(|stripe| scale * stripe.intensity).collect();
+    points(
+        label,
+        &x,
+        curve.stripes.iter().map(Stripe::fraction),
+        curve.intervals.iter().copied(),
+        index,
+    )
+}
+
 /// Raw fractions with their intervals, the fitted curve and its band.
 pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
-    let shown = |x: &f64| measure.shown(*x);
-    let grid: Vec<f64> = curve.grid.iter().map(shown).collect();
-    let at: Vec<f64> = curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
-    let mut series = Vec::new();
-    if let Ok(fit) = &curve.fit {
-        let line = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
-        let range: Vec<[f64; 2]> = curve.band.iter().map(|band| [band.low, band.high]).collect();
-        let label = if range.is_empty() { "fitted curve" } else { "fitted curve, 95 % band" };
-        series.push(Series { range, style: style(0), ..Series::new(label, grid, line) });
-    }
-    let fractions = curve.stripes.iter().map(Stripe::fraction);
-    let intervals = curve.intervals.iter().copied();
-    series.push(points("raw fractions, 95 % interval of each", &at, fractions, intervals, 1));
+    let range: Vec<[f64; 2]> = curve.band.iter().map(|band| [band.low, band.high]).collect();
+    let label = if range.is_empty() { "fitted curve" } else { "fitted curve, 95 % band" };
+    let line = fitted(curve, measure.scale, label);
+    let line = line.map(|line| Series { range, style: style(0), ..line });
+    let dots = raw(curve, measure.scale, "raw fractions, 95 % interval of each", 1);
+    let series = line.into_iter().chain([dots]).collect();
     let caption = format!(
         "Chance of {} against {}. Dots: the share of the cases at each level or in each bin, with Wilson's interval; they stand for \
          themselves and are not smoothed.{}",
@@ -77,23 +89,14 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
 
 /// One line a limit state.
 pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
-    let series = curves
-        .iter()
-        .enumerate()
-        .map(|(index, curve)| {
-            if let Ok(fit) = &curve.fit {
-                let x = curve.grid.iter().map(|x| measure.shown(*x)).collect();
-                let y = curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
-                Series { style: style(index), ..Series::new(curve.limit.words(), x, y) }
-            } else {
-                let x: Vec<f64> =
-                    curve.stripes.iter().map(|s| measure.shown(s.intensity)).collect();
-                let y = curve.stripes.iter().map(Stripe::fraction);
-                let label = format!("{} (raw)", curve.limit.words());
-                points(&label, &x, y, curve.intervals.iter().copied(), index)
-            }
-        })
-        .collect();
+    let told = |(index, curve): (usize, &LimitCurve)| {
+        let words = curve.limit.words();
+        let style = style(index);
+        fitted(curve, measure.scale, &words)
+            .map(|line| Series { style, ..line })
+            .unwrap_or_else(|| raw(curve, measure.scale, &format!("{words} (raw)"), index))
+    };
+    let series = curves.iter().enumerate().map(told).collect();
     Figure::new(
         "limit-states",
         "Chance of each limit state. Lines are fitted curves; where the cases determine none, dots are the raw \
@@ -116,10 +119,8 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
             series.push(Series { style: style(index + 1), ..line });
         }
     }
-    if let Ok(fit) = &collapse.fit {
-        let line = collapse.grid.iter().map(|x| fit.curve.probability(*x)).collect();
-        series.push(Series { style: style(0), ..Series::new("all modes", grid(), line) });
-    }
+    let line = fitted(collapse, measure.scale, "all modes");
+    series.extend(line.map(|line| Series { style: style(0), ..line }));
     Figure::new(
         "modes",
         "Chance of collapse in each mode (cumulative incidence). Modes compete: together they are the chance of collapse, \

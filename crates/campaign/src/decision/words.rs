@@ -262,15 +262,12 @@ pub(super) fn warnings(
                 )
             };
             said.push(format!(
-                "{} of {} {} {} (the first collapses at {} and stands at {}). {why}.",
+                "{} of {} {} {} the stack standing at a higher level than one at which it falls (the first collapses \
+                 at {} and stands at {}). {why}.",
                 returned.len(),
                 cases.curves(),
                 cases.curves_are(),
-                if returned.len() == 1 {
-                    "leaves the stack standing at a higher level than one at which it falls"
-                } else {
-                    "leave the stack standing at a higher level than one at which it falls"
-                },
+                if returned.len() == 1 { "leaves" } else { "leave" },
                 measure.words(first.failed),
                 measure.words(first.stood)
             ));

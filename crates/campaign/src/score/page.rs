@@ -1,14 +1,11 @@
 //! The score sheet: the number, every state in every direction, the curves, the protocol.
 
-use barrelstack_fragility::Stripe;
-use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, Plot, Rating, Series, Table, Verdict,
-};
+use barrelstack_report::{Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict};
 
 use barrelstack_input::listing::Source;
 
 use super::{Capacity, Scored, Sheet};
-use crate::decision::{chance_axis, heading, left_out, percent, points, text};
+use crate::decision::{chance_axis, fitted, heading, left_out, percent, raw, text};
 
 pub(super) fn document(sheet: &Sheet) -> Document {
     let protocol = &sheet.protocol;
@@ -130,16 +127,8 @@ fn table(sheet: &Sheet) -> Table {
 fn chart(sheet: &Sheet) -> Figure {
     let label = |row: &Scored| format!("{}, {}", row.state.name, row.view.words());
     let series = sheet.rows.iter().enumerate().map(|(index, row)| {
-        if let Ok(fit) = &row.curve.fit {
-            let x: Vec<f64> = row.curve.grid.iter().map(|x| 100.0 * x).collect();
-            let y = row.curve.grid.iter().map(|x| fit.curve.probability(*x)).collect();
-            Series::new(label(row), x, y)
-        } else {
-            let stripes = &row.curve.stripes;
-            let x: Vec<f64> = stripes.iter().map(|stripe| 100.0 * stripe.intensity).collect();
-            let y = stripes.iter().map(Stripe::fraction);
-            points(&label(row), &x, y, row.curve.intervals.iter().copied(), index)
-        }
+        fitted(&row.curve, 100.0, &label(row))
+            .unwrap_or_else(|| raw(&row.curve, 100.0, &label(row), index))
     });
     Figure::new(
         "rockscore",

@@ -20,8 +20,7 @@ pub(super) struct Claim {
 impl Claim {
     /// Takes it; none while another process or thread has it.
     pub(super) fn take(path: PathBuf) -> Result<Option<Self>, StudyError> {
-        let failed = |error: &std::io::Error| StudyError::system("claim a chunk by", &path, error);
-        let file = File::create(&path).map_err(|error| failed(&error))?;
+        let file = File::create(&path).map_err(StudyError::system("claim a chunk by", &path))?;
         match file.try_lock() {
             // Any other refusal says that there are no locks here, each file system in its own words.
             Ok(()) | Err(TryLockError::Error(_)) => {}

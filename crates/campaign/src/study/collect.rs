@@ -119,10 +119,10 @@ pub fn collect(
     let specs = manifest_of(folder)?.columns;
     let empty = StudyTable::empty(&specs);
     let path = folder.join("table.csv");
-    let failed = |error: &std::io::Error| StudyError::system("write", &path, error);
-    let part = Draft::create(&path).map_err(|error| failed(&error))?;
+    let failed = StudyError::system("write", &path);
+    let part = Draft::create(&path).map_err(failed)?;
     let mut csv = BufWriter::new(&part.file);
-    csv.write_all(csv_heading(empty.columns()).as_bytes()).map_err(|error| failed(&error))?;
+    csv.write_all(csv_heading(empty.columns()).as_bytes()).map_err(failed)?;
     let columns = folder.join("table.parquet");
     let encode = |error: &dyn Display| StudyError::System {
         doing: "write",
@@ -133,21 +133,20 @@ pub fn collect(
     let mut parquet =
         shard::Writer::new(BufWriter::new(&stored.file), &specs).map_err(|error| encode(&error))?;
     let made = read_shards(folder, &mut |made, rows| {
-        csv.write_all(csv_rows(rows.columns()).as_bytes()).map_err(|error| failed(&error))?;
+        csv.write_all(csv_rows(rows.columns()).as_bytes()).map_err(failed)?;
         parquet.add(rows).map_err(|error| encode(&error))?;
         visit(made, rows)
     })?;
-    csv.flush().map_err(|error| failed(&error))?;
+    csv.flush().map_err(failed)?;
     drop(csv);
     let provenance = serde_json::to_string_pretty(&made)
         .map_err(|error| StudyError::Table(error.to_string()))?;
     // The table travels alone: what it comes from goes with it.
     let path = folder.join("study.toml");
-    let study =
-        fs::read_to_string(&path).map_err(|error| StudyError::system("read", &path, &error))?;
+    let study = fs::read_to_string(&path).map_err(StudyError::system("read", &path))?;
     let about = [("study", study), ("provenance", provenance.clone())];
     parquet.finish(&about).map_err(|error| encode(&error))?;
-    part.name().map_err(|error| failed(&error))?;
+    part.name().map_err(failed)?;
     stored.name().map_err(|error| encode(&error))?;
     write_whole(&folder.join("columns.csv"), empty.dictionary().as_bytes())?;
     write_whole(&folder.join("provenance.json"), format!("{provenance}\n").as_bytes())?;

@@ -17,7 +17,7 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
         (&draft.file).write_all(bytes)?;
         draft.name()
     };
-    write().map_err(|error| StudyError::system("write", path, &error))
+    write().map_err(StudyError::system("write", path))
 }
 
 /// How often a folder is made anew that others take away.

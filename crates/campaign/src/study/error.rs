@@ -63,9 +63,18 @@ pub enum StudyError {
     Stopped,
 }
 
+impl From<parquet::errors::ParquetError> for StudyError {
+    fn from(error: parquet::errors::ParquetError) -> Self {
+        Self::Table(error.to_string())
+    }
+}
+
 impl StudyError {
     /// What the system said when something was tried with a path.
-    pub(super) fn system(doing: &'static str, path: &Path, error: &std::io::Error) -> Self {
-        Self::System { doing, path: path.to_owned(), reason: system::words(error) }
+    pub(super) fn system(
+        doing: &'static str,
+        path: &Path,
+    ) -> impl Fn(std::io::Error) -> Self + Copy {
+        move |error| Self::System { doing, path: path.to_owned(), reason: system::words(&error) }
     }
 }

@@ -310,7 +310,7 @@ impl Study {
 fn set_aside(path: &Path, ending: &str) -> Result<(), StudyError> {
     match std::fs::rename(path, path.with_extension(ending)) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(StudyError::system("set aside the shard", path, &error))
+            Err(StudyError::system("set aside the shard", path)(error))
         }
         _ => Ok(()),
     }

@@ -184,20 +184,20 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         hash: 0,
     };
     study.cases = Cases::new(&study);
+    let refused = |message: String| -> StudyError {
+        opened.sources.error(Origin::Whole(0), Problem::Inconsistent { message }).into()
+    };
     if matches!(study.design, Design::Saltelli { .. }) && study.varied().is_empty() {
-        let message = "nothing varies: a design for sensitivity needs a [[factor]], several motions or levels";
-        let problem = Problem::Inconsistent { message: message.to_owned() };
-        return Err(opened.sources.error(Origin::Whole(0), problem).into());
+        return Err(refused(
+            "nothing varies: a design for sensitivity needs a [[factor]], several motions or levels"
+                .to_owned(),
+        ));
     }
     let cases = study.cases();
     if cases > MOST_CASES {
-        let message = format!(
+        return Err(refused(format!(
             "the study has more than {MOST_CASES} cases: take fewer values, or a sampled design"
-        );
-        return Err(opened
-            .sources
-            .error(Origin::Whole(0), Problem::Inconsistent { message })
-            .into());
+        )));
     }
     study.chunks = Chunks::of(&study);
     if let Some(fetch) = fetch {

@@ -151,8 +151,7 @@ impl Folder {
                 "holds {foreign} and is no folder of a study; name another, new or empty"
             ));
         }
-        fs::create_dir_all(&shards)
-            .map_err(|error| StudyError::system("make the folder", &shards, &error))?;
+        fs::create_dir_all(&shards).map_err(StudyError::system("make the folder", &shards))?;
         folder.describe(study)?;
         Ok(folder)
     }
@@ -232,7 +231,7 @@ impl Folder {
         table: &StudyTable,
     ) -> Result<(), StudyError> {
         let about = [(KEY, format!("{key:016x}"))];
-        let bytes = shard::to_bytes(table, &about).map_err(StudyError::Table)?;
+        let bytes = shard::to_bytes(table, &about)?;
         let name = format!("{chunk:06}-{:016x}.parquet", fnv1a(&bytes));
         write_whole(&self.path.join(SHARDS).join(name), &bytes)
     }
@@ -284,12 +283,10 @@ fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
 
 /// The files of a folder, sorted.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let failed = |error: &std::io::Error| StudyError::system("list", folder, error);
-    let entries = fs::read_dir(folder).map_err(|error| failed(&error))?;
-    let mut paths = Vec::new();
-    for entry in entries {
-        paths.push(entry.map_err(|error| failed(&error))?.path());
-    }
+    let failed = StudyError::system("list", folder);
+    let entries = fs::read_dir(folder).map_err(failed)?;
+    let paths = entries.map(|entry| Ok(entry.map_err(failed)?.path()));
+    let mut paths: Vec<PathBuf> = paths.collect::<Result<_, StudyError>>()?;
     paths.sort();
     Ok(paths)
 }
@@ -323,7 +320,7 @@ pub(super) fn read_shard(
             bytes.len()
         )));
     }
-    let (table, key) = shard::from_bytes(bytes, KEY).map_err(damaged)?;
+    let (table, key) = shard::from_bytes(bytes, KEY).map_err(|error| damaged(error.to_string()))?;
     let of_chunk =
         |number: &Option<i64>| number.and_then(|n| usize::try_from(n).ok()) == Some(chunk);
     if !table.specs().eq(specs.iter())

@@ -71,7 +71,7 @@ impl Study {
         let mut row = vec![
             Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),
             text(&format!("{:016x}", case.id)),
-            count(chunk),
+            i64::try_from(chunk).ok().map(Value::Integer),
         ];
         row.extend((0..self.factors.len()).map(|factor| self.told(case, factor)));
         row.push(text(&self.motions[case.motion].name));
@@ -93,8 +93,4 @@ fn text(text: &str) -> Option<Value> {
 /// A number, unless it is none: a NaN in a table looks like a value and is none.
 fn number(value: Option<f64>) -> Option<Value> {
     value.filter(|value| !value.is_nan()).map(Value::Number)
-}
-
-fn count(count: usize) -> Option<Value> {
-    i64::try_from(count).ok().map(Value::Integer)
 }

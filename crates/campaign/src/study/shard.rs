@@ -18,12 +18,6 @@ use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 /// Under this key of a file's metadata stand the columns: name, unit and role.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
-/// A table as the bytes of a Parquet file, with what it comes from as pairs of key and text; the same table
-/// and pairs give the same bytes.
-pub(super) fn to_bytes(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, String> {
-    write(table, about).map_err(|error| error.to_string())
-}
-
 /// The names of columns as files of columns have them: letters, digits and underscores, as SQL takes them
 /// without quotes.
 pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Vec<String> {
@@ -46,14 +40,6 @@ pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Ve
         names.push(name);
     }
     names
-}
-
-/// A table from the bytes of a Parquet file written by [`to_bytes`], and a text that was given beside it, by its key.
-pub(super) fn from_bytes(
-    bytes: Vec<u8>,
-    key: &str,
-) -> Result<(StudyTable, Option<String>), String> {
-    read(bytes, key).map_err(|error| error.to_string())
 }
 
 /// Rows of a group, which is what is held in memory while a table is written.
@@ -110,7 +96,12 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 }
 
-fn write(table: &StudyTable, about: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
+/// A table as the bytes of a Parquet file, with what it comes from as pairs of key and text; the same table
+/// and pairs give the same bytes.
+pub(super) fn to_bytes(
+    table: &StudyTable,
+    about: &[(&str, String)],
+) -> Result<Vec<u8>, ParquetError> {
     let specs: Vec<ColumnSpec> = table.specs().cloned().collect();
     let mut bytes = Vec::new();
     let mut writer = Writer::new(&mut bytes, &specs)?;
@@ -167,7 +158,11 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-fn read(bytes: Vec<u8>, key: &str) -> Result<(StudyTable, Option<String>), ParquetError> {
+/// A table from the bytes of a Parquet file written by [`to_bytes`], and a text that was given beside it, by its key.
+pub(super) fn from_bytes(
+    bytes: Vec<u8>,
+    key: &str,
+) -> Result<(StudyTable, Option<String>), ParquetError> {
     let foreign = || ParquetError::General("it is no table of a study".to_owned());
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes))?;
     let metadata = reader.metadata().file_metadata();

@@ -175,7 +175,7 @@ impl StudyTable {
     /// # Errors
     /// When it cannot be encoded.
     pub fn to_parquet(&self) -> Result<Vec<u8>, StudyError> {
-        shard::to_bytes(self, &[]).map_err(StudyError::Table)
+        Ok(shard::to_bytes(self, &[])?)
     }
 
     /// What every column is, as CSV: its name in CSV and in Parquet files, unit, role, kind, and meaning.
@@ -202,6 +202,6 @@ impl StudyTable {
     /// # Errors
     /// When the bytes are none.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
-        shard::from_bytes(bytes, "").map(|(table, _)| table).map_err(StudyError::Table)
+        Ok(shard::from_bytes(bytes, "")?.0)
     }
 }

@@ -30,15 +30,13 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
             ));
         }
     }
-    rows::fixed_columns()
-        .any(|column| column == new.name)
-        .then(|| {
-            error(format!(
-                "every table has a column `{}`; give the factor another `name`",
-                new.name
-            ))
-        })
-        .flatten()
+    if rows::fixed_columns().any(|column| column == new.name) {
+        return error(format!(
+            "every table has a column `{}`; give the factor another `name`",
+            new.name
+        ));
+    }
+    None
 }
 
 pub(super) fn read_factor(
@@ -128,39 +126,28 @@ fn domain_of(
     })
 }
 
+/// The first value that a range or a distribution states.
+fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
+    match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
+        Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
+        Some(key) => section.node(key),
+        None => Ok(None),
+    }
+}
+
 /// Reads a list (whose key is given), a range or a distribution; none where there is none of them.
 pub(super) fn read_variation(
     reader: &Reader<'_>,
     domain: Domain,
     list: &'static str,
 ) -> Result<(Option<Variation>, Domain), ScenarioError> {
-    let first = match reader.nodes(list)? {
-        Some(nodes) => nodes.first().cloned(),
-        None => None,
-    };
+    let listed = reader.nodes(list)?;
     let range = reader.optional_section("range")?;
     let distribution = reader.optional_section("distribution")?;
-    let inner = |section: &Option<Reader<'_>>,
-                 keys: &[&'static str]|
-     -> Result<Option<Node>, ScenarioError> {
-        let Some(section) = section else { return Ok(None) };
-        for key in keys {
-            if section.has(key) {
-                return if *key == "values" {
-                    Ok(section.nodes(key)?.and_then(|nodes| nodes.first().cloned()))
-                } else {
-                    section.node(key)
-                };
-            }
-        }
-        Ok(None)
-    };
-    let first = match first {
-        Some(node) => Some(node),
-        None => match inner(&range, &["from"])? {
-            Some(node) => Some(node),
-            None => inner(&distribution, &["from", "mean", "median", "values"])?,
-        },
+    let first = match (listed, range.as_ref().or(distribution.as_ref())) {
+        (Some(nodes), _) => nodes.first().cloned(),
+        (None, Some(section)) => first_of(section)?,
+        (None, None) => None,
     };
     let domain = first.as_ref().map_or(domain, |node| domain.fixed_by(node));
     let variation = if reader.has(list) {
