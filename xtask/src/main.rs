@@ -34,32 +34,11 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["test"] => match steps::test() {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                eprintln!("xtask: {error:#}");
-                ExitCode::FAILURE
-            }
-        },
-        ["golden"] => steps::golden().unwrap_or_else(|error| {
-            eprintln!("xtask: {error:#}");
-            ExitCode::FAILURE
-        }),
-        ["web"] => match steps::web() {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                eprintln!("xtask: {error:#}");
-                ExitCode::FAILURE
-            }
-        },
+        ["test"] => told(steps::test().map(done)),
+        ["golden"] => told(steps::golden()),
+        ["web"] => told(steps::web().map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
-            match python::run(&steps::root(), rest.first().copied()) {
-                Ok(()) => ExitCode::SUCCESS,
-                Err(error) => {
-                    eprintln!("xtask: {error:#}");
-                    ExitCode::FAILURE
-                }
-            }
+            told(python::run(&steps::root(), rest.first().copied()).map(done))
         }
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
@@ -76,6 +55,19 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The status of a task that is done.
+fn done((): ()) -> ExitCode {
+    ExitCode::SUCCESS
+}
+
+/// The status of a task; why it failed is told.
+fn told(result: anyhow::Result<ExitCode>) -> ExitCode {
+    result.unwrap_or_else(|error| {
+        eprintln!("xtask: {error:#}");
+        ExitCode::FAILURE
+    })
 }
 
 /// Runs a program of the workspace in release and passes its words and its status on.

@@ -2,6 +2,8 @@
 
 use barrelstack_report::{Format, Paper};
 
+use crate::typed::typed;
+
 /// Formats of figures besides SVG.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FigureArgs {
@@ -29,42 +31,25 @@ impl FigureArgs {
     }
 }
 
-/// The formats, as typed.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(crate) enum FormatName {
-    /// Lines and words, for pages and for editing.
-    Svg,
-    /// Pixels.
-    Png,
-    /// Lines and words, for typesetting.
-    Pdf,
-}
-
-impl From<FormatName> for Format {
-    fn from(name: FormatName) -> Self {
-        match name {
-            FormatName::Svg => Self::Svg,
-            FormatName::Png => Self::Png,
-            FormatName::Pdf => Self::Pdf,
-        }
+typed! {
+    /// The formats, as typed.
+    pub(crate) enum FormatName of Format {
+        /// Lines and words, for pages and for editing.
+        Svg = Self::Svg,
+        /// Pixels.
+        Png = Self::Png,
+        /// Lines and words, for typesetting.
+        Pdf = Self::Pdf,
     }
 }
 
-/// The papers, as typed.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(crate) enum PaperName {
-    /// 210 by 297 mm.
-    A4,
-    /// 8½ by 11 inches.
-    Letter,
-}
-
-impl From<PaperName> for Paper {
-    fn from(name: PaperName) -> Self {
-        match name {
-            PaperName::A4 => Self::A4,
-            PaperName::Letter => Self::Letter,
-        }
+typed! {
+    /// The papers, as typed.
+    pub(crate) enum PaperName of Paper {
+        /// 210 by 297 mm.
+        A4 = Self::A4,
+        /// 8½ by 11 inches.
+        Letter = Self::Letter,
     }
 }
 

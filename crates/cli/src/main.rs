@@ -13,6 +13,7 @@ mod progress;
 mod remedy;
 mod rows;
 mod store;
+mod typed;
 
 use std::process::ExitCode;
 

@@ -10,7 +10,7 @@ use barrelstack::Summary;
 use barrelstack::scenario::ScenarioError;
 use barrelstack::scenario::error::Place;
 use barrelstack::variants::{Answer, Shown};
-use barrelstack_report::{Characters, described};
+use barrelstack_report::{Characters, Verdict, described};
 
 use serde::Serialize;
 
@@ -173,6 +173,12 @@ pub(crate) fn warnings(answer: &Answer) {
     let other = answer.other.iter().flat_map(|other| &other.summary.warnings);
     let all = own.iter().chain(other.filter(|text| !own.contains(text)));
     all.for_each(|text| warning(text));
+}
+
+/// A verdict, its sentences below its headline.
+pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
+    let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
+    std::iter::once(verdict.headline.clone()).chain(sentences).collect()
 }
 
 /// The command that sets what would have helped beside the stack.

@@ -13,6 +13,13 @@ pub(crate) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// Makes a folder where it is missing.
+pub(crate) fn folder(path: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(path)
+        .map_err(plain)
+        .with_context(|| format!("cannot make the folder {}", path.display()))
+}
+
 /// Refuses a folder in which nothing can be written, before the work is done.
 pub(crate) fn writable(folder: &Path) -> anyhow::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };

@@ -83,67 +83,34 @@ fn has_word(kind: Kind) -> bool {
     matches!(kind, Kind::WordOr(..))
 }
 
-impl Held for [f64; 3] {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.triple(name)
-    }
+/// Says how values of a type are read and written.
+macro_rules! held {
+    ($($type:ty: $read:expr, $write:expr;)*) => {$(
+        impl Held for $type {
+            fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+                $read(reader, name)
+            }
 
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.triple(name, *self);
-    }
-}
-
-impl Held for Option<[f64; 3]> {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.optional_triple(name)
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        match *self {
-            Some(value) => writer.triple(name, value),
-            None => writer.omit(&[name]),
+            fn write(&self, writer: &mut Writer, name: &'static str) {
+                let write: fn(&mut Writer, &'static str, &Self) = $write;
+                write(writer, name, self);
+            }
         }
-    }
+    )*};
 }
 
-impl Held for String {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.text(name)
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.text(name, self);
-    }
-}
-
-impl Held for Option<String> {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.optional_text(name)
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.optional_text(name, self.as_deref());
-    }
-}
-
-impl Held for u32 {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.integer(name)
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.integer(name, *self);
-    }
-}
-
-impl Held for bool {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.flag(name)
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.flag(name, *self);
-    }
+held! {
+    [f64; 3]: Reader::triple, |writer, name, value| writer.triple(name, *value);
+    Option<[f64; 3]>: Reader::optional_triple, |writer, name, value| match *value {
+        Some(value) => writer.triple(name, value),
+        None => writer.omit(&[name]),
+    };
+    String: Reader::text, |writer, name, value| writer.text(name, value);
+    Option<String>: Reader::optional_text, |writer, name, value| {
+        writer.optional_text(name, value.as_deref());
+    };
+    u32: Reader::integer, |writer, name, value| writer.integer(name, *value);
+    bool: Reader::flag, |writer, name, value| writer.flag(name, *value);
 }
 
 /// A table that may be absent.

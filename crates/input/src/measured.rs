@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::system;
 use crate::{Dimension, Quantity};
 
+/// The next move where a cell holds no number.
+const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
+
 /// Most bytes of a file of measurements.
 const SIZE_LIMIT: usize = 64 << 20;
 
@@ -228,10 +231,8 @@ impl Table {
     fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), TableError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
         let example = || format!("`{name} ({})`", dimension.si_unit());
-        let at_header = |column: Option<String>, expected: String, found: String, remedy: &str| {
-            let (file, line) = (self.file.clone(), self.header_line);
-            let (expected, found, remedy) = (expected.into(), found.into(), remedy.into());
-            TableError::Cell { file, line, column, expected, found, remedy }
+        let at_header = |column: Option<&str>, expected: &str, found: &str, remedy: &str| {
+            self.refuse(self.header_line, column, expected, found, remedy)
         };
         let listed = || {
             let names: Vec<String> = self.names().map(|name| format!("\"{name}\"")).collect();
@@ -239,28 +240,24 @@ impl Table {
         };
         let Some((at, column)) = found.next() else {
             let expected = format!("a column {}", example());
-            return Err(at_header(None, expected, listed(), "name the column so in the header"));
+            return Err(at_header(None, &expected, &listed(), "name the column so in the header"));
         };
         if found.next().is_some() {
             let expected = format!("one column {}", example());
-            return Err(at_header(
-                None,
-                expected,
-                listed(),
-                "keep one of those with the same name",
-            ));
+            let remedy = "keep one of those with the same name";
+            return Err(at_header(None, &expected, &listed(), remedy));
         }
-        let named = Some(column.name.clone());
+        let named = Some(column.name.as_str());
         let Some(unit) = column.unit.as_deref().filter(|unit| !unit.is_empty()) else {
             let expected = format!("a unit in parentheses, as in {}", example());
-            return Err(at_header(named, expected, "none".to_owned(), "add it to the header"));
+            return Err(at_header(named, &expected, "none", "add it to the header"));
         };
         // The notation of the program's own histories.
         let unit = if unit == "m/s2" { "m/s^2" } else { unit };
         if let Err(error) = Quantity::parse_as(&format!("1 {unit}"), &[dimension]) {
             let expected = format!("a unit of {dimension}");
             let found = format!("\"{unit}\" ({error})");
-            return Err(at_header(named, expected, found, "correct the unit in the header"));
+            return Err(at_header(named, &expected, &found, "correct the unit in the header"));
         }
         Ok((at, unit))
     }
@@ -271,8 +268,7 @@ impl Table {
         quantity.map(|quantity| quantity.value).ok_or_else(|| {
             let shown: String = cell.chars().filter(|c| !c.is_control()).take(40).collect();
             let found = if cell.is_empty() { "nothing".to_owned() } else { format!("\"{shown}\"") };
-            let remedy = "correct it, or remove the row (the decimal mark is a point)";
-            self.refuse(line, column, "a number", &found, remedy)
+            self.refuse(line, Some(column), "a number", &found, CORRECT)
         })
     }
 
@@ -283,14 +279,8 @@ impl Table {
     pub fn positive(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let values = self.required(name, dimension)?;
         if let Some(row) = values.iter().position(|value| *value <= 0.0) {
-            let found = self.cell(row, name);
-            return Err(self.at(
-                row,
-                name,
-                "a number above zero",
-                &found,
-                "correct it, or remove the row",
-            ));
+            let (expected, remedy) = ("a number above zero", "correct it, or remove the row");
+            return Err(self.at(row, name, expected, &self.cell(row, name), remedy));
         }
         Ok(values)
     }
@@ -308,20 +298,15 @@ impl Table {
                 Some(unit) => format!("\"{} ({unit})\"", column.name),
                 None => format!("\"{}\"", column.name),
             });
-            return Err(TableError::Cell {
-                file: self.file.clone(),
-                line: self.header_line,
-                column: None,
-                expected: format!("a column `{name} (1/year)`").into(),
-                found: heads.collect::<Vec<_>>().join(", ").into(),
-                remedy: "name the column so in the header".into(),
-            });
+            let (expected, found) =
+                (format!("a column `{name} (1/year)`"), heads.collect::<Vec<_>>().join(", "));
+            let remedy = "name the column so in the header";
+            return Err(self.refuse(self.header_line, None, &expected, &found, remedy));
         };
         let number = |(line, row): &(usize, Vec<String>)| {
             let value = row[at].parse::<f64>().ok().filter(|value| value.is_finite());
-            let remedy = "correct it, or remove the row (the decimal mark is a point)";
             value.ok_or_else(|| {
-                self.refuse(*line, name, "a number", &format!("\"{}\"", row[at]), remedy)
+                self.refuse(*line, Some(name), "a number", &format!("\"{}\"", row[at]), CORRECT)
             })
         };
         self.rows.iter().map(number).collect()
@@ -337,7 +322,7 @@ impl Table {
         remedy: &str,
     ) -> TableError {
         let line = self.rows.get(row).map_or(self.header_line, |(line, _)| *line);
-        self.refuse(line, column, expected, found, remedy)
+        self.refuse(line, Some(column), expected, found, remedy)
     }
 
     /// What stands in a row, counted from 0, as it was written.
@@ -350,7 +335,7 @@ impl Table {
     fn refuse(
         &self,
         line: usize,
-        column: &str,
+        column: Option<&str>,
         expected: &str,
         found: &str,
         remedy: &str,
@@ -358,7 +343,7 @@ impl Table {
         TableError::Cell {
             file: self.file.clone(),
             line,
-            column: Some(column.to_owned()),
+            column: column.map(str::to_owned),
             expected: expected.into(),
             found: found.into(),
             remedy: remedy.into(),

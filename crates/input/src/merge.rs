@@ -168,15 +168,19 @@ pub fn field_at(
     if let Kind::Tables(_) = field.kind {
         // The next key is the name or the number of an item.
         let Some(Value::Array(items)) = node else { return None };
-        let named = |(index, item): &(usize, &Node)| {
-            item_name(item, *index) == rest[0] || rest[0] == (index + 1).to_string()
-        };
-        let (_, item) = items.iter().enumerate().find(named)?;
-        let Value::Table(item) = &item.value else { return None };
+        let Value::Table(item) = &item_of(items, rest[0])?.value else { return None };
         return field_at(Some(item), inner, &rest[1..]);
     }
     let below = if let Some(Value::Table(below)) = node { Some(below) } else { None };
     field_at(below, inner, rest)
+}
+
+/// The item of a list by its name or its number.
+fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
+    let named = |(index, item): &(usize, &Node)| {
+        item_name(item, *index) == wanted || wanted == (index + 1).to_string()
+    };
+    items.iter().enumerate().find(named).map(|(_, item)| item)
 }
 
 /// Where the value at a path was written; `None` where nothing is.
@@ -187,10 +191,7 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     let mut node = &table.get(key)?.node;
     let mut rest = rest;
     if let (Value::Array(items), [wanted, below @ ..]) = (&node.value, rest) {
-        let named = |(index, item): &(usize, &Node)| {
-            item_name(item, *index) == *wanted || *wanted == (index + 1).to_string()
-        };
-        node = items.iter().enumerate().find(named)?.1;
+        node = item_of(items, wanted)?;
         rest = below;
     }
     match (&node.value, rest) {

@@ -35,8 +35,7 @@ fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section:
             rows(text, variant.fields.iter());
         }
     }
-    let variants = section.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
-    for field in section.fields.iter().chain(variants) {
+    for field in section.all_fields() {
         let inner_path =
             if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
         let Some(inner) = field.kind.section() else { continue };

@@ -35,11 +35,8 @@ fn collect(sections: &mut Map<String, Value>, outer: &'static Section) {
         return;
     }
     sections.insert(outer.name.to_owned(), section(outer));
-    let variants = outer.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
-    for field in outer.fields.iter().chain(variants) {
-        if let Some(inner) = field.kind.section() {
-            collect(sections, inner);
-        }
+    for inner in outer.all_fields().filter_map(|field| field.kind.section()) {
+        collect(sections, inner);
     }
 }
 

@@ -19,6 +19,7 @@ use crate::interrupt::Stopped;
 use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::Progress;
+use crate::typed::{typed, word};
 
 /// What the help ends with.
 const AFTER_HELP: &str = "\
@@ -97,15 +98,30 @@ enum Pair {
     RackRack,
 }
 
-impl Pair {
-    fn name(self) -> &'static str {
-        match self {
-            Self::BarrelRack => "barrel-rack",
-            Self::RackGround => "rack-ground",
-            Self::BarrelBarrel => "barrel-barrel",
-            Self::BarrelGround => "barrel-ground",
-            Self::RackRack => "rack-rack",
-        }
+/// For which pair the result is.
+#[derive(Debug, clap::Args)]
+struct PairArgs {
+    /// The pair that was tested, for the lines to paste.
+    #[arg(long, value_enum, default_value = "barrel-rack")]
+    interface: Pair,
+}
+
+/// What is changed in scenarios.
+#[derive(Debug, clap::Args)]
+struct ChangeArgs {
+    /// Change a value of the scenario, such as stack.levels=2; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// The file of the ground motion, in place of the scenario's.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+impl ChangeArgs {
+    /// A scenario of this name with the changes.
+    fn of(&self, name: &str) -> ScenarioArgs {
+        let (set, record) = (self.set.clone(), self.record.clone());
+        ScenarioArgs { scenario: name.to_owned(), set, record }
     }
 }
 
@@ -116,9 +132,8 @@ struct StiffnessArgs {
     /// Contact nodes that share the force; k is that of one.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
-    /// The pair that was tested, for the lines to paste.
-    #[arg(long, value_enum, default_value = "barrel-rack")]
-    interface: Pair,
+    #[command(flatten)]
+    pair: PairArgs,
     #[command(flatten)]
     result: ResultArgs,
 }
@@ -136,9 +151,8 @@ struct DropArgs {
     /// Contact nodes that it falls on at once; k and c are those of one.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
-    /// The pair that was tested, for the lines to paste.
-    #[arg(long, value_enum, default_value = "barrel-rack")]
-    interface: Pair,
+    #[command(flatten)]
+    pair: PairArgs,
     #[command(flatten)]
     result: ResultArgs,
 }
@@ -147,9 +161,8 @@ struct DropArgs {
 struct FrictionArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// The pair that was tested, for the lines to paste.
-    #[arg(long, value_enum, default_value = "barrel-rack")]
-    interface: Pair,
+    #[command(flatten)]
+    pair: PairArgs,
     #[command(flatten)]
     result: ResultArgs,
 }
@@ -167,12 +180,8 @@ struct ResponseArgs {
     /// Leave out rows after this time, such as "1.5 s".
     #[arg(long, value_name = "TIME")]
     until: Option<String>,
-    /// Change a value of the scenario, such as stack.levels=2; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    set: Vec<String>,
-    /// The file of the ground motion, in place of the scenario's.
-    #[arg(long, value_name = "FILE")]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    changes: ChangeArgs,
     #[command(flatten)]
     result: ResultArgs,
 }
@@ -204,33 +213,19 @@ struct CollapseArgs {
     seed: u64,
     #[command(flatten)]
     lanes: LanesArgs,
-    /// Change a value of the scenario, such as stack.levels=2; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    set: Vec<String>,
-    /// The file of the ground motion, in place of the scenario's.
-    #[arg(long, value_name = "FILE")]
-    record: Option<PathBuf>,
+    #[command(flatten)]
+    changes: ChangeArgs,
     #[command(flatten)]
     result: ResultArgs,
 }
 
-/// A parameter, by its word.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Fitted {
-    K,
-    C,
-    MuBr,
-    MuRg,
-}
-
-impl Fitted {
-    fn parameter(self) -> Parameter {
-        match self {
-            Self::K => Parameter::Stiffness,
-            Self::C => Parameter::Damping,
-            Self::MuBr => Parameter::FrictionBarrelRack,
-            Self::MuRg => Parameter::FrictionRackGround,
-        }
+typed! {
+    /// A parameter, by its word.
+    enum Fitted of Parameter {
+        K = Self::Stiffness,
+        C = Self::Damping,
+        MuBr = Self::FrictionBarrelRack,
+        MuRg = Self::FrictionRackGround,
     }
 }
 
@@ -249,16 +244,16 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let found = match &args.test {
         Test::Stiffness(args) => {
             let table = Table::load(&args.file)?;
-            stiffness::stiffness(&table, args.nodes, args.interface.name())?
+            stiffness::stiffness(&table, args.nodes, &word(args.pair.interface))?
         }
         Test::Drop(args) => {
             let striker = striker(args)?;
             let table = Table::load(&args.file)?;
-            drop::drop(&table, striker, args.interface.name())?
+            drop::drop(&table, striker, &word(args.pair.interface))?
         }
         Test::Friction(args) => {
             let table = Table::load(&args.file)?;
-            friction::friction(&table, args.interface.name())?
+            friction::friction(&table, &word(args.pair.interface))?
         }
         Test::Response(args) => fitted(args)?,
         Test::Collapse(args) => collapsed(args)?,
@@ -301,7 +296,7 @@ fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f6
 fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     let mut parameters: Vec<Parameter> = Vec::new();
     for fitted in fit {
-        let parameter = fitted.parameter();
+        let parameter = Parameter::from(*fitted);
         anyhow::ensure!(
             !parameters.contains(&parameter),
             "--fit names {} twice; name it once",
@@ -324,16 +319,9 @@ fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> an
 
 fn fitted(args: &ResponseArgs) -> anyhow::Result<Calibration> {
     let parameters = parameters(&args.fit)?;
-    let until = args
-        .until
-        .as_deref()
-        .map(|until| positive("--until", until, Dimension::TIME))
-        .transpose()?;
-    let scenario_args = ScenarioArgs {
-        scenario: args.scenario.clone(),
-        set: args.set.clone(),
-        record: args.record.clone(),
-    };
+    let until = args.until.as_deref().map(|until| positive("--until", until, Dimension::TIME));
+    let until = until.transpose()?;
+    let scenario_args = args.changes.of(&args.scenario);
     let scenario = super::load(&scenario_args)?;
     let table = Table::load(&args.file)?;
     let progress = Progress::new(true);
@@ -362,20 +350,15 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         seed: args.seed,
         lanes: args.lanes.lanes,
     };
-    let of = |name: &str| ScenarioArgs {
-        scenario: name.to_owned(),
-        set: args.set.clone(),
-        record: args.record.clone(),
-    };
     let seen = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
     let scenarios: Vec<Scenario> = seen
         .scenarios()
-        .map(|name| super::load(&of(name.unwrap_or(&args.scenario))))
+        .map(|name| super::load(&args.changes.of(name.unwrap_or(&args.scenario))))
         .collect::<anyhow::Result<_>>()?;
     let progress = Progress::new(true);
     let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
         progress.counted(done as u64, of as u64, "runs")
     });
     drop(progress);
-    found.map_err(|error| placed(error, &scenarios[0], &of(&args.scenario)))
+    found.map_err(|error| placed(error, &scenarios[0], &args.changes.of(&args.scenario)))
 }

@@ -11,7 +11,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::variants::Asked;
 
 use crate::args::{ScenarioArgs, VariantArgs};
-use crate::interrupt::{STATUS, Stopped};
+use crate::interrupt::Stopped;
 use crate::printer;
 
 /// What the help of `compare` ends with.
@@ -102,11 +102,8 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         return Err(Stopped.into());
     }
     if answers.len() < scenarios.len() {
-        printer::note(&format!(
-            "stopped; {} of {} runs are compared",
-            answers.len(),
-            scenarios.len()
-        ));
+        let (done, all) = (answers.len(), scenarios.len());
+        printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
     let sides = compare::sides(answers);
     let document = compare::document(&sides);
@@ -117,9 +114,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     if args.json {
         printer::document(&Comparison::of(&sides))?;
     } else {
-        let verdict = &document.verdict;
-        let mut lines = vec![verdict.headline.clone()];
-        lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
+        let mut lines = printer::verdict(&document.verdict);
         lines.extend(table(&differing));
         lines.extend([String::new(), format!("report: {}", folder.report().display())]);
         printer::lines(lines)?;
@@ -132,11 +127,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     written?;
     let broken = sides.iter().any(|side| matches!(side.run.outcome, Outcome::Invalid { .. }));
     let stopped = sides.iter().any(|side| side.run.interrupted);
-    Ok(match (broken, stopped) {
-        (true, _) => ExitCode::FAILURE,
-        (false, true) => ExitCode::from(STATUS),
-        (false, false) => ExitCode::SUCCESS,
-    })
+    Ok(super::status(broken, stopped))
 }
 
 /// The runs asked for, with a short name for each.

@@ -1,19 +1,15 @@
 //! `barrelstack heights`: how high is safe, on one page.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use barrelstack_campaign::heights::{
     HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights,
 };
-use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_campaign::study::StudyError;
 
-use crate::interrupt::{Stopped, keeps};
-use crate::lanes::LanesArgs;
-use crate::printer;
-use crate::progress::Progress;
-use crate::store::{store, writable};
+use super::page::PageArgs;
+use crate::interrupt::Stopped;
 
 /// Arguments of `heights`.
 #[derive(Debug, clap::Args)]
@@ -37,13 +33,7 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "DIR", default_value = "barrelstack-heights")]
     out: PathBuf,
     #[command(flatten)]
-    lanes: LanesArgs,
-    /// Print one JSON document in place of the table.
-    #[arg(long)]
-    json: bool,
-    /// Show no progress.
-    #[arg(long, short)]
-    quiet: bool,
+    page: PageArgs,
 }
 
 /// Runs every height in both directions, writes the page, prints the table.
@@ -55,56 +45,20 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         synthetic: args.synthetic,
         seed: args.seed,
     };
-    writable(&args.out)?;
-    keeps(format!(
-        "what was run is kept in {}, the same command goes on from there",
-        args.out.display()
-    ));
-    let progress = Progress::new(!args.quiet);
-    let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
+    let (options, progress) = args.page.begin(&args.out)?;
     let result =
         heights(&request, &args.out, &options, &|done, of| progress.counted(done, of, "runs"));
     drop(progress);
     let found = match result {
-        Err(HeightsError::Study(StudyError::Stopped)) => {
-            return Err(Stopped.into());
-        }
+        Err(HeightsError::Study(StudyError::Stopped)) => return Err(Stopped.into()),
         other => other?,
     };
-    // The answer is printed even where it cannot be written.
-    let written = write(&args.out, &found);
-    if args.json {
-        printer::document(&found.to_document())?;
-    } else {
-        print(&found)?;
-        printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
-    }
-    found.warnings.iter().for_each(|warning| printer::warning(warning));
-    written?;
-    Ok(ExitCode::SUCCESS)
+    let file = (args.out.as_path(), "heights.json");
+    args.page.end(file, &found.document, &found.to_document(), lines(&found), &found.warnings)
 }
 
-fn write(out: &Path, found: &Heights) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(&found.to_document())? + "\n";
-    page(out, &found.html(), &found.markdown("figures"))?;
-    store(&out.join("heights.json"), json.as_bytes())
-}
-
-/// Writes a page as HTML and as Markdown with its figures beside it.
-pub(crate) fn page(
-    out: &Path,
-    html: &str,
-    markdown: &barrelstack_report::MarkdownBundle,
-) -> anyhow::Result<()> {
-    let figures = out.join("figures");
-    std::fs::create_dir_all(&figures)
-        .with_context(|| format!("cannot make {}", figures.display()))?;
-    store(&out.join("index.html"), html.as_bytes())?;
-    store(&out.join("index.md"), markdown.text.as_bytes())?;
-    markdown.files.iter().try_for_each(|file| store(&figures.join(&file.name), &file.bytes))
-}
-
-fn print(found: &Heights) -> anyhow::Result<()> {
+/// The table for people.
+fn lines(found: &Heights) -> Vec<String> {
     let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
     for view in View::ALL {
         lines.push(format!("  collapsed, shaken {}", view.words()));
@@ -127,5 +81,5 @@ fn print(found: &Heights) -> anyhow::Result<()> {
         lines.push(String::new());
     }
     lines.pop();
-    printer::lines(lines)
+    lines
 }

@@ -1,6 +1,6 @@
 //! `barrelstack protect`: what protects a stack best for what it costs, on one page.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, bail};
@@ -9,16 +9,14 @@ use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::protect::{
     ProtectError, Ranking, Reached, Request, Shaking, VELOCITIES, protect,
 };
-use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_campaign::study::StudyError;
 use barrelstack_report::significant;
 
+use super::page::PageArgs;
 use crate::args::ScenarioArgs;
-use crate::commands::heights::page;
-use crate::interrupt::{Stopped, keeps};
-use crate::lanes::LanesArgs;
+use crate::interrupt::Stopped;
 use crate::printer;
 use crate::progress::Progress;
-use crate::store::{store, writable};
 
 /// Arguments of `protect`.
 #[derive(Debug, clap::Args)]
@@ -50,25 +48,13 @@ pub(crate) struct ProtectArgs {
     #[arg(long, value_name = "DIR", default_value = "barrelstack-protect")]
     out: PathBuf,
     #[command(flatten)]
-    lanes: LanesArgs,
-    /// Print one JSON document in place of the table.
-    #[arg(long)]
-    json: bool,
-    /// Show no progress.
-    #[arg(long, short)]
-    quiet: bool,
+    page: PageArgs,
 }
 
 /// Tries everything, writes the page, prints the table.
 pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
     let request = request(args)?;
-    writable(&args.out)?;
-    keeps(format!(
-        "what was run is kept in {}, the same command goes on from there",
-        args.out.display()
-    ));
-    let progress = Progress::new(!args.quiet);
-    let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
+    let (options, progress) = args.page.begin(&args.out)?;
     let result = protect(&request, &args.out, &options, &|Reached { round, done, of }| {
         progress.counted_of_part(done, of, &format!("runs of round {round}"))
     });
@@ -81,17 +67,14 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         other => other?,
     };
     before_and_after(args, &mut found)?;
-    // The answer is printed even where it cannot be written.
-    let written = write(&args.out, &found);
-    if args.json {
-        printer::document(&found.to_document())?;
-    } else {
-        print(&found)?;
-        printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
-    }
-    found.document.warnings.iter().for_each(|warning| printer::warning(warning));
-    written?;
-    Ok(ExitCode::SUCCESS)
+    let file = (args.out.as_path(), "protect.json");
+    args.page.end(
+        file,
+        &found.document,
+        &found.to_document(),
+        lines(&found),
+        &found.document.warnings,
+    )
 }
 
 fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
@@ -139,7 +122,7 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
 
 /// Shows the stack as it is and with the best protection side by side, under the motion of the scenario.
 fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<()> {
-    let progress = Progress::new(!args.quiet);
+    let progress = Progress::new(!args.page.quiet);
     let shown = found.show_before_and_after(&mut |told| progress.told_of(told));
     drop(progress);
     match shown {
@@ -152,16 +135,9 @@ fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<(
     }
 }
 
-fn write(out: &Path, found: &Ranking) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(&found.to_document())? + "\n";
-    page(out, &found.html(), &found.markdown("figures"))?;
-    store(&out.join("protect.json"), json.as_bytes())
-}
-
-fn print(found: &Ranking) -> anyhow::Result<()> {
-    let verdict = &found.document.verdict;
-    let mut lines = vec![verdict.headline.clone()];
-    lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
+/// The table for people.
+fn lines(found: &Ranking) -> Vec<String> {
+    let mut lines = printer::verdict(&found.document.verdict);
     lines.push(String::new());
     lines.push(format!(
         "  {:44}{:>12}{:>14}{:>18}",
@@ -178,5 +154,5 @@ fn print(found: &Ranking) -> anyhow::Result<()> {
         ));
     }
     lines.push("* nothing that was tried costs no more and loses less".to_owned());
-    printer::lines(lines)
+    lines
 }

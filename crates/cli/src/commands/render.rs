@@ -11,6 +11,7 @@ use crate::args::{ScenarioArgs, VariantArgs};
 use crate::figures::{FigureArgs, PaperName};
 use crate::interrupt::keeps;
 use crate::printer;
+use crate::typed::typed;
 
 /// Arguments of `render`.
 #[derive(Debug, clap::Args)]
@@ -50,31 +51,20 @@ pub(crate) struct RenderArgs {
     pub(super) quiet: bool,
 }
 
-/// The parts, as typed.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum PartName {
-    /// Every figure of the report, with its numbers as CSV.
-    Figures,
-    /// The report on paper, as PDF.
-    Report,
-    /// The stack as GIF and as animated PNG, which play in any browser.
-    Animation,
-    /// Numbered pictures of one size, from which any encoder makes a video, such as
-    /// `ffmpeg -framerate 20 -i frame-%04d.png -pix_fmt yuv420p stack.mp4`.
-    Frames,
-    /// Bodies and contact forces over time.
-    Paraview,
-}
-
-impl From<PartName> for Part {
-    fn from(name: PartName) -> Self {
-        match name {
-            PartName::Figures => Self::Figures,
-            PartName::Report => Self::Report,
-            PartName::Animation => Self::Animation,
-            PartName::Frames => Self::Frames,
-            PartName::Paraview => Self::Paraview,
-        }
+typed! {
+    /// The parts, as typed.
+    enum PartName of Part {
+        /// Every figure of the report, with its numbers as CSV.
+        Figures = Self::Figures,
+        /// The report on paper, as PDF.
+        Report = Self::Report,
+        /// The stack as GIF and as animated PNG, which play in any browser.
+        Animation = Self::Animation,
+        /// Numbered pictures of one size, from which any encoder makes a video, such as
+        /// `ffmpeg -framerate 20 -i frame-%04d.png -pix_fmt yuv420p stack.mp4`.
+        Frames = Self::Frames,
+        /// Bodies and contact forces over time.
+        Paraview = Self::Paraview,
     }
 }
 

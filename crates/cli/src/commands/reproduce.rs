@@ -10,6 +10,7 @@ use barrelstack_reproduction::{
     Comparison, ReproduceError, Reproduction, percent, reproduce as run_all,
 };
 
+use super::motion::table::Table;
 use crate::args::ReproduceArgs;
 use crate::interrupt::Stopped;
 use crate::printer;
@@ -45,14 +46,9 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
     let put = |name: &str, bytes: &[u8]| store(&out.join(name), bytes);
-    put("index.html", barrelstack_report::html(&found.document).as_bytes())?;
-    let bundle = barrelstack_report::markdown(&found.document, "figures");
-    put("index.md", bundle.text.as_bytes())?;
-    put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
     prepare(&out.join("figures"))?;
-    for file in &bundle.files {
-        put(&format!("figures/{}", file.name), &file.bytes)?;
-    }
+    super::page::write(out, &found.document)?;
+    put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
     put("index.pdf", &document_pdf(&found.document, Paper::A4))?;
     let formats = args.figures.formats();
     write_figures(&found.document, &out.join("figures"), &formats, args.figures.dpi)?;
@@ -70,15 +66,8 @@ fn print(found: &Reproduction) -> anyhow::Result<()> {
             row.verdict.words().to_owned(),
         ]
     };
-    let head = ["quantity", "published", "ours", "difference", "verdict"].map(str::to_owned);
-    let rows: Vec<[String; 5]> =
-        std::iter::once(head).chain(found.comparisons.iter().map(cells)).collect();
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: [usize; 5] = std::array::from_fn(|column| width(column).unwrap_or(0));
-    let lines = rows.iter().map(|row| {
-        let padded = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}"));
-        format!("  {}", padded.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
-    });
+    let mut table = Table::new(5, ["quantity", "published", "ours", "difference", "verdict"]);
+    found.comparisons.iter().for_each(|row| table.row(cells(row)));
     let headline = found.document.verdict.headline.clone();
-    printer::lines([headline, String::new()].into_iter().chain(lines))
+    printer::lines([headline, String::new()].into_iter().chain(table.lines()))
 }

@@ -144,11 +144,6 @@ fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
 pub(super) fn status(answer: &Answer) -> ExitCode {
     let unfinished = answer.decides.summary.remedy.as_ref().is_some_and(|found| !found.complete);
     let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
-    if runs.clone().any(|run| matches!(run.outcome, Outcome::Invalid { .. })) {
-        ExitCode::FAILURE
-    } else if runs.any(|run| run.interrupted) || unfinished {
-        ExitCode::from(130)
-    } else {
-        ExitCode::SUCCESS
-    }
+    let broken = runs.clone().any(|run| matches!(run.outcome, Outcome::Invalid { .. }));
+    super::status(broken, runs.any(|run| run.interrupted) || unfinished)
 }

@@ -1,18 +1,15 @@
 //! `barrelstack score`: the RockScore of a rack or a device, on one sheet.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::score::{Protocol, ScoreError, Sheet, score};
-use barrelstack_campaign::study::{RunOptions, StudyError};
+use barrelstack_campaign::study::StudyError;
 
+use super::page::PageArgs;
 use crate::args::ScenarioArgs;
-use crate::commands::heights::page;
-use crate::interrupt::{Stopped, keeps};
-use crate::lanes::LanesArgs;
+use crate::interrupt::Stopped;
 use crate::printer;
-use crate::progress::Progress;
-use crate::store::{store, writable};
 
 /// Arguments of `score`.
 #[derive(Debug, clap::Args)]
@@ -23,25 +20,13 @@ pub(crate) struct ScoreArgs {
     #[arg(long, value_name = "DIR", default_value = "barrelstack-score")]
     out: PathBuf,
     #[command(flatten)]
-    lanes: LanesArgs,
-    /// Print one JSON document in place of the table.
-    #[arg(long)]
-    json: bool,
-    /// Show no progress.
-    #[arg(long, short)]
-    quiet: bool,
+    page: PageArgs,
 }
 
 /// Runs the protocol, writes the sheet, prints it.
 pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
-    writable(&args.out)?;
-    keeps(format!(
-        "what was run is kept in {}, the same command goes on from there",
-        args.out.display()
-    ));
-    let progress = Progress::new(!args.quiet);
-    let options = RunOptions { lanes: args.lanes.lanes, ..RunOptions::default() };
+    let (options, progress) = args.page.begin(&args.out)?;
     let protocol = Protocol::rockscore();
     let tell = |done, of| progress.counted(done, of, "runs");
     let result = score(&scenario, &protocol, &args.out, &options, &tell);
@@ -53,29 +38,19 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
         }
         other => other?,
     };
-    // The answer is printed even where it cannot be written.
-    let written = write(&args.out, &sheet);
-    if args.json {
-        printer::document(&sheet.to_document())?;
-    } else {
-        print(&sheet)?;
-        printer::lines(["", &format!("page: {}", args.out.join("index.html").display())])?;
-    }
-    sheet.document.warnings.iter().for_each(|warning| printer::warning(warning));
-    written?;
-    Ok(ExitCode::SUCCESS)
+    let file = (args.out.as_path(), "rockscore.json");
+    args.page.end(
+        file,
+        &sheet.document,
+        &sheet.to_document(),
+        lines(&sheet),
+        &sheet.document.warnings,
+    )
 }
 
-fn write(out: &Path, sheet: &Sheet) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(&sheet.to_document())? + "\n";
-    page(out, &sheet.html(), &sheet.markdown("figures"))?;
-    store(&out.join("rockscore.json"), json.as_bytes())
-}
-
-fn print(sheet: &Sheet) -> anyhow::Result<()> {
-    let verdict = &sheet.document.verdict;
-    let mut lines = vec![verdict.headline.clone()];
-    lines.extend(verdict.sentences.iter().map(|sentence| format!("  {sentence}")));
+/// The table for people.
+fn lines(sheet: &Sheet) -> Vec<String> {
+    let mut lines = printer::verdict(&sheet.document.verdict);
     let velocities = &sheet.protocol.velocities;
     let cells = |of: &dyn Fn(f64) -> String| {
         let cells: Vec<String> = velocities.iter().map(|at| format!("{:>7}", of(*at))).collect();
@@ -91,5 +66,5 @@ fn print(sheet: &Sheet) -> anyhow::Result<()> {
         };
         lines.push(format!("  {:36}{:24}{}", row.state.name, row.view.words(), cells(&share)));
     }
-    printer::lines(lines)
+    lines
 }

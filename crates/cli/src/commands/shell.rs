@@ -3,13 +3,12 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use clap::CommandFactory as _;
 use clap_complete::Shell;
 
 use crate::args::Args;
 use crate::printer;
-use crate::store::{plain, store, writable};
+use crate::store::{folder, store, writable};
 
 /// Arguments of `completions`.
 #[derive(Debug, clap::Args)]
@@ -36,9 +35,7 @@ pub(crate) fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
 
 /// Writes a page for the program and one for every subcommand.
 pub(crate) fn man(args: &ManArgs) -> anyhow::Result<ExitCode> {
-    std::fs::create_dir_all(&args.dir)
-        .map_err(plain)
-        .with_context(|| format!("cannot make the folder {}", args.dir.display()))?;
+    folder(&args.dir)?;
     writable(&args.dir)?;
     let mut command = Args::command();
     command.build();

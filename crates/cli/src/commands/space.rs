@@ -101,13 +101,8 @@ fn answered(scenario: &Scenario, asked: Asked, show: bool) -> Result<Answer, Run
 
 /// The exit status of runs, as the help of the program lists them.
 fn status(answer: &Answer) -> ExitCode {
-    if matches!(answer.run.outcome, Outcome::Invalid { .. }) {
-        ExitCode::FAILURE
-    } else if answer.run.ending == Ending::Interrupted {
-        ExitCode::from(130)
-    } else {
-        ExitCode::SUCCESS
-    }
+    let broken = matches!(answer.run.outcome, Outcome::Invalid { .. });
+    super::status(broken, answer.run.ending == Ending::Interrupted)
 }
 
 /// The way to a plane, behind what is not known in space.

@@ -188,24 +188,14 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     ));
     let live = live::Live::new(!args.quiet, study.design.is_sample());
     let options = RunOptions { threads: args.threads, lanes: args.lanes.lanes };
-    match study.run_all(out, &options, &|progress| live.at(progress)) {
-        Ok(()) => {}
-        Err(StudyError::Stopped) => {
-            drop(live);
-            return Err(Stopped.into());
-        }
-        Err(error) => return Err(error.into()),
-    }
+    let ran = study.run_all(out, &options, &|progress| live.at(progress));
     let damaged = live.damaged();
     drop(live);
+    ran.map_err(stopped)?;
     if damaged > 0 {
         warn_of_damaged(damaged, out);
     }
-    let mut answer = answer::Answer::default();
-    let made = study::collect(out, &mut |_, rows| {
-        answer.add(rows);
-        Ok(())
-    })?;
+    let (answer, made) = collected(out)?;
     let page = report::write_page(out)?;
     if args.json {
         printer::document(&StudyResult::of(&(&answer, &made)))?;
@@ -317,12 +307,14 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
             }
             printer::lines([format!("chunk {} is done", args.chunk)])?;
         }
-        Err(StudyError::Stopped) => {
-            return Err(Stopped.into());
-        }
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(stopped(error)),
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// An error of a study, or that it was stopped.
+fn stopped(error: StudyError) -> anyhow::Error {
+    if let StudyError::Stopped = error { Stopped.into() } else { error.into() }
 }
 
 fn status(args: &FolderArgs) -> anyhow::Result<()> {
@@ -333,12 +325,18 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
     printer::lines(answer::status(&status))
 }
 
-fn collect(args: &FolderArgs) -> anyhow::Result<()> {
+/// What the shards of a folder say, and what they come from; writes the table.
+fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), StudyError> {
     let mut answer = answer::Answer::default();
-    let made = study::collect(&args.folder, &mut |_, rows| {
+    let made = study::collect(folder, &mut |_, rows| {
         answer.add(rows);
         Ok(())
     })?;
+    Ok((answer, made))
+}
+
+fn collect(args: &FolderArgs) -> anyhow::Result<()> {
+    let (answer, made) = collected(&args.folder)?;
     if args.json {
         return printer::document(&StudyResult::of(&(&answer, &made)));
     }

@@ -26,14 +26,13 @@ impl Reader<'_> {
         }
     }
 
-    fn required<T>(&self, name: &'static str, value: Option<T>) -> Result<T> {
-        value.ok_or_else(|| self.missing(name))
+    fn required<T>(&self, name: &'static str, value: Result<Option<T>>) -> Result<T> {
+        value?.ok_or_else(|| self.missing(name))
     }
 
     /// A quantity in SI.
     pub fn quantity(&self, name: &'static str) -> Result<f64> {
-        let value = self.optional_quantity(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_quantity(name))
     }
 
     /// A quantity in SI that may be absent.
@@ -70,8 +69,7 @@ impl Reader<'_> {
 
     /// A plain number.
     pub fn number(&self, name: &'static str) -> Result<f64> {
-        let value = self.optional_number(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_number(name))
     }
 
     /// A plain number that may be absent.
@@ -104,8 +102,7 @@ impl Reader<'_> {
 
     /// An integer in its range.
     pub fn integer(&self, name: &'static str) -> Result<u32> {
-        let value = self.optional_integer(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_integer(name))
     }
 
     /// An integer that may be absent.
@@ -138,8 +135,7 @@ impl Reader<'_> {
 
     /// `true` or `false`.
     pub fn flag(&self, name: &'static str) -> Result<bool> {
-        let value = self.optional_flag(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_flag(name))
     }
 
     /// `true` or `false`, or absent.
@@ -154,8 +150,7 @@ impl Reader<'_> {
 
     /// Text.
     pub fn text(&self, name: &'static str) -> Result<String> {
-        let value = self.optional_text(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_text(name))
     }
 
     /// Text that may be absent; `false` counts as absent where the field allows it.
@@ -232,8 +227,7 @@ impl Reader<'_> {
 
     /// A member of a closed set.
     pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
-        let value = self.optional_choice(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_choice(name))
     }
 
     /// A member of a closed set that may be absent.
@@ -247,8 +241,7 @@ impl Reader<'_> {
 
     /// A name of a list.
     pub fn catalog_name(&self, name: &'static str) -> Result<String> {
-        let value = self.optional_catalog_name(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_catalog_name(name))
     }
 
     /// A name of a list that may be absent.
@@ -269,7 +262,7 @@ impl Reader<'_> {
                 return Ok([a.clone(), b.clone()]);
             }
             Err(reader.wrong_type(name, field.kind, node))
-        })?;
+        });
         self.required(name, value)
     }
 
@@ -283,14 +276,12 @@ impl Reader<'_> {
 
     /// Two quantities.
     pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
-        let value = self.optional_point(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_point(name))
     }
 
     /// Three quantities.
     pub fn triple(&self, name: &'static str) -> Result<[f64; 3]> {
-        let value = self.optional_triple(name)?;
-        self.required(name, value)
+        self.required(name, self.optional_triple(name))
     }
 
     /// Three quantities that may be absent.
@@ -312,7 +303,7 @@ impl Reader<'_> {
                 .iter()
                 .map(|item| reader.read_point(name, item, dimension, Kind::Point(dimension)))
                 .collect()
-        })?;
+        });
         self.required(name, value)
     }
 

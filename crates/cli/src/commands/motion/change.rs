@@ -7,9 +7,10 @@ use barrelstack_motion::Record;
 use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
 use super::input::{Chain, Choice, Input};
-use super::measures::{self, USUAL};
-use super::output::{FormName, Output, Target};
+use super::measures;
+use super::output::{Form, Output, Target};
 use crate::printer;
+use crate::typed::word;
 
 /// What the forms are, at the end of the help.
 const FORMS: &str = "\
@@ -40,8 +41,8 @@ pub(super) struct ConvertArgs {
     #[command(flatten)]
     output: Output,
     /// What the motions of a folder are written as.
-    #[arg(long, value_enum, default_value_t = FormName::Txt)]
-    form: FormName,
+    #[arg(long, value_enum, default_value_t = Form::Txt)]
+    form: Form,
     #[command(flatten)]
     folder: FolderArgs,
 }
@@ -56,7 +57,7 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
             folder: &args.folder,
             settings: format!("convert to {:?}, {:?}", args.form, args.choice),
             periods: None,
-            ending: Some(args.form.ending()),
+            ending: Some(word(args.form)),
         };
         let work = |source: &Source, record: &Record| {
             let chosen = args.choice.take(record, Chain::None)?;
@@ -68,9 +69,7 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
     let read = args.input.read()?;
     let chosen = args.choice.take(&read, Chain::None)?;
-    let columns: Vec<_> = chosen.channels.iter().map(|c| (c.name.clone(), c)).collect();
-    let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
-    finish(&target, &read, &chosen, table.lines())?;
+    finish(&target, &read, &chosen, measures::usual(&chosen)?.lines())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack_motion::{
-    Channel, FORMATS, NoiseCriterion, Orientation, Quantity, Record, STANDARD_GRAVITY, Stage,
+    Channel, Corners, FORMATS, NoiseCriterion, Orientation, PulseFit, Quantity, Record,
+    STANDARD_GRAVITY, Stage, StatedPeak,
 };
 use barrelstack_report::described;
 
@@ -142,8 +143,7 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
     row("station", &record.station);
     row("stage", stage(record.stage));
     lines.push(String::new());
-    let head = ["channel", "direction", "samples", "step (s)", "length (s)"];
-    let mut channels = Table::new(2, head.map(str::to_owned));
+    let mut channels = Table::new(2, ["channel", "direction", "samples", "step (s)", "length (s)"]);
     for channel in &record.channels {
         channels.row([
             channel.name.clone(),
@@ -165,9 +165,7 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         lines.extend(stated.lines());
     }
     lines.push(String::new());
-    let columns: Vec<(String, &Channel)> =
-        record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect();
-    lines.extend(measures::table(&columns, shown)?.lines());
+    lines.extend(measures::table(&measures::columns(record), shown)?.lines());
     if all {
         let rotated = measures::rotated(record);
         if let Err(error) = &rotated
@@ -176,8 +174,7 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
             lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
         }
         if let Ok(rotated) = rotated {
-            let head = ["over all directions", "unit", "RotD50", "RotD100"];
-            let mut table = Table::new(2, head.map(str::to_owned));
+            let mut table = Table::new(2, ["over all directions", "unit", "RotD50", "RotD100"]);
             for row in rotated {
                 let (unit, factor) = measures::reading(&row.measure);
                 table.row([
@@ -267,7 +264,7 @@ fn recorded(record: &Record) -> Table {
         .collect();
     let words = told.iter().filter(|(head, _)| ["station", "sensor"].contains(head)).count();
     let head = std::iter::once("channel").chain(told.iter().map(|(head, _)| *head));
-    let mut table = Table::new(1 + words, head.map(str::to_owned));
+    let mut table = Table::new(1 + words, head);
     for channel in record.channels.iter().filter(|_| !told.is_empty()) {
         let cells = told.iter().map(|(_, cell)| cell(channel));
         table.row(std::iter::once(channel.name.clone()).chain(cells));
@@ -277,8 +274,7 @@ fn recorded(record: &Record) -> Table {
 
 /// Peaks of the header beside those of the numbers.
 fn stated(record: &Record) -> Table {
-    let head = ["channel", "stated peak", "unit", "header", "numbers", "agree"];
-    let mut table = Table::new(3, head.map(str::to_owned));
+    let mut table = Table::new(3, ["channel", "stated peak", "unit", "header", "numbers", "agree"]);
     for channel in &record.channels {
         for peak in &channel.peaks {
             let (unit, factor) = match peak.quantity {
@@ -309,69 +305,69 @@ described! {
     }
 
     /// A record.
-    pub(crate) struct RecordInfo {
+    struct RecordInfo of found: (&Record, Vec<ChannelInfo>, &[measures::Rotated]) {
         /// Its file.
-        file: String,
+        file: String = found.0.file.clone(),
         /// The form of the file.
-        format: &'static str,
+        format: &'static str = found.0.format,
         /// The event, as the file tells.
-        event: String,
+        event: String = found.0.event.clone(),
         /// The station, as the file tells.
-        station: String,
+        station: String = found.0.station.clone(),
         /// Whether it is raw or corrected.
-        stage: String,
+        stage: String = found.0.stage.to_string(),
         /// Its components.
-        channels: Vec<ChannelInfo>,
+        channels: Vec<ChannelInfo> = found.1,
         /// Peaks over all horizontal directions, where all measures are asked for.
-        over_all_directions: Vec<RotatedInfo>,
+        over_all_directions: Vec<RotatedInfo> = found.2.iter().map(RotatedInfo::of).collect(),
         /// What is wrong or doubtful.
-        warnings: Vec<String>,
+        warnings: Vec<String> = found.0.warnings.iter().map(ToString::to_string).collect(),
         /// What was done to it.
-        notes: Vec<String>,
+        notes: Vec<String> = found.0.notes.clone(),
     }
 
     /// A component.
-    pub(crate) struct ChannelInfo {
+    struct ChannelInfo of found: (&Channel, Option<Corners>, BTreeMap<String, MeasureInfo>, Option<PulseFit>) {
         /// Its name.
-        name: String,
+        name: String = found.0.name.clone(),
         /// Its direction, clockwise from north.
-        azimuth: Option<f64> as "deg",
+        azimuth: Option<f64> as "deg" = found.0.direction.azimuth,
         /// Whether it is vertical.
-        vertical: bool,
+        vertical: bool = found.0.is_vertical(),
         /// Universal time of the first sample.
-        start: Option<String>,
+        start: Option<String> = found.0.start.map(|start| start.to_string()),
         /// The station.
-        station: String,
+        station: String = found.0.site.station.clone(),
         /// The sensor.
-        sensor: String,
+        sensor: String = found.0.site.sensor.clone(),
         /// Latitude, north positive.
-        latitude: Option<f64> as "deg",
+        latitude: Option<f64> as "deg" = found.0.site.latitude,
         /// Longitude, east positive.
-        longitude: Option<f64> as "deg",
+        longitude: Option<f64> as "deg" = found.0.site.longitude,
         /// Elevation.
-        elevation: Option<f64> as "m",
+        elevation: Option<f64> as "m" = found.0.site.elevation,
         /// Mean velocity of shear waves in the upper 30 m.
-        vs30: Option<f64> as "m/s",
+        vs30: Option<f64> as "m/s" = found.0.site.vs30,
         /// Samples.
-        samples: usize,
+        samples: usize = found.0.acceleration.len(),
         /// Time between two samples.
-        time_step: f64 as "s",
+        time_step: f64 as "s" = found.0.time_step,
         /// From the first sample to the last.
-        duration: f64 as "s",
+        duration: f64 as "s" = found.0.duration(),
         /// Velocity at the first sample.
-        initial_velocity: f64 as "m/s",
+        initial_velocity: f64 as "m/s" = found.0.initial_velocity,
         /// Peaks that the file states, beside those of its samples.
-        stated_peaks: Vec<PeakInfo>,
+        stated_peaks: Vec<PeakInfo> = found.0.peaks.iter().map(PeakInfo::of).collect(),
         /// Where the signal stands above the noise; null where that cannot be told.
-        noise_corners: Option<CornersInfo>,
+        noise_corners: Option<CornersInfo> = found.1.as_ref().map(CornersInfo::of),
         /// Intensity measures, by name.
-        measures: BTreeMap<String, MeasureInfo>,
+        measures: BTreeMap<String, MeasureInfo> = found.2,
         /// The dominant velocity pulse, where all measures are asked for.
-        velocity_pulse: Option<PulseInfo>,
+        velocity_pulse: Option<PulseInfo> = found.3.as_ref().map(PulseInfo::of),
     }
 
     /// A peak that a file states.
-    pub(crate) struct PeakInfo of peak: &barrelstack_motion::StatedPeak {
+    struct PeakInfo of peak: &StatedPeak {
         /// Of which quantity.
         quantity: String = peak.quantity.to_string(),
         /// As stated, in SI units.
@@ -383,7 +379,7 @@ described! {
     }
 
     /// The frequencies between which the signal stands above the noise.
-    pub(crate) struct CornersInfo of found: &barrelstack_motion::Corners {
+    struct CornersInfo of found: &Corners {
         /// The lowest.
         high_pass: f64 as "Hz" = found.high_pass,
         /// The highest.
@@ -395,15 +391,15 @@ described! {
     }
 
     /// An intensity measure.
-    pub(crate) struct MeasureInfo {
+    struct MeasureInfo of found: (f64, &str) {
         /// Its value.
-        value: f64 as "as `unit` says",
+        value: f64 as "as `unit` says" = found.0,
         /// Its unit.
-        unit: String,
+        unit: String = found.1.to_owned(),
     }
 
     /// A velocity pulse.
-    pub(crate) struct PulseInfo of fit: &barrelstack_motion::PulseFit {
+    struct PulseInfo of fit: &PulseFit {
         /// Its period.
         period: f64 as "s" = fit.period,
         /// Its peak velocity.
@@ -415,15 +411,15 @@ described! {
     }
 
     /// A peak over all horizontal directions.
-    pub(crate) struct RotatedInfo {
+    struct RotatedInfo of row: &measures::Rotated {
         /// The measure.
-        measure: String,
+        measure: String = row.measure.to_string(),
         /// Its unit.
-        unit: String,
+        unit: String = row.measure.unit().to_string(),
         /// Median over the directions.
-        rotd50: f64 as "as `unit` says",
+        rotd50: f64 as "as `unit` says" = row.peak.median,
         /// Largest over the directions.
-        rotd100: f64 as "as `unit` says",
+        rotd100: f64 as "as `unit` says" = row.peak.largest,
     }
 }
 
@@ -434,48 +430,12 @@ fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Reco
         let motion = channel.sampled()?;
         let mut values = BTreeMap::new();
         for Shown { measure, .. } in shown {
-            let value =
-                MeasureInfo { value: measure.of(&motion)?, unit: measure.unit().to_string() };
+            let value = MeasureInfo::of((measure.of(&motion)?, measure.unit()));
             values.insert(measure.to_string(), value);
         }
         let pulse = all.then(|| measures::pulse(&motion).ok()).flatten();
-        channels.push(ChannelInfo {
-            name: channel.name.clone(),
-            azimuth: channel.direction.azimuth,
-            vertical: channel.is_vertical(),
-            start: channel.start.map(|start| start.to_string()),
-            station: channel.site.station.clone(),
-            sensor: channel.site.sensor.clone(),
-            latitude: channel.site.latitude,
-            longitude: channel.site.longitude,
-            elevation: channel.site.elevation,
-            vs30: channel.site.vs30,
-            samples: channel.acceleration.len(),
-            time_step: channel.time_step,
-            duration: channel.duration(),
-            initial_velocity: channel.initial_velocity,
-            stated_peaks: channel.peaks.iter().map(PeakInfo::of).collect(),
-            noise_corners: corners.ok().map(|found| CornersInfo::of(&found)),
-            measures: values,
-            velocity_pulse: pulse.map(|fit| PulseInfo::of(&fit)),
-        });
+        channels.push(ChannelInfo::of((channel, corners.ok(), values, pulse)));
     }
     let rotated = if all { measures::rotated(record).unwrap_or_default() } else { Vec::new() };
-    let rotated = rotated.iter().map(|row| RotatedInfo {
-        measure: row.measure.to_string(),
-        unit: row.measure.unit().to_string(),
-        rotd50: row.peak.median,
-        rotd100: row.peak.largest,
-    });
-    Ok(RecordInfo {
-        file: record.file.clone(),
-        format: record.format,
-        event: record.event.clone(),
-        station: record.station.clone(),
-        stage: record.stage.to_string(),
-        channels,
-        over_all_directions: rotated.collect(),
-        warnings: record.warnings.iter().map(ToString::to_string).collect(),
-        notes: record.notes.clone(),
-    })
+    Ok(RecordInfo::of((record, channels, &rotated)))
 }

@@ -6,14 +6,13 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
-    self as motion, AccelerationUnit, Component, Given, Instrument, ReadError, ReadOptions, Record,
-    Refusal, Stage, bundled, read, station_xml,
+    self as motion, AccelerationUnit, Component, Given, Instrument, Pads, Processing, ReadError,
+    ReadOptions, Record, Refusal, Stage, bundled, read, station_xml,
 };
 use clap::ValueEnum;
 
-use barrelstack_motion::{Pads, Processing};
-
 pub(super) use crate::store::plain;
+use crate::typed::typed;
 
 /// Largest file (bytes) that is read; the longest strong-motion files have a tenth of it.
 const LIMIT: u64 = 256 << 20;
@@ -52,15 +51,16 @@ pub(super) struct Input {
     recorded: Option<Recorded>,
 }
 
-/// What an instrument recorded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Recorded {
-    /// Accelerations, whatever the channel code says.
-    Acceleration,
-    /// Velocities; the sensitivity is then counts to one m/s.
-    Velocity,
-    /// Displacements; the sensitivity is then counts to one m.
-    Displacement,
+typed! {
+    /// What an instrument recorded.
+    pub(super) enum Recorded of motion::Quantity {
+        /// Accelerations, whatever the channel code says.
+        Acceleration = Self::Acceleration,
+        /// Velocities; the sensitivity is then counts to one m/s.
+        Velocity = Self::Velocity,
+        /// Displacements; the sensitivity is then counts to one m.
+        Displacement = Self::Displacement,
+    }
 }
 
 /// Which components, and what is done to them first.
@@ -105,16 +105,7 @@ impl Chain {
 impl Input {
     /// Every file by itself.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
-        let mut records = self.read_as_they_are()?;
-        for record in &mut records {
-            record.mixed = self.allow_mixed;
-        }
-        Ok(records)
-    }
-
-    fn read_as_they_are(&self) -> anyhow::Result<Vec<Record>> {
-        let options = self.options()?;
-        self.files.iter().map(|file| self.read_one(file, &options)).collect()
+        self.files.iter().map(|file| self.read_alone(file)).collect()
     }
 
     /// The record of one file.
@@ -150,16 +141,8 @@ impl Input {
                 .map(str::parse::<AccelerationUnit>)
                 .transpose()
                 .map_err(|error| anyhow!("--unit: {error}"))?,
-            time_step: self
-                .time_step
-                .as_deref()
-                .map(|text| quantity("--time-step", text, Dimension::TIME))
-                .transpose()?,
-            recorded: self.recorded.map(|recorded| match recorded {
-                Recorded::Acceleration => motion::Quantity::Acceleration,
-                Recorded::Velocity => motion::Quantity::Velocity,
-                Recorded::Displacement => motion::Quantity::Displacement,
-            }),
+            time_step: time_step(self.time_step.as_deref())?,
+            recorded: self.recorded.map(Into::into),
             ..self.sensitivities()?
         })
     }
@@ -177,11 +160,8 @@ impl Input {
                 options.sensitivity = Some(sensitivity);
             } else {
                 let channel = channel.trim().to_owned();
-                options.instruments.push(Instrument {
-                    channel,
-                    sensitivity,
-                    ..Instrument::default()
-                });
+                let known = Instrument { channel, sensitivity, ..Instrument::default() };
+                options.instruments.push(known);
             }
         }
         if let Some(path) = &self.station_xml {
@@ -319,6 +299,16 @@ pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow
     Quantity::parse_as(text, &[dimension])
         .map(|quantity| quantity.value)
         .map_err(|error| anyhow!("{option}: {error}; write for example \"{example}\""))
+}
+
+/// A step (s), if one is given.
+pub(super) fn time_step(text: Option<&str>) -> anyhow::Result<Option<f64>> {
+    text.map(|text| quantity("--time-step", text, Dimension::TIME)).transpose()
+}
+
+/// A plain number, or a quantity with its unit in SI.
+pub(super) fn number_or(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
+    text.trim().parse().or_else(|_| quantity(option, text, dimension))
 }
 
 /// Reads one file, or a bundled record if there is no file of that name.

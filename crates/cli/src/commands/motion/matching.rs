@@ -8,7 +8,6 @@ use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
     MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum, response,
 };
-use clap::ValueEnum;
 
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures;
@@ -19,6 +18,7 @@ use super::process::share;
 use super::table::{Table, number, percent};
 use super::target;
 use crate::printer;
+use crate::typed::typed;
 
 /// Arguments of `match`.
 #[derive(Debug, clap::Args)]
@@ -61,13 +61,14 @@ pub(super) struct MatchArgs {
 /// Exit status of a match that was written although it misses its target.
 const NEAR: u8 = 3;
 
-/// How the motion is changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Method {
-    /// Wavelets at the times of the peak responses; keeps the character of the motion.
-    Time,
-    /// Fourier amplitudes, phases kept; changes the character everywhere.
-    Frequency,
+typed! {
+    /// How the motion is changed.
+    enum Method of MatchMethod {
+        /// Wavelets at the times of the peak responses; keeps the character of the motion.
+        Time = Self::Time,
+        /// Fourier amplitudes, phases kept; changes the character everywhere.
+        Frequency = Self::Frequency,
+    }
 }
 
 /// Matches and writes.
@@ -78,10 +79,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     }
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
-        method: match args.method {
-            Method::Time => MatchMethod::Time,
-            Method::Frequency => MatchMethod::Frequency,
-        },
+        method: args.method.into(),
         shortest: quantity("--shortest", &args.shortest, Dimension::TIME)?,
         longest: quantity("--longest", &args.longest, Dimension::TIME)?,
         tolerance: share("--tolerance", &args.tolerance)?,
@@ -170,8 +168,8 @@ fn comparison(
 ) -> anyhow::Result<Table> {
     let place = place(args, before)?;
     let damping = spectrum.damping();
-    let head = ["period (s)", "target Sa (g)", "before (g)", "after (g)", "misfit"];
-    let mut table = Table::new(0, head.map(str::to_owned));
+    let mut table =
+        Table::new(0, ["period (s)", "target Sa (g)", "before (g)", "after (g)", "misfit"]);
     let within = |period: &&f64| (settings.shortest..=settings.longest).contains(*period);
     for period in [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0].iter().filter(within) {
         let at = |record: &Record| {

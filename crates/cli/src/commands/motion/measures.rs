@@ -92,6 +92,16 @@ pub(super) fn table(
     Ok(table)
 }
 
+/// What is always shown of every channel of a record.
+pub(super) fn usual(record: &Record) -> Result<Table, MotionError> {
+    table(&columns(record), &USUAL.iter().collect::<Vec<_>>())
+}
+
+/// The channels of a record under their names.
+pub(super) fn columns(record: &Record) -> Vec<(String, &Channel)> {
+    record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect()
+}
+
 /// Measures before and after, side by side for every channel that is in both.
 pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, MotionError> {
     let mut columns = Vec::new();
@@ -143,23 +153,20 @@ pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
     let (one, two) = record.horizontal_pair()?;
     let (first, second) = (one.sampled()?, two.sampled()?);
     let (a, b) = (first.acceleration(), second.acceleration());
+    let row = |measure, name, peak| Rotated { measure, name, peak };
     let mut rows = vec![
-        Rotated {
-            measure: IntensityMeasure::Pga,
-            name: "PGA".to_owned(),
-            peak: rotated_peak(a, b),
-        },
-        Rotated {
-            measure: IntensityMeasure::Pgv,
-            name: "PGV".to_owned(),
-            peak: rotated_peak(first.velocity(), second.velocity()),
-        },
+        row(IntensityMeasure::Pga, "PGA".to_owned(), rotated_peak(a, b)),
+        row(
+            IntensityMeasure::Pgv,
+            "PGV".to_owned(),
+            rotated_peak(first.velocity(), second.velocity()),
+        ),
     ];
     let (periods, damping) = ([0.2, 0.5, 1.0], 0.05);
     let spectrum = rotated_spectrum(one.time_step, a, b, &periods, damping)?;
     for (period, peak) in periods.into_iter().zip(spectrum) {
         let measure = IntensityMeasure::Sa { period, damping };
-        rows.push(Rotated { measure, name: format!("Sa({period:.1} s), 5 %"), peak });
+        rows.push(row(measure, format!("Sa({period:.1} s), 5 %"), peak));
     }
     Ok(rows)
 }

@@ -16,7 +16,7 @@ mod scale;
 mod select;
 mod spectrum;
 mod synth;
-mod table;
+pub(super) mod table;
 mod target;
 
 use std::process::ExitCode;

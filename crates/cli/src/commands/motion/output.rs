@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use barrelstack_motion::{Record, Stage, write};
 
 use super::folder::Source;
-use crate::store::store;
+use crate::store::{folder, store};
+use crate::typed::word;
 
 /// Where a motion goes.
 #[derive(Debug, clap::Args)]
@@ -21,12 +22,17 @@ pub(super) struct Output {
 }
 
 /// Forms that can be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Form {
-    At2,
-    Csv,
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Form {
+    /// NumPy.
     Npz,
-    Text,
+    /// Numbers between commas.
+    Csv,
+    /// The program's own, exact.
+    Txt,
+    // One component alone, so that the files of whole folders are never written as such.
+    #[value(skip)]
+    At2,
 }
 
 /// A motion file that may be written.
@@ -36,37 +42,12 @@ pub(super) struct Target {
     form: Form,
 }
 
-/// What the files of a whole folder are written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum FormName {
-    /// NumPy.
-    Npz,
-    /// Numbers between commas.
-    Csv,
-    /// The program's own, exact.
-    Txt,
-}
-
-impl FormName {
-    /// The ending of its files.
-    pub(super) fn ending(self) -> &'static str {
-        match self {
-            Self::Npz => "npz",
-            Self::Csv => "csv",
-            Self::Txt => "txt",
-        }
-    }
-
+impl Form {
     /// Writes a record into a file of this form, in a folder that is made where it is missing.
     pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
-        let path = source.beside(out, self.ending());
+        let path = source.beside(out, &word(self));
         make_folder_of(&path)?;
-        let form = match self {
-            Self::Npz => Form::Npz,
-            Self::Csv => Form::Csv,
-            Self::Txt => Form::Text,
-        };
-        Target { path, form }.write(record).map(drop)
+        Target { path, form: self }.write(record).map(drop)
     }
 }
 
@@ -78,7 +59,7 @@ impl Output {
             "at2" => Form::At2,
             "csv" => Form::Csv,
             "npz" => Form::Npz,
-            "txt" => Form::Text,
+            "txt" => Form::Txt,
             _ => bail!(
                 "{}: its ending does not say how to write it; use .at2, .csv, .npz or .txt",
                 self.output.display()
@@ -105,7 +86,7 @@ impl Target {
             }
             Form::At2 => write::at2(record)?.into_bytes(),
             Form::Csv => write::csv(record)?.into_bytes(),
-            Form::Text => write::text(record)?.into_bytes(),
+            Form::Txt => write::text(record)?.into_bytes(),
             Form::Npz => write::npz(record)?,
         };
         store(&self.path, &bytes)?;
@@ -165,8 +146,5 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
 
 /// Makes the folder of a file where it is missing.
 pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
-    let Some(folder) = path.parent() else { return Ok(()) };
-    std::fs::create_dir_all(folder)
-        .map_err(super::input::plain)
-        .with_context(|| format!("cannot make the folder {}", folder.display()))
+    path.parent().map_or(Ok(()), folder)
 }

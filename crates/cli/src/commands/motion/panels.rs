@@ -11,6 +11,7 @@ use barrelstack_report::{
     Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
 };
 
+use super::measures::columns;
 use super::output::vacant;
 use crate::store::store;
 
@@ -77,8 +78,7 @@ pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let corners = read.noise_corners(&NoiseCriterion::default());
     let corners: Vec<(f64, f64)> =
         corners.into_iter().flatten().map(|c| (c.high_pass, c.low_pass)).collect();
-    let channels: Vec<(String, &Channel)> =
-        record.channels.iter().map(|c| (c.name.clone(), c)).collect();
+    let channels = columns(record);
     rows.push(vec![
         build_up(record),
         response(&channels, Some(record), None)?,
@@ -128,21 +128,24 @@ pub(super) fn compared(
 
 /// Writes a picture; its ending says the format.
 pub(super) fn write(path: &Path, figure: &Figure) -> anyhow::Result<()> {
-    store(path, &figure.to_bytes(format(path)?, DPI))
+    store(path, &figure.to_bytes(known_format(path)?, DPI))
 }
 
 /// Refuses a picture that cannot be written.
 pub(super) fn vacant_picture(path: &Path, overwrite: bool) -> anyhow::Result<()> {
-    format(path)?;
+    known_format(path)?;
     vacant(path, overwrite)
 }
 
-fn format(path: &Path) -> anyhow::Result<Format> {
-    let ending = path.extension().unwrap_or_default();
-    Format::ALL
-        .into_iter()
-        .find(|format| ending.eq_ignore_ascii_case(format.extension()))
+fn known_format(path: &Path) -> anyhow::Result<Format> {
+    format_of(path)
         .ok_or_else(|| anyhow!("{}: figures are written as .svg, .png or .pdf", path.display()))
+}
+
+/// The format that the name of a file asks for; none for a folder.
+pub(super) fn format_of(path: &Path) -> Option<Format> {
+    let ending = path.extension()?;
+    Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
 /// The panels of a channel picked by `--of`, for records of several.
@@ -167,11 +170,11 @@ fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure
     Figure { id: id.to_owned(), caption, kind: FigureKind::Panels(Panels { title, lines, rows }) }
 }
 
-fn time() -> Axis {
+pub(super) fn time() -> Axis {
     Axis::new("time", "s")
 }
 
-fn times(channel: &Channel) -> Vec<f64> {
+pub(super) fn times(channel: &Channel) -> Vec<f64> {
     (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
 }
 
@@ -250,19 +253,27 @@ fn response(
     Ok(plot)
 }
 
+/// The axes of Fourier amplitudes.
+pub(super) fn fourier_axes() -> (Axis, Axis) {
+    (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
+}
+
+/// Fourier amplitudes of a channel.
+pub(super) fn fourier_series(name: &str, channel: &Channel) -> Series {
+    let spectrum = FourierSpectrum::new(channel.time_step, &channel.acceleration);
+    // The logarithm has no place for frequency 0.
+    Series::new(name, spectrum.frequency[1..].to_vec(), spectrum.amplitude[1..].to_vec())
+}
+
 /// Fourier amplitudes, the corners marked that the noise suggests.
 fn fourier(channels: &[(String, &Channel)], corners: &[(f64, f64)]) -> Plot {
+    let (x, y) = fourier_axes();
     let mut plot = Plot {
-        x: Axis::new("frequency", "Hz").log(),
-        y: Axis::new("Fourier amplitude", "m/s").log(),
+        x,
+        y,
+        series: channels.iter().map(|(name, channel)| fourier_series(name, channel)).collect(),
         ..Plot::default()
     };
-    for (name, channel) in channels {
-        let spectrum = FourierSpectrum::new(channel.time_step, &channel.acceleration);
-        // The logarithm has no place for frequency 0.
-        let (f, c) = (&spectrum.frequency[1..], &spectrum.amplitude[1..]);
-        plot.series.push(Series::new(name.as_str(), f.to_vec(), c.to_vec()));
-    }
     let mut known: Vec<f64> = Vec::new();
     for (corner, what) in
         corners.iter().flat_map(|(high, low)| [(*high, "high-pass"), (*low, "low-pass")])

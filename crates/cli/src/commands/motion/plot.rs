@@ -3,23 +3,23 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use barrelstack_motion::{
-    Channel, FourierSpectrum, Record, ResponseSpectrum, STANDARD_GRAVITY, arias, husid,
-    standard_periods,
+    Channel, Record, ResponseSpectrum, STANDARD_GRAVITY, arias, husid, standard_periods,
 };
 use barrelstack_report::{Axis, Band, Figure, FigureKind, Format, Plot, Series};
 use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::info;
-use super::input::{self, Chain, Choice, Input};
+use super::input::{Chain, Choice, Input};
 use super::output::{self, vacant};
-use super::panels;
+use super::panels::{self, format_of, time, times};
 use super::process::share;
 use crate::figures::FigureArgs;
 use crate::printer;
-use crate::store::store;
+use crate::store::{self, store};
+use crate::typed::word;
 
 /// Arguments of `plot`.
 #[derive(Debug, clap::Args)]
@@ -66,16 +66,10 @@ enum Kind {
 }
 
 impl Kind {
-    fn file(self) -> &'static str {
-        match self {
-            Self::Panels => "panels",
-            Self::Acceleration => "acceleration",
-            Self::Velocity => "velocity",
-            Self::Displacement => "displacement",
-            Self::Arias => "arias",
-            Self::Response => "response-spectrum",
-            Self::Fourier => "fourier-spectrum",
-        }
+    fn file(self) -> String {
+        let spectrum =
+            if matches!(self, Self::Response | Self::Fourier) { "-spectrum" } else { "" };
+        format!("{}{spectrum}", word(self))
     }
 }
 
@@ -103,9 +97,7 @@ pub(super) fn plot(args: &PlotArgs) -> anyhow::Result<ExitCode> {
         .map(|(kind, path)| Ok((figure(*kind, &record, &read, &damping)?, path.as_path())))
         .collect::<anyhow::Result<_>>()?;
     if !is_file(&args.output) {
-        std::fs::create_dir_all(&args.output)
-            .map_err(input::plain)
-            .with_context(|| format!("cannot make the folder {}", args.output.display()))?;
+        store::folder(&args.output)?;
     }
     let mut lines = record.notes.clone();
     lines.push(String::new());
@@ -137,7 +129,7 @@ fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
         folder: &args.folder,
         settings: format!("plot {formats:?}, {:?}", args.choice),
         periods: None,
-        ending: Some(formats[0].extension()),
+        ending: Some(formats[0].extension().to_owned()),
     };
     let work = |source: &Source, record: &Record| {
         let chosen = args.choice.take(record, Chain::Default)?;
@@ -150,12 +142,6 @@ fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
         Ok(Worked::done(chosen))
     };
     folder::run(&batch, &work)?.tell()
-}
-
-/// The format that the name of a file asks for; None for a folder.
-fn format_of(output: &Path) -> Option<Format> {
-    let ending = output.extension()?;
-    Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
 fn is_file(output: &Path) -> bool {
@@ -220,7 +206,6 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
     for channel in &channels {
         plot.series.extend(series(kind, channel, damping)?);
     }
-    let time = || Axis::new("time", "s");
     (plot.x, plot.y) = match kind {
         Kind::Panels => (Axis::default(), Axis::default()),
         Kind::Acceleration => (time(), Axis::new("acceleration", "g")),
@@ -230,15 +215,13 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
         Kind::Response => {
             (Axis::new("period", "s").log(), Axis::new("pseudo-spectral acceleration", "g").log())
         }
-        Kind::Fourier => {
-            (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
-        }
+        Kind::Fourier => panels::fourier_axes(),
     };
     if let (Kind::Arias, Some(first)) = (kind, channels.first()) {
         plot.bands.extend(strong_part(first));
     }
     let caption = format!("{}, {}", title(record), plot.y.label);
-    Ok(Figure { id: kind.file().to_owned(), caption, kind: FigureKind::Plot(plot) })
+    Ok(Figure { id: kind.file(), caption, kind: FigureKind::Plot(plot) })
 }
 
 /// What the record is called in a caption.
@@ -263,9 +246,9 @@ fn strong_part(channel: &Channel) -> Option<Band> {
 fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<Series>> {
     let (step, a) = (channel.time_step, &channel.acceleration);
     let name = channel.name.as_str();
-    let times = || (0..a.len()).map(|k| k as f64 * step).collect::<Vec<_>>();
     let over_time = |values: &[f64], factor: f64| {
-        vec![Series::new(name, times(), values.iter().map(|value| factor * value).collect())]
+        let values = values.iter().map(|value| factor * value).collect();
+        vec![Series::new(name, times(channel), values)]
     };
     Ok(match kind {
         Kind::Panels => Vec::new(),
@@ -286,10 +269,7 @@ fn series(kind: Kind, channel: &Channel, damping: &[f64]) -> anyhow::Result<Vec<
             lines
         }
         Kind::Fourier => {
-            let spectrum = FourierSpectrum::new(step, a);
-            // The logarithm has no place for frequency 0.
-            let (f, c) = (&spectrum.frequency[1..], &spectrum.amplitude[1..]);
-            vec![Series::new(name, f.to_vec(), c.to_vec())]
+            vec![panels::fourier_series(name, channel)]
         }
     })
 }

@@ -10,12 +10,13 @@ use barrelstack_motion::{Channel, MeanRemoval, NoiseCriterion, Pads, Processing,
 use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Source, Worked};
-use super::input::{self, Chain, Input, quantity};
+use super::input::{self, Chain, Input, number_or, quantity};
 use super::measures;
-use super::output::{FormName, Output};
+use super::output::{Form, Output};
 use super::page::{self, Told};
 use super::panels;
 use crate::printer;
+use crate::typed::{typed, word};
 
 /// Arguments of `process`.
 #[derive(Debug, clap::Args)]
@@ -63,8 +64,8 @@ pub(super) struct ProcessArgs {
     #[command(flatten)]
     output: Output,
     /// What the motions of a folder are written as.
-    #[arg(long, value_enum, default_value_t = FormName::Txt)]
-    form: FormName,
+    #[arg(long, value_enum, default_value_t = Form::Txt)]
+    form: Form,
     /// Draw before and after: as panels (.png, .svg, .pdf), or as a page (.html).
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
@@ -102,44 +103,42 @@ impl FromStr for Axes {
     }
 }
 
-/// Which mean is removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Mean {
-    /// None.
-    Keep,
-    /// That of the quiet part before the first arrival.
-    PreEvent,
-    /// That of the whole record.
-    Whole,
+typed! {
+    /// Which mean is removed.
+    enum Mean of MeanRemoval {
+        /// None.
+        Keep = Self::Keep,
+        /// That of the quiet part before the first arrival.
+        PreEvent = Self::PreEvent,
+        /// That of the whole record.
+        Whole = Self::Whole,
+    }
 }
 
-/// What becomes of pads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Fate {
-    /// They stay.
-    Keep,
-    /// They are cut off.
-    Remove,
+typed! {
+    /// What becomes of pads.
+    enum Fate of Pads {
+        /// They stay.
+        Keep = Self::Kept,
+        /// They are cut off.
+        Remove = Self::Removed,
+    }
 }
 
-/// Yes or no.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Answer {
-    /// Do it.
-    Yes,
-    /// Leave it.
-    No,
+typed! {
+    /// Yes or no.
+    enum Answer of bool {
+        /// Do it.
+        Yes = true,
+        /// Leave it.
+        No = false,
+    }
 }
 
 impl ProcessArgs {
     fn chain(&self, stage: Stage) -> anyhow::Result<Processing> {
         let mut chain = self.chain.of(stage);
-        match self.mean {
-            Some(Mean::Keep) => chain.mean = MeanRemoval::Keep,
-            Some(Mean::PreEvent) => chain.mean = MeanRemoval::PreEvent,
-            Some(Mean::Whole) => chain.mean = MeanRemoval::Whole,
-            None => {}
-        }
+        chain.mean = self.mean.map_or(chain.mean, Into::into);
         chain.detrend |= self.detrend;
         if let Some(taper) = &self.taper {
             chain.taper = share("--taper", taper)?;
@@ -155,16 +154,8 @@ impl ProcessArgs {
             chain.low_pass = corner("--low-pass", text)?;
         }
         chain.order = self.order.unwrap_or(chain.order);
-        match self.pads {
-            Some(Fate::Keep) => chain.pads = Pads::Kept,
-            Some(Fate::Remove) => chain.pads = Pads::Removed,
-            None => {}
-        }
-        match self.close {
-            Some(Answer::Yes) => chain.close = true,
-            Some(Answer::No) => chain.close = false,
-            None => {}
-        }
+        chain.pads = self.pads.map_or(chain.pads, Into::into);
+        chain.close = self.close.map_or(chain.close, Into::into);
         Ok(chain)
     }
 
@@ -222,11 +213,11 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
 
 /// A share as a plain number or in percent.
 pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => bail!("{option}: `{text}` is no share; write a number such as 0.05, or 5 %"),
-        Err(_) => quantity(option, text, Dimension::NONE),
+    let value = number_or(option, text, Dimension::NONE)?;
+    if !value.is_finite() {
+        bail!("{option}: `{text}` is no share; write a number such as 0.05, or 5 %");
     }
+    Ok(value)
 }
 
 /// Processes and writes.
@@ -265,7 +256,7 @@ fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         folder: &args.folder,
         settings: format!("process to {:?}, {options:?}", args.form),
         periods: None,
-        ending: Some(args.form.ending()),
+        ending: Some(word(args.form)),
     };
     let work = |source: &Source, record: &Record| {
         let (_, after) = args.both(record)?;

@@ -22,118 +22,70 @@ pub(super) struct Size {
 #[derive(Debug, clap::Args)]
 pub(super) struct Harmonic {
     #[command(flatten)]
-    size: Size,
+    pub(super) size: Size,
     /// Number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 10.0)]
-    cycles: f64,
+    pub(super) cycles: f64,
     /// Length of the ramps at both ends in cycles; without a ramp the velocity jumps at the start.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
-    ramp_cycles: f64,
+    pub(super) ramp_cycles: f64,
 }
 
 /// Size, period and main cycles of a cycloid.
 #[derive(Debug, clap::Args)]
 pub(super) struct Repeated {
     #[command(flatten)]
-    size: Size,
+    pub(super) size: Size,
     /// Number of main cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
-    cycles: u32,
+    pub(super) cycles: u32,
 }
 
 /// Size, period and shape of a wavelet.
 #[derive(Debug, clap::Args)]
 pub(super) struct Wavelet {
     #[command(flatten)]
-    size: Size,
+    pub(super) size: Size,
     /// Width, which sets the number of cycles.
     #[arg(long, value_name = "NUMBER", default_value_t = 2.0)]
-    gamma: f64,
+    pub(super) gamma: f64,
     /// Phase.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
     phase: String,
 }
 
-/// A pulse of unit amplitude, to be scaled.
-pub(super) enum Shape<'a> {
-    /// `d = A sin(w t)` with ramps.
-    Sine(&'a Harmonic),
-    /// Half a wave of acceleration.
-    HalfSine(&'a Size),
-    /// One sine wave of acceleration.
-    OneSine(&'a Size),
-    /// One cosine wave of acceleration.
-    OneCosine(&'a Size),
-    /// Ricker wavelet.
-    Ricker(&'a Size),
-    /// Gabor wavelet.
-    Gabor(&'a Wavelet),
-    /// Forward step.
-    CycloidA(&'a Size),
-    /// Forth and back.
-    CycloidB(&'a Size),
-    /// Several cycles.
-    CycloidC(&'a Repeated),
-    /// Near-fault pulse.
-    MavroeidisPapageorgiou(&'a Wavelet),
+impl Wavelet {
+    /// The phase (rad).
+    pub(super) fn phase(&self) -> anyhow::Result<f64> {
+        quantity("--phase", &self.phase, Dimension::ANGLE)
+    }
 }
 
-impl Shape<'_> {
-    fn size(&self) -> &Size {
-        match self {
-            Self::Sine(cycles) => &cycles.size,
-            Self::HalfSine(size)
-            | Self::OneSine(size)
-            | Self::OneCosine(size)
-            | Self::Ricker(size)
-            | Self::CycloidA(size)
-            | Self::CycloidB(size) => size,
-            Self::CycloidC(cycles) => &cycles.size,
-            Self::Gabor(wavelet) | Self::MavroeidisPapageorgiou(wavelet) => &wavelet.size,
-        }
-    }
-
-    /// The pulse with the peak that was asked for.
-    pub(super) fn motion(&self, name: &str) -> anyhow::Result<GroundMotion> {
-        let size = self.size();
-        let period = quantity("--period", &size.period, Dimension::TIME)?;
+impl Size {
+    /// A pulse of unit amplitude, made with the period (s), scaled to the peak that was asked for.
+    pub(super) fn motion(
+        &self,
+        name: &str,
+        pulse: impl FnOnce(f64) -> anyhow::Result<Pulse>,
+    ) -> anyhow::Result<GroundMotion> {
+        let period = quantity("--period", &self.period, Dimension::TIME)?;
         let dimensions = [Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH];
-        let peak = Quantity::parse_as(&size.peak, &dimensions)
+        let peak = Quantity::parse_as(&self.peak, &dimensions)
             .map_err(|error| anyhow::anyhow!("--peak: {error}; write for example \"0.4 g\""))?;
-        let phase = |wavelet: &Wavelet| quantity("--phase", &wavelet.phase, Dimension::ANGLE);
-        let pulse = match self {
-            Self::Sine(c) => {
-                let (cycles, ramp_cycles) = (c.cycles, c.ramp_cycles);
-                Pulse::Sine { amplitude: 1.0, period, cycles, ramp_cycles }
-            }
-            Self::HalfSine(_) => Pulse::HalfSine { acceleration: 1.0, duration: period },
-            Self::OneSine(_) => Pulse::OneSine { acceleration: 1.0, period },
-            Self::OneCosine(_) => Pulse::OneCosine { acceleration: 1.0, period },
-            Self::Ricker(_) => Pulse::Ricker { acceleration: 1.0, period },
-            Self::Gabor(w) => {
-                Pulse::Gabor { velocity: 1.0, period, gamma: w.gamma, phase: phase(w)? }
-            }
-            Self::CycloidA(_) => Pulse::CycloidA { velocity: 1.0, period },
-            Self::CycloidB(_) => Pulse::CycloidB { velocity: 1.0, period },
-            Self::CycloidC(c) => Pulse::CycloidC { velocity: 1.0, period, cycles: c.cycles },
-            Self::MavroeidisPapageorgiou(w) => {
-                let (gamma, phase) = (w.gamma, phase(w)?);
-                Pulse::MavroeidisPapageorgiou { velocity: 1.0, period, gamma, phase }
-            }
-        };
+        let pulse = pulse(period)?;
         let measure = match peak.dimension {
             Dimension::ACCELERATION => IntensityMeasure::Pga,
             Dimension::VELOCITY => IntensityMeasure::Pgv,
             _ => IntensityMeasure::Pgd,
         };
         if peak.value <= 0.0 {
-            bail!("--peak: expected a quantity above 0, found {}", size.peak);
+            bail!("--peak: expected a quantity above 0, found {}", self.peak);
         }
         let unit = GroundMotion::from_pulse(name, pulse)?;
         // What the user asked for stands in the file, not the pulse of unit amplitude.
         let mut motion = unit.scaled(unit.scale_factor(measure, peak.value)?);
         motion.provenance =
-            vec![format!("made by formula: {name}, period {period} s, {measure} {}", size.peak)];
+            vec![format!("made by formula: {name}, period {period} s, {measure} {}", self.peak)];
         Ok(motion)
     }
 }

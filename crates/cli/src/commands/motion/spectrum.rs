@@ -11,7 +11,7 @@ use barrelstack_motion::{
 };
 
 use super::info;
-use super::input::{Chain, Choice, Input, quantity};
+use super::input::{Chain, Choice, Input, number_or};
 use super::output::vacant;
 use super::process::share;
 use super::table::{Table, number, percent};
@@ -88,12 +88,9 @@ impl Spectra {
                 .collect::<Result<Vec<_>, _>>()?;
             channels.push((channel.name.clone(), peaks));
         }
-        let rotated = if rotd {
-            let pair = record.horizontal_pair().map_err(|error| anyhow!("--rotd: {error}"))?;
-            Some(Rotated::of(pair, periods, damping)?)
-        } else {
-            None
-        };
+        let pair = rotd.then(|| record.horizontal_pair()).transpose();
+        let pair = pair.map_err(|error| anyhow!("--rotd: {error}"))?;
+        let rotated = pair.map(|pair| Rotated::of(pair, periods, damping)).transpose()?;
         Ok(Self { periods: periods.to_vec(), damping, channels, rotated })
     }
 
@@ -173,7 +170,8 @@ pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
         }
         vacant(output, args.overwrite)?;
     }
-    let given = args.periods.iter().map(|text| period(text)).collect::<Result<Vec<_>, _>>()?;
+    let period = |text: &String| number_or("--periods", text, Dimension::TIME);
+    let given = args.periods.iter().map(period).collect::<Result<Vec<_>, _>>()?;
     let or = |other: Vec<f64>| if given.is_empty() { other } else { given.clone() };
     let dampings: Vec<f64> =
         args.damping.iter().map(|text| share("--damping", text)).collect::<Result<_, _>>()?;
@@ -198,12 +196,4 @@ pub(super) fn spectrum(args: &SpectrumArgs) -> anyhow::Result<()> {
     printer::lines(lines)?;
     info::warn(&Record { stage: record.stage, ..read });
     Ok(())
-}
-
-/// A period (s), with or without its unit.
-fn period(text: &str) -> anyhow::Result<f64> {
-    match text.trim().parse::<f64>() {
-        Ok(value) => Ok(value),
-        Err(_) => quantity("--periods", text, Dimension::TIME),
-    }
 }

@@ -8,10 +8,11 @@ use barrelstack_motion::{
 };
 use clap::{Subcommand, ValueEnum};
 
-use super::input::quantity;
-use super::measures::{self, USUAL};
+use super::input::{self, quantity};
+use super::measures;
 use super::output::Output;
-use super::pulses::{Harmonic, Repeated, Shape, Size, Wavelet};
+use super::pulses::{Harmonic, Repeated, Size, Wavelet};
+use crate::typed::word;
 
 /// Arguments of `synth`.
 #[derive(Debug, clap::Args)]
@@ -80,6 +81,27 @@ struct Made<T: clap::Args> {
     kind: T,
     #[command(flatten)]
     common: Common,
+}
+
+impl Made<Size> {
+    /// Makes and writes a pulse that has a size and a period alone.
+    fn pulse(&self, name: &str, shape: impl FnOnce(f64) -> Pulse) -> anyhow::Result<()> {
+        write(&self.common, |_| self.kind.motion(name, |period| Ok(shape(period))))
+    }
+}
+
+impl Made<Wavelet> {
+    /// Makes and writes a wavelet of a period (s), a width and a phase (rad).
+    fn wavelet(
+        &self,
+        name: &str,
+        shape: impl FnOnce(f64, f64, f64) -> Pulse,
+    ) -> anyhow::Result<()> {
+        let w = &self.kind;
+        write(&self.common, |_| {
+            w.size.motion(name, |period| Ok(shape(period, w.gamma, w.phase()?)))
+        })
+    }
 }
 
 /// Soils of Der Kiureghian and Neuenhofer (1992).
@@ -254,9 +276,7 @@ impl Noise {
         let made = format!(
             "made by filtered noise (Clough and Penzien): {} soil, rms {}, {} long, rise {}, decay \
              from {} to 1/e in {}, seed {}",
-            self.soil
-                .to_possible_value()
-                .map_or_else(String::new, |soil| soil.get_name().to_owned()),
+            word(self.soil),
             self.rms,
             self.duration,
             self.rise,
@@ -297,23 +317,43 @@ impl Fault {
 
 /// Makes and writes.
 pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
-    let formula =
-        |made: &Common, name: &str, shape: &Shape<'_>| write(made, |_| shape.motion(name));
+    let (acceleration, velocity) = (1.0, 1.0);
     match &args.kind {
-        Kind::Sine(made) => formula(&made.common, "sine", &Shape::Sine(&made.kind)),
-        Kind::HalfSine(made) => formula(&made.common, "half sine", &Shape::HalfSine(&made.kind)),
-        Kind::OneSine(made) => formula(&made.common, "one sine", &Shape::OneSine(&made.kind)),
-        Kind::OneCosine(made) => formula(&made.common, "one cosine", &Shape::OneCosine(&made.kind)),
-        Kind::Ricker(made) => formula(&made.common, "Ricker", &Shape::Ricker(&made.kind)),
-        Kind::Gabor(made) => formula(&made.common, "Gabor", &Shape::Gabor(&made.kind)),
-        Kind::CycloidA(made) => formula(&made.common, "cycloid A", &Shape::CycloidA(&made.kind)),
-        Kind::CycloidB(made) => formula(&made.common, "cycloid B", &Shape::CycloidB(&made.kind)),
-        Kind::CycloidC(made) => formula(&made.common, "cycloid C", &Shape::CycloidC(&made.kind)),
-        Kind::MavroeidisPapageorgiou(made) => formula(
-            &made.common,
-            "Mavroeidis-Papageorgiou",
-            &Shape::MavroeidisPapageorgiou(&made.kind),
-        ),
+        Kind::Sine(Made { kind: c, common }) => write(common, |_| {
+            let (cycles, ramp_cycles) = (c.cycles, c.ramp_cycles);
+            let sine = |period| Ok(Pulse::Sine { amplitude: 1.0, period, cycles, ramp_cycles });
+            c.size.motion("sine", sine)
+        }),
+        Kind::HalfSine(made) => {
+            made.pulse("half sine", |duration| Pulse::HalfSine { acceleration, duration })
+        }
+        Kind::OneSine(made) => {
+            made.pulse("one sine", |period| Pulse::OneSine { acceleration, period })
+        }
+        Kind::OneCosine(made) => {
+            made.pulse("one cosine", |period| Pulse::OneCosine { acceleration, period })
+        }
+        Kind::Ricker(made) => made.pulse("Ricker", |period| Pulse::Ricker { acceleration, period }),
+        Kind::Gabor(made) => made.wavelet("Gabor", |period, gamma, phase| Pulse::Gabor {
+            velocity,
+            period,
+            gamma,
+            phase,
+        }),
+        Kind::CycloidA(made) => {
+            made.pulse("cycloid A", |period| Pulse::CycloidA { velocity, period })
+        }
+        Kind::CycloidB(made) => {
+            made.pulse("cycloid B", |period| Pulse::CycloidB { velocity, period })
+        }
+        Kind::CycloidC(Made { kind: c, common }) => write(common, |_| {
+            let cycles = c.cycles;
+            c.size.motion("cycloid C", |period| Ok(Pulse::CycloidC { velocity, period, cycles }))
+        }),
+        Kind::MavroeidisPapageorgiou(made) => made
+            .wavelet("Mavroeidis-Papageorgiou", |period, gamma, phase| {
+                Pulse::MavroeidisPapageorgiou { velocity, period, gamma, phase }
+            }),
         Kind::CloughPenzien(made) => write(&made.common, |step| made.kind.motion(step)),
         Kind::Boore(made) => write(&made.common, |step| made.kind.motion(step)),
         Kind::NearFault(made) => write(&made.common, |step| made.kind.motion(step)),
@@ -329,11 +369,7 @@ fn write(
     make: impl FnOnce(f64) -> anyhow::Result<GroundMotion>,
 ) -> anyhow::Result<()> {
     let target = common.output.prepare()?;
-    let given = common
-        .time_step
-        .as_deref()
-        .map(|text| quantity("--time-step", text, Dimension::TIME))
-        .transpose()?;
+    let given = input::time_step(common.time_step.as_deref())?;
     let motion = make(given.unwrap_or(RANDOM_STEP))?;
     let step = given.unwrap_or_else(|| motion.horizontal.natural_step());
     let mut record = Record::of_motion(&motion, step)?;
@@ -342,7 +378,6 @@ fn write(
         let turned = Channel::of_history("UP", Direction::up(), &motion.horizontal, step)?;
         record.channels = vec![turned];
     }
-    let columns: Vec<_> = record.channels.iter().map(|c| (c.name.clone(), c)).collect();
-    let table = measures::table(&columns, &USUAL.iter().collect::<Vec<_>>())?;
+    let table = measures::usual(&record)?;
     super::change::finish(&target, &record, &record, table.lines())
 }

@@ -4,7 +4,7 @@ use barrelstack_report::significant;
 
 /// A table with a header.
 #[derive(Debug, Default)]
-pub(super) struct Table {
+pub(crate) struct Table {
     rows: Vec<Vec<String>>,
     /// Columns set flush left, counted from the left.
     left: usize,
@@ -12,12 +12,12 @@ pub(super) struct Table {
 
 impl Table {
     /// An empty table; the first `left` columns are words.
-    pub(super) fn new(left: usize, header: impl IntoIterator<Item = String>) -> Self {
-        Self { rows: vec![header.into_iter().collect()], left }
+    pub(crate) fn new(left: usize, header: impl IntoIterator<Item: Into<String>>) -> Self {
+        Self { rows: vec![header.into_iter().map(Into::into).collect()], left }
     }
 
     /// One more row.
-    pub(super) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
@@ -32,7 +32,7 @@ impl Table {
     }
 
     /// The rows as lines, indented by two.
-    pub(super) fn lines(&self) -> Vec<String> {
+    pub(crate) fn lines(&self) -> Vec<String> {
         let width = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| row.get(column));
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)

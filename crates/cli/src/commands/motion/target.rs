@@ -28,52 +28,64 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
     }
 }
 
-/// A table of periods (s) and accelerations in the unit that its header states.
+/// A table of periods and accelerations.
 fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
+    let mut damping = 0.05;
+    let columns = "a period and an acceleration with a comma between";
+    let rows = rows(path, columns, "period (s), Sa (g)", |place, behind| {
+        if let Some(at) = behind.trim().strip_prefix("at ") {
+            damping = input::quantity(place, at, Dimension::NONE)?;
+        }
+        Ok(())
+    })?;
+    let points = rows.into_iter().map(|[period, acceleration]| (period, acceleration)).collect();
+    let spectrum = TargetSpectrum::Table { points, damping };
+    spectrum.check().map_err(|error| anyhow!("{}: {error}", path.display()))?;
+    Ok(spectrum)
+}
+
+/// The rows of a table of periods (s) and accelerations (m/s²), which may have further columns; the header states the
+/// unit of the accelerations, and what stands `behind` it is told with its place.
+pub(super) fn rows<const N: usize>(
+    path: &Path,
+    columns: &str,
+    header: &str,
+    mut behind: impl FnMut(&str, &str) -> anyhow::Result<()>,
+) -> anyhow::Result<Vec<[f64; N]>> {
     let bytes = input::bytes(path)?;
     let text = String::from_utf8_lossy(&bytes);
-    let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
     let mut unit = None;
-    let mut damping = 0.05;
-    let mut points = Vec::new();
+    let mut rows = Vec::new();
     for (line, row) in text.lines().enumerate() {
         let row = row.trim().trim_start_matches('\u{feff}');
         if row.is_empty() || row.starts_with('#') {
             continue;
         }
+        let place = format!("{}, line {}", path.display(), line + 1);
         let cells: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();
-        let [period, acceleration] = cells.as_slice() else {
-            bail!(
-                "{}: expected a period and an acceleration with a comma between, found {} columns",
-                place(line),
-                cells.len()
-            );
-        };
+        if cells.len() != N {
+            bail!("{place}: expected {columns}, found {} columns", cells.len());
+        }
         let Some(factor) = unit else {
-            let words = acceleration.split_once('(').and_then(|(_, rest)| rest.split_once(')'));
+            let words = cells[1].split_once('(').and_then(|(_, rest)| rest.split_once(')'));
             let stated = words.and_then(|(word, _)| word.parse::<AccelerationUnit>().ok());
-            let Some(stated) = stated.filter(|_| period.contains("(s)")) else {
+            let Some(stated) = stated.filter(|_| cells[0].contains("(s)")) else {
                 bail!(
-                    "{}: expected a header that states the units, such as \"period (s), Sa (g)\", \
-                     found \"{row}\"",
-                    place(line)
+                    "{place}: expected a header that states the units, such as \"{header}\", found \"{row}\""
                 );
             };
             unit = Some(stated.factor());
-            if let Some(at) = words.and_then(|(_, after)| after.trim().strip_prefix("at ")) {
-                damping = input::quantity(&place(line), at, Dimension::NONE)?;
-            }
+            behind(&place, words.map_or("", |(_, after)| after))?;
             continue;
         };
-        let number = |cell: &str| {
-            cell.parse::<f64>()
-                .ok()
-                .filter(|value| value.is_finite())
-                .ok_or_else(|| anyhow!("{}: expected a number, found \"{cell}\"", place(line)))
-        };
-        points.push((number(period)?, factor * number(acceleration)?));
+        let mut numbers = [0.0; N];
+        for (number, cell) in numbers.iter_mut().zip(cells) {
+            let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+            *number =
+                value.ok_or_else(|| anyhow!("{place}: expected a number, found \"{cell}\""))?;
+        }
+        numbers[1] *= factor;
+        rows.push(numbers);
     }
-    let spectrum = TargetSpectrum::Table { points, damping };
-    spectrum.check().map_err(|error| anyhow!("{}: {error}", path.display()))?;
-    Ok(spectrum)
+    Ok(rows)
 }

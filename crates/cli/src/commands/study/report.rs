@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide_folder};
 
-use crate::commands::heights::page;
+use crate::commands::page;
 use crate::printer;
-use crate::store::store;
 
 /// What the help ends with.
 const AFTER_HELP: &str = "\
@@ -48,10 +47,8 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     if args.json {
         printer::document(&decision.to_document())?;
     } else {
-        let verdict = &decision.document.verdict;
-        let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
-        printer::lines(std::iter::once(verdict.headline.clone()).chain(sentences))?;
-        printer::lines(["", &format!("page: {}", out.join("index.html").display())])?;
+        let verdict = printer::verdict(&decision.document.verdict);
+        printer::lines(verdict.into_iter().chain(page::place(out)))?;
     }
     decision.warnings.iter().for_each(|warning| printer::warning(warning));
     Ok(())
@@ -74,8 +71,5 @@ pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
 }
 
 fn write(out: &Path, decision: &Decision) -> anyhow::Result<()> {
-    page(out, &decision.html(), &decision.markdown("figures"))?;
-    let path = out.join("decision.json");
-    let text = serde_json::to_string_pretty(&decision.to_document())? + "\n";
-    store(&path, text.as_bytes())
+    page::write_both(out, "decision.json", &decision.document, &decision.to_document())
 }

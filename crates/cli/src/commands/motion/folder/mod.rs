@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
 use barrelstack_campaign::study::StudyTable;
@@ -53,10 +53,7 @@ impl FolderArgs {
         if self.periods.is_empty() {
             return Ok(PERIODS.to_vec());
         }
-        let one = |text: &String| match text.trim().parse::<f64>() {
-            Ok(value) => Ok(value),
-            Err(_) => input::quantity("--table-periods", text, Dimension::TIME),
-        };
+        let one = |text: &String| input::number_or("--table-periods", text, Dimension::TIME);
         let mut periods = self.periods.iter().map(one).collect::<Result<Vec<f64>, _>>()?;
         if let Some(wrong) = periods.iter().find(|t| !(t.is_finite() && **t > 0.0)) {
             bail!("--table-periods: expected periods above 0 s, found {wrong}");
@@ -80,7 +77,7 @@ pub(super) struct Batch<'a> {
     /// Periods (s) of the spectra; those of the arguments without.
     pub(super) periods: Option<Vec<f64>>,
     /// Ending of the file that is made of every record: what is gone is made anew.
-    pub(super) ending: Option<&'static str>,
+    pub(super) ending: Option<String>,
 }
 
 /// A record as it is to be measured, and how.
@@ -139,9 +136,7 @@ pub(super) fn run(
         Some(periods) => periods.clone(),
         None => batch.folder.periods()?,
     };
-    std::fs::create_dir_all(batch.out)
-        .map_err(input::plain)
-        .with_context(|| format!("cannot make the folder {}", batch.out.display()))?;
+    crate::store::folder(batch.out)?;
     let sources = tree::sources(&batch.input.files, batch.out)?;
     if sources.is_empty() {
         bail!("{}: there are no files", batch.input.files.join(", "));
@@ -166,8 +161,8 @@ pub(super) fn run(
         let hash = fingerprint_of(source);
         let made = |ending: &str| source.beside(batch.out, ending).exists();
         let known = journal.known(&source.record.name, hash);
-        if let Some(measured) = known.filter(|measured| !measured || batch.ending.is_none_or(made))
-        {
+        let whole = |measured: &bool| !measured || batch.ending.as_deref().is_none_or(made);
+        if let Some(measured) = known.filter(whole) {
             before.fetch_add(usize::from(measured), Ordering::Relaxed);
             return Ok(Done::Noted);
         }

@@ -3,12 +3,11 @@
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, FigureKind, Plot, Series, SeriesStyle, Table, Verdict,
-    html, markdown,
 };
 use barrelstack_selection::{Candidate, SelectionTarget};
 
 use super::set::Set;
-use crate::commands::heights;
+use crate::commands::page;
 
 /// Writes `index.html`, `index.md` and the figures.
 pub(super) fn write(
@@ -17,8 +16,7 @@ pub(super) fn write(
     candidates: &[Candidate],
     told: &str,
 ) -> anyhow::Result<()> {
-    let document = document(set, target, candidates, told);
-    heights::page(&set.args.out, &html(&document), &markdown(&document, "figures"))
+    page::write(&set.args.out, &document(set, target, candidates, told))
 }
 
 fn document(

@@ -4,11 +4,10 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
-use barrelstack_motion::AccelerationUnit;
 use barrelstack_selection::{Condition, PERIODS, SelectionTarget};
 
 use super::SelectArgs;
-use crate::commands::motion::input::{self, quantity};
+use crate::commands::motion::input::{number_or, quantity};
 use crate::commands::motion::target as code;
 
 /// The target within the periods that count.
@@ -25,13 +24,14 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
         let periods: Vec<f64> = PERIODS.into_iter().filter(|t| counts(*t)).collect();
         return Ok(SelectionTarget::of_spectrum(&spectrum, &periods)?);
     }
-    let path = Path::new(&args.target);
-    let model = Model::read(path)?;
-    let at = args.at.as_deref().map(|text| plain_time("--at", text)).transpose()?;
-    let within: Vec<usize> =
-        (0..model.periods.len()).filter(|k| counts(model.periods[*k])).collect();
-    let pick = |values: &[f64]| within.iter().map(|k| values[*k]).collect::<Vec<f64>>();
-    let (periods, median, sigma) = (pick(&model.periods), pick(&model.median), pick(&model.sigma));
+    let columns = "a period, a median and the standard deviation of ln Sa with commas between";
+    let header = "period (s), median (g), sigma";
+    let mut model = code::rows(Path::new(&args.target), columns, header, |_, _| Ok(()))?;
+    let at = args.at.as_deref().map(|text| number_or("--at", text, Dimension::TIME)).transpose()?;
+    model.retain(|[period, ..]: &[f64; 3]| counts(*period));
+    // Medians (m/s²), and standard deviations of ln Sa.
+    let [periods, median, sigma] =
+        [0, 1, 2].map(|column| model.iter().map(|row| row[column]).collect::<Vec<_>>());
     let condition = match at {
         None => None,
         Some(period) => {
@@ -55,65 +55,4 @@ pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
         }
     };
     Ok(SelectionTarget::new(&periods, &median, &sigma, condition)?)
-}
-
-/// A time as a plain number of seconds or with its unit.
-fn plain_time(option: &str, text: &str) -> anyhow::Result<f64> {
-    match text.trim().parse::<f64>() {
-        Ok(value) => Ok(value),
-        Err(_) => quantity(option, text, Dimension::TIME),
-    }
-}
-
-/// The table of a ground-motion model.
-struct Model {
-    periods: Vec<f64>,
-    /// Medians (m/s²).
-    median: Vec<f64>,
-    /// Standard deviations of ln Sa.
-    sigma: Vec<f64>,
-}
-
-impl Model {
-    fn read(path: &Path) -> anyhow::Result<Self> {
-        let bytes = input::bytes(path)?;
-        let text = String::from_utf8_lossy(&bytes);
-        let mut model = Self { periods: Vec::new(), median: Vec::new(), sigma: Vec::new() };
-        let mut unit = None;
-        for (line, row) in text.lines().enumerate() {
-            let row = row.trim().trim_start_matches('\u{feff}');
-            if row.is_empty() || row.starts_with('#') {
-                continue;
-            }
-            let place = format!("{}, line {}", path.display(), line + 1);
-            let cells: Vec<&str> = row.split([',', ';', '\t']).map(str::trim).collect();
-            let [period, median, sigma] = cells.as_slice() else {
-                bail!(
-                    "{place}: expected a period, a median and the standard deviation of ln Sa with \
-                     commas between, found {} columns",
-                    cells.len()
-                );
-            };
-            let Some(factor) = unit else {
-                let stated = median.split_once('(').and_then(|(_, rest)| rest.split_once(')'));
-                let stated = stated.and_then(|(word, _)| word.parse::<AccelerationUnit>().ok());
-                let Some(stated) = stated.filter(|_| period.contains("(s)")) else {
-                    bail!(
-                        "{place}: expected a header that states the units, such as \"period (s), median \
-                         (g), sigma\", found \"{row}\""
-                    );
-                };
-                unit = Some(stated.factor());
-                continue;
-            };
-            let number = |cell: &str| {
-                let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-                value.ok_or_else(|| anyhow!("{place}: expected a number, found \"{cell}\""))
-            };
-            model.periods.push(number(period)?);
-            model.median.push(factor * number(median)?);
-            model.sigma.push(number(sigma)?);
-        }
-        Ok(model)
-    }
 }

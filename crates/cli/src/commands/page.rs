@@ -1,0 +1,93 @@
+//! What commands share that tell the results of studies on a page.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use barrelstack_campaign::study::RunOptions;
+use barrelstack_report::{Document, html, markdown};
+use serde::Serialize;
+
+use crate::interrupt::keeps;
+use crate::lanes::LanesArgs;
+use crate::printer;
+use crate::progress::Progress;
+use crate::store::{store, writable};
+
+/// How studies are run, and how the page is told.
+#[derive(Debug, clap::Args)]
+pub(super) struct PageArgs {
+    #[command(flatten)]
+    lanes: LanesArgs,
+    /// Print one JSON document in place of the table.
+    #[arg(long)]
+    json: bool,
+    /// Show no progress.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+impl PageArgs {
+    /// Looks at the folder, and says that what was run is kept there.
+    pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
+        writable(out)?;
+        keeps(format!(
+            "what was run is kept in {}, the same command goes on from there",
+            out.display()
+        ));
+        let options = RunOptions { lanes: self.lanes.lanes, ..RunOptions::default() };
+        Ok((options, Progress::new(!self.quiet)))
+    }
+
+    /// Writes the page and the document under its name, and prints what was found.
+    pub(super) fn end(
+        &self,
+        (out, name): (&Path, &str),
+        page: &Document,
+        document: &impl Serialize,
+        mut lines: Vec<String>,
+        warnings: &[String],
+    ) -> anyhow::Result<ExitCode> {
+        // The answer is printed even where it cannot be written.
+        let written = write_both(out, name, page, document);
+        if self.json {
+            printer::document(document)?;
+        } else {
+            lines.extend(place(out));
+            printer::lines(lines)?;
+        }
+        for warning in warnings {
+            printer::warning(warning);
+        }
+        written?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Writes a page, and the document for programs under its name.
+pub(super) fn write_both(
+    out: &Path,
+    name: &str,
+    page: &Document,
+    document: &impl Serialize,
+) -> anyhow::Result<()> {
+    let json = serde_json::to_string_pretty(document)? + "\n";
+    write(out, page)?;
+    store(&out.join(name), json.as_bytes())
+}
+
+/// Writes a page as HTML and as Markdown with its figures beside it.
+pub(super) fn write(out: &Path, page: &Document) -> anyhow::Result<()> {
+    let figures = out.join("figures");
+    std::fs::create_dir_all(&figures)
+        .with_context(|| format!("cannot make {}", figures.display()))?;
+    store(&out.join("index.html"), html(page).as_bytes())?;
+    let bundle = markdown(page, "figures");
+    store(&out.join("index.md"), bundle.text.as_bytes())?;
+    bundle.files.iter().try_for_each(|file| store(&figures.join(&file.name), &file.bytes))
+}
+
+/// Where the page is, below what was found.
+pub(super) fn place(out: &Path) -> [String; 2] {
+    [String::new(), format!("page: {}", out.join("index.html").display())]
+}
