@@ -138,20 +138,11 @@ described! {
             Some(Place::Override { .. } | Place::Unknown) | None => None,
         },
         /// The override that is wrong, as typed.
-        change: Option<String> = match error.2 {
-            Some(Place::Override { text }) => Some(text.clone()),
-            Some(Place::File { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
-        },
+        change: Option<String> = if let Some(Place::Override { text }) = error.2 { Some(text.clone()) } else { None },
         /// The line, from 1.
-        line: Option<usize> = match error.2 {
-            Some(Place::File { line, .. }) => Some(*line),
-            Some(Place::Override { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
-        },
+        line: Option<usize> = if let Some(Place::File { line, .. }) = error.2 { Some(*line) } else { None },
         /// The column, in characters from 1.
-        column: Option<usize> = match error.2 {
-            Some(Place::File { column, .. }) => Some(*column),
-            Some(Place::Override { .. } | Place::Whole { .. } | Place::Unknown) | None => None,
-        },
+        column: Option<usize> = if let Some(Place::File { column, .. }) = error.2 { Some(*column) } else { None },
         /// Exit status of the program.
         status: u32 = u32::from(error.3),
     }

@@ -1,5 +1,7 @@
 //! Parsed TOML in which every key and value remembers where it was written.
 
+use std::borrow::Cow;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use toml::Spanned;
@@ -191,15 +193,12 @@ impl Sources {
     /// Parses the file with the given index.
     pub fn parse(&self, file: usize) -> Result<Table, InputError> {
         let text = &self.files[file].text;
+        let origin = |span: Range<usize>| Origin::File { file, start: span.start, end: span.end };
         let document = DeTable::parse(text).map_err(|error| {
-            let origin = error.span().map_or(Origin::Whole(file), |span| Origin::File {
-                file,
-                start: span.start,
-                end: span.end,
-            });
+            let origin = error.span().map_or(Origin::Whole(file), origin);
             self.error(origin, Problem::Syntax { message: error.message().replace('\n', ", ") })
         })?;
-        Ok(convert_table(document.get_ref(), file))
+        Ok(convert_table(document.get_ref(), &origin))
     }
 }
 
@@ -208,31 +207,13 @@ pub fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(
         |_| Node { origin, value: Value::Text(trimmed.to_owned()) },
-        |value| {
-            let mut node = convert(&value, 0);
-            set_origin(&mut node, origin);
-            node
-        },
+        |value| convert(&value, &|_| origin),
     )
 }
 
-fn set_origin(node: &mut Node, origin: Origin) {
-    node.origin = origin;
-    match &mut node.value {
-        Value::Array(items) => items.iter_mut().for_each(|item| set_origin(item, origin)),
-        Value::Table(table) => {
-            for entry in &mut table.entries {
-                entry.origin = origin;
-                set_origin(&mut entry.node, origin);
-            }
-        }
-        Value::Text(_) | Value::Integer(_) | Value::Float(_) | Value::Flag(_) | Value::Date => {}
-    }
-}
-
-fn convert(value: &Spanned<DeValue<'_>>, file: usize) -> Node {
+/// What the parser found; `origin` is that of a range of bytes.
+fn convert(value: &Spanned<DeValue<'_>>, origin: &dyn Fn(Range<usize>) -> Origin) -> Node {
     let span = value.span();
-    let origin = Origin::File { file, start: span.start, end: span.end };
     let value = match value.get_ref() {
         DeValue::String(text) => Value::Text(text.to_string()),
         DeValue::Integer(integer) => {
@@ -243,28 +224,20 @@ fn convert(value: &Spanned<DeValue<'_>>, file: usize) -> Node {
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(_) => Value::Date,
         DeValue::Array(items) => {
-            Value::Array(items.iter().map(|item| convert(item, file)).collect())
+            Value::Array(items.iter().map(|item| convert(item, origin)).collect())
         }
-        DeValue::Table(table) => Value::Table(convert_table(table, file)),
+        DeValue::Table(table) => Value::Table(convert_table(table, origin)),
     };
-    Node { origin, value }
+    Node { origin: origin(span), value }
 }
 
-fn convert_table(table: &DeTable<'_>, file: usize) -> Table {
-    let mut entries: Vec<Entry> = table
-        .iter()
-        .map(|(key, value)| {
-            let span = key.span();
-            Entry {
-                key: key.get_ref().to_string(),
-                origin: Origin::File { file, start: span.start, end: span.end },
-                node: convert(value, file),
-            }
-        })
-        .collect();
-    entries.sort_by_key(|entry| match entry.origin {
-        Origin::File { start, .. } => start,
-        Origin::Whole(_) | Origin::Override(_) | Origin::Default => 0,
-    });
-    Table { entries }
+fn convert_table(table: &DeTable<'_>, origin: &dyn Fn(Range<usize>) -> Origin) -> Table {
+    let mut written: Vec<_> = table.iter().collect();
+    written.sort_by_key(|(key, _)| key.span().start);
+    let entry = |(key, value): (&Spanned<_>, _)| Entry {
+        key: Cow::to_string(key.get_ref()),
+        origin: origin(key.span()),
+        node: convert(value, origin),
+    };
+    Table { entries: written.into_iter().map(entry).collect() }
 }

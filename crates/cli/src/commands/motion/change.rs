@@ -51,14 +51,9 @@ pub(super) struct ConvertArgs {
 pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
     if args.input.has_folder() {
         let out = args.output.output.as_path();
-        let batch = Batch {
-            input: &args.input,
-            out,
-            folder: &args.folder,
-            settings: format!("convert to {:?}, {:?}", args.form, args.choice),
-            periods: None,
-            ending: Some(word(args.form)),
-        };
+        let settings = format!("convert to {:?}, {:?}", args.form, args.choice);
+        let batch = Batch::new(&args.input, out, &args.folder, settings);
+        let batch = Batch { ending: Some(word(args.form)), ..batch };
         let work = |source: &Source, record: &Record| {
             let chosen = args.choice.take(record, Chain::None)?;
             args.form.write(source, out, &chosen)?;

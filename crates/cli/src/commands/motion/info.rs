@@ -79,14 +79,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
             "--json, --all-measures and --join are for files; the table of a folder has its own columns"
         );
     }
-    let batch = Batch {
-        input: &args.input,
-        out,
-        folder: &args.folder,
-        settings: "info".to_owned(),
-        periods: None,
-        ending: None,
-    };
+    let batch = Batch::new(&args.input, out, &args.folder, "info".to_owned());
     folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
 }
 
@@ -154,38 +147,32 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
         ]);
     }
     lines.extend(channels.lines());
-    let recorded = recorded(record);
-    if !recorded.is_empty() {
+    for table in [recorded(record), stated(record)].iter().filter(|table| !table.is_empty()) {
         lines.push(String::new());
-        lines.extend(recorded.lines());
-    }
-    let stated = stated(record);
-    if !stated.is_empty() {
-        lines.push(String::new());
-        lines.extend(stated.lines());
+        lines.extend(table.lines());
     }
     lines.push(String::new());
     lines.extend(measures::table(&measures::columns(record), shown)?.lines());
     if all {
-        let rotated = measures::rotated(record);
-        if let Err(error) = &rotated
-            && record.channels.len() > 1
-        {
-            lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
-        }
-        if let Ok(rotated) = rotated {
-            let mut table = Table::new(2, ["over all directions", "unit", "RotD50", "RotD100"]);
-            for row in rotated {
-                let (unit, factor) = measures::reading(&row.measure);
-                table.row([
-                    row.name,
-                    unit.to_owned(),
-                    number(factor * row.peak.median),
-                    number(factor * row.peak.largest),
-                ]);
+        match measures::rotated(record) {
+            Err(error) if record.channels.len() > 1 => {
+                lines.extend([String::new(), format!("  no measure over all directions: {error}")]);
             }
-            lines.push(String::new());
-            lines.extend(table.lines());
+            Err(_) => {}
+            Ok(rotated) => {
+                let mut table = Table::new(2, ["over all directions", "unit", "RotD50", "RotD100"]);
+                for row in rotated {
+                    let (unit, factor) = measures::reading(&row.measure);
+                    table.row([
+                        row.name,
+                        unit.to_owned(),
+                        number(factor * row.peak.median),
+                        number(factor * row.peak.largest),
+                    ]);
+                }
+                lines.push(String::new());
+                lines.extend(table.lines());
+            }
         }
         lines.push(String::new());
         lines.extend(measures::pulses(record).into_iter().map(|line| format!("  {line}")));
@@ -199,12 +186,8 @@ fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<Str
     }
     if !record.notes.is_empty() {
         lines.extend([String::new(), "  what was done".to_owned()]);
-        lines.extend(
-            record
-                .notes
-                .iter()
-                .map(|note| format!("    {}", note.strip_prefix("processing: ").unwrap_or(note))),
-        );
+        let step = |note: &String| note.strip_prefix("processing: ").unwrap_or(note).to_owned();
+        lines.extend(record.notes.iter().map(|note| format!("    {}", step(note))));
     }
     Ok(lines)
 }

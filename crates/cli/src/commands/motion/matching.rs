@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
-    MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum, response,
+    Channel, MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum, response,
 };
 
 use super::input::{self, Chain, Choice, Input, quantity};
@@ -74,9 +74,7 @@ typed! {
 /// Matches and writes.
 pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     let target = args.output.prepare()?;
-    if let Some(figure) = &args.figure {
-        page::vacant_figure(figure, args.output.overwrite)?;
-    }
+    page::vacant_figure(args.figure.as_deref(), args.output.overwrite)?;
     let spectrum = target::target(&args.to)?;
     let settings = Matching {
         method: args.method.into(),
@@ -87,15 +85,16 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     };
     let read = args.input.read()?;
     let before = args.choice.take(&read, Chain::Default)?;
-    let (after, missed) = matched(args, &before, &spectrum, &settings)?;
+    let place = place(args, &before)?;
+    let (after, missed) = matched(args, &before, place, &spectrum, &settings)?;
     let measured = measures::before_after(&before, &after)?;
-    let compared = comparison(args, &before, &after, &spectrum, &settings)?;
+    let compared =
+        comparison([&before, &after].map(|record| &record.channels[place]), &spectrum, &settings)?;
     let mut lines = measured.lines();
     lines.push(String::new());
     lines.extend(compared.lines());
     super::change::finish(&target, &read, &after, lines)?;
     if let Some(figure) = &args.figure {
-        let place = place(args, &before)?;
         let one = |record| panels::only(record, place);
         let drawn = panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?;
         let name = &before.channels[place].name;
@@ -112,7 +111,6 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             measured.on_page("Measures of the motion, before and after."),
         ];
         page::write(figure, &drawn, &after, Told { headline, tables })?;
-        printer::lines([format!("written: {}", figure.display())])?;
     }
     match missed {
         None => Ok(ExitCode::SUCCESS),
@@ -141,10 +139,10 @@ fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
 fn matched(
     args: &MatchArgs,
     before: &Record,
+    place: usize,
     spectrum: &TargetSpectrum,
     settings: &Matching,
 ) -> anyhow::Result<(Record, Option<String>)> {
-    let place = place(args, before)?;
     let done = before.matched(place, spectrum, &args.to, settings, args.accept_misfit);
     let (after, matched) = done.map_err(|error| match error {
         MotionError::NotConverged { .. } => anyhow!("{error}: add --accept-misfit"),
@@ -160,20 +158,16 @@ fn matched(
 
 /// Spectra before, after and wanted at some periods.
 fn comparison(
-    args: &MatchArgs,
-    before: &Record,
-    after: &Record,
+    [before, after]: [&Channel; 2],
     spectrum: &TargetSpectrum,
     settings: &Matching,
 ) -> anyhow::Result<Table> {
-    let place = place(args, before)?;
     let damping = spectrum.damping();
     let mut table =
         Table::new(0, ["period (s)", "target Sa (g)", "before (g)", "after (g)", "misfit"]);
     let within = |period: &&f64| (settings.shortest..=settings.longest).contains(*period);
     for period in [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0].iter().filter(within) {
-        let at = |record: &Record| {
-            let channel = &record.channels[place];
+        let at = |channel: &Channel| {
             response(channel.time_step, &channel.acceleration, *period, damping)
                 .map(|peaks| peaks.pseudo_acceleration)
         };

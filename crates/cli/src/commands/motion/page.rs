@@ -9,6 +9,7 @@ use barrelstack_report::{
 
 use super::output::vacant;
 use super::panels;
+use crate::printer;
 use crate::store::store;
 
 /// What a page tells beside its figures.
@@ -25,12 +26,13 @@ fn is_page(path: &Path) -> bool {
 }
 
 /// Refuses a page or a picture that cannot be written.
-pub(super) fn vacant_figure(path: &Path, overwrite: bool) -> anyhow::Result<()> {
+pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Result<()> {
+    let Some(path) = path else { return Ok(()) };
     if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
 }
 
 /// Writes the panels of a record before and after as its ending says: as a page with what is told, or
-/// as a picture.
+/// as a picture; and says where.
 pub(super) fn write(
     path: &Path,
     figure: &Figure,
@@ -38,9 +40,11 @@ pub(super) fn write(
     told: Told,
 ) -> anyhow::Result<()> {
     if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
-        return store(path, html(&document(panels, after, told)).as_bytes());
+        store(path, html(&document(panels, after, told)).as_bytes())?;
+    } else {
+        panels::write(path, figure)?;
     }
-    panels::write(path, figure)
+    printer::lines([format!("written: {}", path.display())])
 }
 
 fn document(panels: &Panels, after: &Record, told: Told) -> Document {

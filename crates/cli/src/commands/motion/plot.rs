@@ -123,14 +123,9 @@ fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
     }
     let formats = if args.formats.names_any() { args.formats.formats() } else { vec![Format::Png] };
     let out = args.output.as_path();
-    let batch = Batch {
-        input: &args.input,
-        out,
-        folder: &args.folder,
-        settings: format!("plot {formats:?}, {:?}", args.choice),
-        periods: None,
-        ending: Some(formats[0].extension().to_owned()),
-    };
+    let settings = format!("plot {formats:?}, {:?}", args.choice);
+    let batch = Batch::new(&args.input, out, &args.folder, settings);
+    let batch = Batch { ending: Some(formats[0].extension().to_owned()), ..batch };
     let work = |source: &Source, record: &Record| {
         let chosen = args.choice.take(record, Chain::Default)?;
         let figure = panels::record(&chosen, record)?;
@@ -226,10 +221,8 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
 
 /// What the record is called in a caption.
 fn title(record: &Record) -> String {
-    let parts: Vec<&str> = [record.event.as_str(), record.station.as_str()]
-        .into_iter()
-        .filter(|p| !p.is_empty())
-        .collect();
+    let mut parts = vec![record.event.as_str(), record.station.as_str()];
+    parts.retain(|part| !part.is_empty());
     if parts.is_empty() { record.file.clone() } else { parts.join(", ") }
 }
 

@@ -15,7 +15,6 @@ use super::measures;
 use super::output::{Form, Output};
 use super::page::{self, Told};
 use super::panels;
-use crate::printer;
 use crate::typed::{typed, word};
 
 /// Arguments of `process`.
@@ -136,6 +135,16 @@ typed! {
 }
 
 impl ProcessArgs {
+    /// All that decides what becomes of a record, as words.
+    fn settings(&self) -> String {
+        let Self { form, component, chain, mean, detrend, taper, .. } = self;
+        let Self { high_pass, low_pass, order, pads, close, corners, rotate, .. } = self;
+        format!(
+            "process to {form:?}, {component:?} {chain:?} {mean:?} {detrend} {taper:?} {high_pass:?} \
+             {low_pass:?} {order:?} {pads:?} {close:?} {corners:?} {rotate:?}"
+        )
+    }
+
     fn chain(&self, stage: Stage) -> anyhow::Result<Processing> {
         let mut chain = self.chain.of(stage);
         chain.mean = self.mean.map_or(chain.mean, Into::into);
@@ -226,9 +235,7 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         return folders(args);
     }
     let target = args.output.prepare()?;
-    if let Some(figure) = &args.figure {
-        page::vacant_figure(figure, args.output.overwrite)?;
-    }
+    page::vacant_figure(args.figure.as_deref(), args.output.overwrite)?;
     let read = args.input.read()?;
     let (before, after) = args.both(&read)?;
     let table = measures::before_after(&before, &after)?;
@@ -238,7 +245,6 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         let headline = "The record before and after processing.".to_owned();
         let tables = vec![table.on_page("Measures of the motion, before and after.")];
         page::write(figure, &drawn, &after, Told { headline, tables })?;
-        printer::lines([format!("written: {}", figure.display())])?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -249,31 +255,12 @@ fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
     if args.figure.is_some() {
         bail!("--figure is for one record; draw those of a folder with motion plot");
     }
-    let options = ProcessOptions(args);
-    let batch = Batch {
-        input: &args.input,
-        out,
-        folder: &args.folder,
-        settings: format!("process to {:?}, {options:?}", args.form),
-        periods: None,
-        ending: Some(word(args.form)),
-    };
+    let batch = Batch::new(&args.input, out, &args.folder, args.settings());
+    let batch = Batch { ending: Some(word(args.form)), ..batch };
     let work = |source: &Source, record: &Record| {
         let (_, after) = args.both(record)?;
         args.form.write(source, out, &after)?;
         Ok(Worked::done(after))
     };
     folder::run(&batch, &work)?.tell()
-}
-
-/// All that decides what becomes of a record, as words.
-struct ProcessOptions<'a>(&'a ProcessArgs);
-
-impl std::fmt::Debug for ProcessOptions<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let a = self.0;
-        write!(f, "{:?} {:?} {:?} {}", a.component, a.chain, a.mean, a.detrend)?;
-        write!(f, " {:?} {:?} {:?} {:?}", a.taper, a.high_pass, a.low_pass, a.order)?;
-        write!(f, " {:?} {:?} {:?} {:?}", a.pads, a.close, a.corners, a.rotate)
-    }
 }

@@ -80,6 +80,18 @@ pub(super) struct Batch<'a> {
     pub(super) ending: Option<String>,
 }
 
+impl<'a> Batch<'a> {
+    /// Of records that are measured alone, with the periods of the arguments.
+    pub(super) fn new(
+        input: &'a Input,
+        out: &'a Path,
+        folder: &'a FolderArgs,
+        settings: String,
+    ) -> Self {
+        Self { input, out, folder, settings, periods: None, ending: None }
+    }
+}
+
 /// A record as it is to be measured, and how.
 pub(super) struct Worked {
     /// The record, after what was done to it.

@@ -130,14 +130,8 @@ enum Pulses {
 pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let target = target::target(args)?;
     let periods = target.periods().to_vec();
-    let batch = Batch {
-        input: &args.input,
-        out: &args.out,
-        folder: &args.folder,
-        settings: "select".to_owned(),
-        periods: Some(periods.clone()),
-        ending: None,
-    };
+    let batch = Batch::new(&args.input, &args.out, &args.folder, "select".to_owned());
+    let batch = Batch { periods: Some(periods.clone()), ..batch };
     let found = folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?;
     let status = found.tell()?;
     if status != ExitCode::SUCCESS {
