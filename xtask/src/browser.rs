@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
-use crate::steps::cargo;
+use crate::steps::{build_program, program};
 
 /// Where the checks of report pages stand in the repository.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
@@ -59,26 +59,13 @@ impl Check {
         }
         let mut command = Command::new("node");
         command.arg(self.script).current_dir(&self.root).env("CHROMIUM", browser);
-        command.env("BARRELSTACK", self.program());
+        command.env("BARRELSTACK", program(&self.root));
         Ok(command)
-    }
-
-    /// Where [`Self::build`] leaves the program.
-    fn program(&self) -> PathBuf {
-        let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-        let target = target.unwrap_or_else(|| PathBuf::from("target"));
-        let name = format!("barrelstack{}", std::env::consts::EXE_SUFFIX);
-        self.root.join(target).join("release").join(name)
     }
 
     /// Builds the program in release.
     pub(crate) fn build(&self) -> anyhow::Result<()> {
-        let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
-        let status = Command::new(cargo()).args(build).current_dir(&self.root).status();
-        if !status.context("cargo does not start")?.success() {
-            bail!("the program does not build: see above");
-        }
-        Ok(())
+        build_program(&self.root)
     }
 
     /// Keeps the looks of all pages as they are now.

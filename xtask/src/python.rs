@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::steps::cargo;
+use crate::steps::{build_program, program, target};
 
 /// What the tests need beside the package.
 const TESTS: [&str; 15] = [
@@ -83,23 +83,14 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
         return Ok(());
     };
     // What numbers are held against; built already where the tests of the workspace ran before.
-    let built = Command::new(cargo())
-        .args(["build", "--quiet", "--release", "--package", "barrelstack-cli"])
-        .current_dir(root)
-        .status()
-        .context("cargo does not start")?;
-    if !built.success() {
-        bail!("the program was not built: see above");
-    }
+    build_program(root)?;
     checked(inside(&python).arg("docs/build.py").current_dir(root), "the site")?;
     if what == Some("site") {
         return Ok(());
     }
-    let program =
-        target(root).join("release").join(format!("barrelstack{}", std::env::consts::EXE_SUFFIX));
     let mut tests = inside(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "crates/python/tests"]);
-    tests.env("BARRELSTACK_COMMAND", program).env("MPLBACKEND", "Agg").current_dir(root);
+    tests.env("BARRELSTACK_COMMAND", program(root)).env("MPLBACKEND", "Agg").current_dir(root);
     if what != Some("heavy") {
         tests.args(["-m", "not heavy"]);
     }
@@ -165,9 +156,4 @@ fn checked(command: &mut Command, what: &str) -> anyhow::Result<()> {
         bail!("{what} failed: see above");
     }
     Ok(())
-}
-
-/// Where cargo builds.
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }

@@ -160,6 +160,27 @@ pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
+/// Where cargo builds.
+pub(crate) fn target(root: &Path) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    root.join(target.unwrap_or_else(|| PathBuf::from("target")))
+}
+
+/// Builds the program in release.
+pub(crate) fn build_program(root: &Path) -> anyhow::Result<()> {
+    let build = ["build", "--quiet", "--release", "--package", "barrelstack-cli"];
+    let status = Command::new(cargo()).args(build).current_dir(root).status();
+    if !status.context("cargo does not start")?.success() {
+        bail!("the program does not build: see above");
+    }
+    Ok(())
+}
+
+/// Where [`build_program`] leaves the program.
+pub(crate) fn program(root: &Path) -> PathBuf {
+    target(root).join("release").join(format!("barrelstack{}", std::env::consts::EXE_SUFFIX))
+}
+
 /// The root of the repository, from wherever the task is started.
 pub(crate) fn root() -> PathBuf {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));

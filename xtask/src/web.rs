@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context as _, bail, ensure};
 
 use crate::extra::OLDEST;
-use crate::steps::cargo;
+use crate::steps::{cargo, target};
 
 /// The target of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -88,12 +88,6 @@ const TITLE: &str = "barrelstack: wine barrels in earthquakes";
 /// Where the page is once it is made.
 pub(crate) fn page(root: &Path) -> PathBuf {
     target(root).join("barrelstack.html")
-}
-
-/// Where cargo builds.
-fn target(root: &Path) -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    root.join(target.unwrap_or_else(|| PathBuf::from("target")))
 }
 
 /// Where the module is once it is built.

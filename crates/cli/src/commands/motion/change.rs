@@ -81,8 +81,7 @@ pub(super) fn finish(
     let mut lines: Vec<String> = made.notes.clone();
     lines.push(String::new());
     lines.extend(measures);
-    lines.push(String::new());
-    lines.push(target.sentence());
+    lines.extend([String::new(), format!("written: {}", target.path.display())]);
     printer::lines(lines)?;
     // A motion that was processed here is raw no more.
     info::warn(&Record { stage: made.stage, ..read.clone() });

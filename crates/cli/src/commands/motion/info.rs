@@ -6,8 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use barrelstack_motion::{
-    Channel, Corners, FORMATS, NoiseCriterion, Orientation, PulseFit, Quantity, Record,
-    STANDARD_GRAVITY, Stage, StatedPeak,
+    Channel, Corners, FORMATS, NoiseCriterion, Orientation, PulseFit, Record, Stage, StatedPeak,
 };
 use barrelstack_report::described;
 
@@ -50,8 +49,7 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
     let records = args.input.read_each()?;
     let records =
         if args.input.join { vec![args.input.unite(&records)?] } else { together(&records)? };
-    let shown: Vec<&Shown> =
-        USUAL.iter().chain(if args.all_measures { FURTHER } else { &[] }).collect();
+    let shown = [USUAL, if args.all_measures { FURTHER } else { &[] }].concat();
     if args.json {
         let documents = records.iter().map(|record| document(record, &shown, args.all_measures));
         let records = documents.collect::<Result<_, _>>()?;
@@ -103,28 +101,21 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     groups.iter().map(|group| Ok(Record::gather(group)?)).collect()
 }
 
-/// What should be known of a record beside its numbers.
-fn cautions(record: &Record) -> Vec<String> {
-    let mut cautions: Vec<String> =
-        record.warnings.iter().map(|warning| format!("{}: {warning}", record.file)).collect();
+/// Tells what should be known of a record beside its numbers.
+pub(super) fn warn(record: &Record) {
+    for warning in &record.warnings {
+        printer::warning(&format!("{}: {warning}", record.file));
+    }
     if record.stage == Stage::Raw {
-        cautions.push(format!(
+        printer::warning(&format!(
             "{}: a raw record; its PGV and PGD are drift until it is processed (barrelstack motion \
              process)",
             record.file
         ));
     }
-    cautions
 }
 
-/// Prints the cautions.
-pub(super) fn warn(record: &Record) {
-    for caution in cautions(record) {
-        printer::warning(&caution);
-    }
-}
-
-fn block(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<Vec<String>> {
+fn block(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<Vec<String>> {
     let title = FORMATS.iter().find(|format| format.name == record.format);
     let mut lines: Vec<String> = record.file.split(", ").map(str::to_owned).collect();
     let mut row = |name: &str, value: &str| {
@@ -201,7 +192,7 @@ fn stage(stage: Stage) -> &'static str {
 }
 
 /// Where a channel points, in words.
-pub(super) fn direction(channel: &Channel) -> String {
+fn direction(channel: &Channel) -> String {
     match (channel.direction.azimuth, channel.direction.orientation) {
         (Some(azimuth), _) => format!("azimuth {azimuth}°"),
         (None, Some(Orientation::Vertical)) => "up".to_owned(),
@@ -260,11 +251,7 @@ fn stated(record: &Record) -> Table {
     let mut table = Table::new(3, ["channel", "stated peak", "unit", "header", "numbers", "agree"]);
     for channel in &record.channels {
         for peak in &channel.peaks {
-            let (unit, factor) = match peak.quantity {
-                Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY),
-                Quantity::Velocity => ("cm/s", 100.0),
-                Quantity::Displacement => ("cm", 100.0),
-            };
+            let (unit, factor, _) = measures::peak_reading(peak.quantity);
             table.row([
                 channel.name.clone(),
                 peak.quantity.to_string(),
@@ -406,13 +393,13 @@ described! {
     }
 }
 
-fn document(record: &Record, shown: &[&Shown], all: bool) -> anyhow::Result<RecordInfo> {
+fn document(record: &Record, shown: &[Shown], all: bool) -> anyhow::Result<RecordInfo> {
     let mut channels = Vec::new();
     let corners = record.noise_corners(&NoiseCriterion::default());
     for (channel, corners) in record.channels.iter().zip(corners) {
         let motion = channel.sampled()?;
         let mut values = BTreeMap::new();
-        for Shown { measure, .. } in shown {
+        for (_, measure) in shown {
             let value = MeasureInfo::of((measure.of(&motion)?, measure.unit()));
             values.insert(measure.to_string(), value);
         }

@@ -1,50 +1,41 @@
 //! Measures in the units that people read, and tables of them.
 
 use barrelstack_motion::{
-    Channel, IntensityMeasure, MotionError, PulseFit, Record, RotatedPeak, STANDARD_GRAVITY,
-    Sampled, dominant_pulse, rotated_peak, rotated_spectrum,
+    Channel, IntensityMeasure, MotionError, PulseFit, Quantity, Record, RotatedPeak,
+    STANDARD_GRAVITY, Sampled, dominant_pulse, rotated_peak, rotated_spectrum,
 };
 
 use super::table::{Table, number};
 
-/// A measure with the name and the unit it is shown with.
-pub(super) struct Shown {
-    /// The measure.
-    pub(super) measure: IntensityMeasure,
-    /// As printed.
-    name: &'static str,
-}
-
-const fn shown(name: &'static str, measure: IntensityMeasure) -> Shown {
-    Shown { measure, name }
-}
+/// A measure under the name that is printed.
+pub(super) type Shown = (&'static str, IntensityMeasure);
 
 /// What is always shown.
 pub(super) const USUAL: &[Shown] = &[
-    shown("PGA", IntensityMeasure::Pga),
-    shown("PGV", IntensityMeasure::Pgv),
-    shown("PGD", IntensityMeasure::Pgd),
-    shown("PGV/PGA", IntensityMeasure::PgvOverPga),
-    shown("Arias intensity", IntensityMeasure::Arias),
-    shown("CAV", IntensityMeasure::Cav),
-    shown("duration D5-75", IntensityMeasure::D5_75),
-    shown("duration D5-95", IntensityMeasure::D5_95),
-    shown("bracketed at 0.05 g", IntensityMeasure::BRACKETED),
-    shown("mean period Tm", IntensityMeasure::MeanPeriod),
+    ("PGA", IntensityMeasure::Pga),
+    ("PGV", IntensityMeasure::Pgv),
+    ("PGD", IntensityMeasure::Pgd),
+    ("PGV/PGA", IntensityMeasure::PgvOverPga),
+    ("Arias intensity", IntensityMeasure::Arias),
+    ("CAV", IntensityMeasure::Cav),
+    ("duration D5-75", IntensityMeasure::D5_75),
+    ("duration D5-95", IntensityMeasure::D5_95),
+    ("bracketed at 0.05 g", IntensityMeasure::BRACKETED),
+    ("mean period Tm", IntensityMeasure::MeanPeriod),
 ];
 
 /// What is shown in addition when all is asked for.
 pub(super) const FURTHER: &[Shown] = &[
-    shown("CAV, standardized", IntensityMeasure::CavStandardized),
-    shown("RMS acceleration", IntensityMeasure::Rms),
-    shown("Housner, 5 %", IntensityMeasure::Housner { damping: 0.05 }),
-    shown("ASI, 5 %", IntensityMeasure::Asi),
-    shown("VSI, 5 %", IntensityMeasure::Vsi),
-    shown("Fajfar index", IntensityMeasure::Fajfar),
-    shown("FIV3(1.0 s)", IntensityMeasure::Fiv3 { period: 1.0 }),
-    shown("Sa(0.2 s), 5 %", IntensityMeasure::Sa { period: 0.2, damping: 0.05 }),
-    shown("Sa(0.5 s), 5 %", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
-    shown("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
+    ("CAV, standardized", IntensityMeasure::CavStandardized),
+    ("RMS acceleration", IntensityMeasure::Rms),
+    ("Housner, 5 %", IntensityMeasure::Housner { damping: 0.05 }),
+    ("ASI, 5 %", IntensityMeasure::Asi),
+    ("VSI, 5 %", IntensityMeasure::Vsi),
+    ("Fajfar index", IntensityMeasure::Fajfar),
+    ("FIV3(1.0 s)", IntensityMeasure::Fiv3 { period: 1.0 }),
+    ("Sa(0.2 s), 5 %", IntensityMeasure::Sa { period: 0.2, damping: 0.05 }),
+    ("Sa(0.5 s), 5 %", IntensityMeasure::Sa { period: 0.5, damping: 0.05 }),
+    ("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
 ];
 
 /// The unit in which people read a measure, and how many of it are one SI unit.
@@ -69,10 +60,19 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     }
 }
 
+/// The unit in which people read a quantity, how many of it are one SI unit, and what its peak is called.
+pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static str) {
+    match quantity {
+        Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY, "PGA"),
+        Quantity::Velocity => ("cm/s", 100.0, "PGV"),
+        Quantity::Displacement => ("cm", 100.0, "PGD"),
+    }
+}
+
 /// Every measure (rows) of every column.
 pub(super) fn table(
     columns: &[(String, &Channel)],
-    measures: &[&Shown],
+    measures: &[Shown],
 ) -> Result<Table, MotionError> {
     let names = columns.iter().map(|(name, _)| name.clone());
     let head = ["measure".to_owned(), "unit".to_owned()];
@@ -81,7 +81,7 @@ pub(super) fn table(
         columns.iter().map(|(_, channel)| channel.sampled()).collect::<Result<_, _>>()?;
     let lengths = motions.iter().map(|motion| number(motion.duration()));
     table.row(["length".to_owned(), "s".to_owned()].into_iter().chain(lengths));
-    for Shown { measure, name } in measures {
+    for (name, measure) in measures {
         let (unit, factor) = reading(measure);
         let values = motions
             .iter()
@@ -94,7 +94,7 @@ pub(super) fn table(
 
 /// What is always shown of every channel of a record.
 pub(super) fn usual(record: &Record) -> Result<Table, MotionError> {
-    table(&columns(record), &USUAL.iter().collect::<Vec<_>>())
+    table(&columns(record), USUAL)
 }
 
 /// The channels of a record under their names.
@@ -111,7 +111,7 @@ pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, Mot
         }
         columns.push(("after".to_owned(), new));
     }
-    table(&columns, &USUAL.iter().collect::<Vec<_>>())
+    table(&columns, USUAL)
 }
 
 /// The dominant velocity pulse, from 0.3 to 12 s where the record allows.

@@ -38,7 +38,7 @@ pub(super) enum Form {
 /// A motion file that may be written.
 #[derive(Debug)]
 pub(super) struct Target {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     form: Form,
 }
 
@@ -96,7 +96,10 @@ impl Target {
     /// What the file does not say.
     fn losses(&self, record: &Record) -> Vec<String> {
         let mut losses = Vec::new();
-        if self.form == Form::At2 && record.stage == Stage::Raw {
+        if self.form != Form::At2 {
+            return losses;
+        }
+        if record.stage == Stage::Raw {
             losses.push(
                 "AT2 files are taken for corrected records and this one is raw: write .txt, or \
                  process it first"
@@ -105,8 +108,7 @@ impl Target {
         }
         for channel in &record.channels {
             // What rounding leaves at the edge of a pulse is no velocity.
-            let matters = channel.initial_velocity.abs() > 1e-6 * channel.pgv();
-            if matters && self.form == Form::At2 {
+            if channel.initial_velocity.abs() > 1e-6 * channel.pgv() {
                 losses.push(format!(
                     "channel {} starts with a velocity of {} cm/s, for which AT2 has no place but the \
                      title: read back, it starts from rest; .txt, .csv and .npz keep it",
@@ -116,11 +118,6 @@ impl Target {
             }
         }
         losses
-    }
-
-    /// What is printed at the end.
-    pub(super) fn sentence(&self) -> String {
-        format!("written: {}", self.path.display())
     }
 }
 

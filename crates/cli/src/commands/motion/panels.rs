@@ -4,14 +4,14 @@ use std::path::Path;
 
 use anyhow::{anyhow, bail};
 use barrelstack_motion::{
-    Channel, FourierSpectrum, NoiseCriterion, Record, ResponseSpectrum, STANDARD_GRAVITY, Sampled,
-    TargetSpectrum, husid, rotated_spectrum, standard_periods,
+    Channel, FourierSpectrum, NoiseCriterion, Quantity, Record, ResponseSpectrum, STANDARD_GRAVITY,
+    Sampled, TargetSpectrum, husid, rotated_spectrum, standard_periods,
 };
 use barrelstack_report::{
     Axis, Band, Figure, FigureKind, Format, Mark, Panels, Plot, Series, significant,
 };
 
-use super::measures::columns;
+use super::measures::{columns, peak_reading};
 use super::output::vacant;
 use crate::store::store;
 
@@ -24,40 +24,22 @@ const DPI: f64 = 96.0;
 const BEYOND: f64 = 1.5;
 
 /// The quantities of one component over time.
-#[derive(Clone, Copy)]
-enum Kind {
-    Acceleration,
-    Velocity,
-    Displacement,
+const QUANTITIES: [Quantity; 3] =
+    [Quantity::Acceleration, Quantity::Velocity, Quantity::Displacement];
+
+/// Values in the unit of reading.
+fn history(quantity: Quantity, motion: &Sampled) -> Vec<f64> {
+    let (_, factor, _) = peak_reading(quantity);
+    let values = match quantity {
+        Quantity::Acceleration => motion.acceleration(),
+        Quantity::Velocity => motion.velocity(),
+        Quantity::Displacement => motion.displacement(),
+    };
+    values.iter().map(|value| factor * value).collect()
 }
 
-impl Kind {
-    const ALL: [Self; 3] = [Self::Acceleration, Self::Velocity, Self::Displacement];
-
-    /// Name, unit, how many of it are one SI unit, and what its peak is called.
-    fn words(self) -> (&'static str, &'static str, f64, &'static str) {
-        match self {
-            Self::Acceleration => ("acceleration", "g", 1.0 / STANDARD_GRAVITY, "PGA"),
-            Self::Velocity => ("velocity", "cm/s", 100.0, "PGV"),
-            Self::Displacement => ("displacement", "cm", 100.0, "PGD"),
-        }
-    }
-
-    /// Values in the unit of reading.
-    fn values(self, motion: &Sampled) -> Vec<f64> {
-        let (_, _, factor, _) = self.words();
-        let values = match self {
-            Self::Acceleration => motion.acceleration(),
-            Self::Velocity => motion.velocity(),
-            Self::Displacement => motion.displacement(),
-        };
-        values.iter().map(|value| factor * value).collect()
-    }
-
-    fn axis(self, channel: &str) -> Axis {
-        let (name, unit, ..) = self.words();
-        Axis::new(format!("{channel}: {name}"), unit)
-    }
+fn axis(quantity: Quantity, channel: &str) -> Axis {
+    Axis::new(format!("{channel}: {quantity}"), peak_reading(quantity).0)
 }
 
 /// A record: acceleration, velocity and displacement of every component with their peaks, build-up of
@@ -67,11 +49,11 @@ pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
         let motion = channel.sampled()?;
-        let row = Kind::ALL.map(|kind| {
-            let values = kind.values(&motion);
-            let marks = peak_mark(kind, channel.time_step, &values).into_iter().collect();
+        let row = QUANTITIES.map(|quantity| {
+            let values = history(quantity, &motion);
+            let marks = peak_mark(quantity, channel.time_step, &values).into_iter().collect();
             let series = vec![Series::new("", times(channel), values)];
-            Plot { x: time(), y: kind.axis(&channel.name), series, marks, ..Plot::default() }
+            Plot { x: time(), y: axis(quantity, &channel.name), series, marks, ..Plot::default() }
         });
         rows.push(row.to_vec());
     }
@@ -104,16 +86,16 @@ pub(super) fn compared(
         let (was, is) = (old.sampled()?, new.sampled()?);
         // What is longer has pads at both ends: the recorded part begins later.
         let shift = 0.5 * (new.duration() - old.duration());
-        let row = Kind::ALL.map(|kind| {
-            let values = kind.values(&is);
-            let marks = peak_mark(kind, new.time_step, &values).into_iter().collect();
+        let row = QUANTITIES.map(|quantity| {
+            let values = history(quantity, &is);
+            let marks = peak_mark(quantity, new.time_step, &values).into_iter().collect();
             let peak = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
-            let range = matches!(kind, Kind::Velocity | Kind::Displacement)
-                .then_some([-BEYOND * peak, BEYOND * peak]);
-            let y = Axis { range, ..kind.axis(&new.name) };
+            let range =
+                (quantity != Quantity::Acceleration).then_some([-BEYOND * peak, BEYOND * peak]);
+            let y = Axis { range, ..axis(quantity, &new.name) };
             let earlier: Vec<f64> = times(old).iter().map(|t| t + shift).collect();
             let series = vec![
-                Series::new("before", earlier, kind.values(&was)),
+                Series::new("before", earlier, history(quantity, &was)),
                 Series::new("after", times(new), values),
             ];
             Plot { x: time(), y, series, marks, ..Plot::default() }
@@ -185,8 +167,8 @@ fn at_peak(values: &[f64]) -> f64 {
     (0..values.len()).reduce(larger).unwrap_or(0) as f64
 }
 
-fn peak_mark(kind: Kind, time_step: f64, values: &[f64]) -> Option<Mark> {
-    let (_, unit, _, peak) = kind.words();
+fn peak_mark(quantity: Quantity, time_step: f64, values: &[f64]) -> Option<Mark> {
+    let (unit, _, peak) = peak_reading(quantity);
     let at = time_step * at_peak(values);
     let largest = values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
     let label = format!("{peak} {} {unit} at {} s", significant(largest, 3), significant(at, 4));

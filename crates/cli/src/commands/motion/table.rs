@@ -41,11 +41,11 @@ impl Table {
         let widths: Vec<usize> = (0..columns).map(width).collect();
         let line = |row: &Vec<String>| {
             let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-                let gap = width - cell.chars().count();
+                let width = *width;
                 if column < self.left {
-                    format!("{cell}{}", " ".repeat(gap))
+                    format!("{cell:width$}")
                 } else {
-                    format!("{}{cell}", " ".repeat(gap))
+                    format!("{cell:>width$}")
                 }
             });
             format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()

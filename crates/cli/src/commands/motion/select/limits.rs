@@ -4,8 +4,6 @@ use std::str::FromStr;
 
 use barrelstack_campaign::study::StudyTable;
 
-use super::Pulses;
-
 /// A range, open where an end is left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
@@ -43,11 +41,31 @@ impl FromStr for Range {
 }
 
 /// Limits that are in force.
+#[derive(Debug, clap::Args)]
 pub(super) struct Limits {
+    /// Magnitudes, from the flatfile.
+    #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
+    /// Distances to the rupture in km, from the flatfile.
+    #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
+    /// Vs30 in m/s, from the flatfile or the header.
+    #[arg(long, value_name = "FROM..TO")]
     pub(super) vs30: Option<Range>,
-    pub(super) pulses: Pulses,
+    /// Which pulse class (Shahi and Baker 2014; Baker 2007 where there is one horizontal).
+    #[arg(long, value_enum, default_value_t = Pulses::Any)]
+    pulses: Pulses,
+}
+
+/// Which pulse class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Pulses {
+    /// All.
+    Any,
+    /// Pulse-like ones.
+    Only,
+    /// Those without a pulse.
+    None,
 }
 
 /// How many records each limit left out, and for how many it could not be told.

@@ -62,18 +62,8 @@ pub(super) struct SelectArgs {
     /// Smallest and largest factor.
     #[arg(long, value_name = "FROM..TO", default_value = "0.25..4")]
     scale: Range,
-    /// Magnitudes, from the flatfile.
-    #[arg(long, value_name = "FROM..TO")]
-    magnitude: Option<Range>,
-    /// Distances to the rupture in km, from the flatfile.
-    #[arg(long, value_name = "FROM..TO")]
-    distance: Option<Range>,
-    /// Vs30 in m/s, from the flatfile or the header.
-    #[arg(long, value_name = "FROM..TO")]
-    vs30: Option<Range>,
-    /// Which pulse class (Shahi and Baker 2014; Baker 2007 where there is one horizontal).
-    #[arg(long, value_enum, default_value_t = Pulses::Any)]
-    pulses: Pulses,
+    #[command(flatten)]
+    limits: Limits,
     /// Most records of one event.
     #[arg(long, value_name = "NUMBER")]
     most_of_event: Option<usize>,
@@ -115,17 +105,6 @@ impl Spectrum {
     }
 }
 
-/// Which pulse class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Pulses {
-    /// All.
-    Any,
-    /// Pulse-like ones.
-    Only,
-    /// Those without a pulse.
-    None,
-}
-
 /// Measures, chooses, writes.
 pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let target = target::target(args)?;
@@ -137,13 +116,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     if status != ExitCode::SUCCESS {
         return Ok(status);
     }
-    let limits = Limits {
-        magnitude: args.magnitude,
-        distance: args.distance,
-        vs30: args.vs30,
-        pulses: args.pulses,
-    };
-    let (rows, left_out) = limits.rows(&found.table);
+    let (rows, left_out) = args.limits.rows(&found.table);
     let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
     let told = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
     printer::lines([&told])?;
