@@ -25,15 +25,33 @@ const LONG: Duration = Duration::from_secs(10);
 
 /// Tells how far work is, and whether the user wants it to stop.
 pub(crate) struct Progress {
-    bar: Option<ProgressBar>,
+    bar: Bar,
     lines: Lines,
     interrupt: Interrupt,
+}
+
+/// A bar on a terminal, if one is wanted; it is taken away also where the work ends in an error.
+pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
+
+impl Bar {
+    /// Makes it where there is a terminal.
+    pub(crate) fn new(show: bool, make: impl FnOnce() -> ProgressBar) -> Self {
+        Self((show && std::io::stderr().is_terminal()).then(make))
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
 }
 
 impl Progress {
     /// Starts; shows something only when asked to.
     pub(crate) fn new(show: bool) -> Self {
-        let bar = (show && std::io::stderr().is_terminal()).then(|| {
+        let bar = Bar::new(show, || {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
             bar.set_message("getting ready");
             bar.enable_steady_tick(Duration::from_millis(100));
@@ -72,7 +90,7 @@ impl Progress {
     /// So many tries are done of a search whose length is not known.
     pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
         let words = || format!("{done} {things}");
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.bar.0 {
             bar.set_message(words());
         }
         self.lines.now_and_then(words);
@@ -80,7 +98,7 @@ impl Progress {
     }
 
     fn told(&self, done: f64, of: f64, words: impl Fn() -> String) -> ControlFlow<()> {
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
                 bar.reset_eta();
@@ -163,15 +181,6 @@ impl Lines {
             return;
         }
         told.last = Instant::now();
-    }
-}
-
-/// Takes the line away, also where the work ends in an error.
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 }
 

@@ -101,9 +101,8 @@ macro_rules! held {
 
 held! {
     [f64; 3]: Reader::triple, |writer, name, value| writer.triple(name, *value);
-    Option<[f64; 3]>: Reader::optional_triple, |writer, name, value| match *value {
-        Some(value) => writer.triple(name, value),
-        None => writer.omit(&[name]),
+    Option<[f64; 3]>: Reader::optional_triple, |writer, name, value| {
+        writer.optional(name, *value, Writer::triple);
     };
     String: Reader::text, |writer, name, value| writer.text(name, value);
     Option<String>: Reader::optional_text, |writer, name, value| {
@@ -120,10 +119,7 @@ impl<T: Declared> Held for Option<T> {
     }
 
     fn write(&self, writer: &mut Writer, name: &'static str) {
-        match self {
-            Some(value) => writer.table(name, value.write()),
-            None => writer.omit(&[name]),
-        }
+        writer.optional(name, self.as_ref().map(T::write), Writer::table);
     }
 }
 

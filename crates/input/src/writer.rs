@@ -85,12 +85,22 @@ impl Writer {
         self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
     }
 
-    /// A quantity, or nothing.
-    pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
+    /// A value as it is written where there is one, or nothing.
+    pub fn optional<T>(
+        &mut self,
+        name: &'static str,
+        value: Option<T>,
+        write: impl FnOnce(&mut Self, &'static str, T),
+    ) {
         match value {
-            Some(value) => self.quantity(name, value),
+            Some(value) => write(self, name, value),
             None => self.omit(&[name]),
         }
+    }
+
+    /// A quantity, or nothing.
+    pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
+        self.optional(name, value, Self::quantity);
     }
 
     /// A quantity, or the word in its place.
@@ -124,10 +134,7 @@ impl Writer {
 
     /// Text, or nothing.
     pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
-        match value {
-            Some(value) => self.text(name, value),
-            None => self.omit(&[name]),
-        }
+        self.optional(name, value, Self::text);
     }
 
     /// A member of a closed set.
@@ -142,16 +149,17 @@ impl Writer {
 
     /// Two quantities.
     pub fn point(&mut self, name: &'static str, value: [f64; 2]) {
-        let Kind::Point(dimension) = self.field(name).kind else {
-            panic!("field `{name}` is no point")
-        };
-        self.put(name, point(value, dimension));
+        self.list(name, value);
     }
 
     /// Three quantities.
     pub fn triple(&mut self, name: &'static str, value: [f64; 3]) {
-        let Kind::Triple(dimension) = self.field(name).kind else {
-            panic!("field `{name}` is no list of three")
+        self.list(name, value);
+    }
+
+    fn list<const N: usize>(&mut self, name: &'static str, value: [f64; N]) {
+        let (Kind::Point(dimension) | Kind::Triple(dimension)) = self.field(name).kind else {
+            panic!("field `{name}` is no list of quantities")
         };
         self.put(name, point(value, dimension));
     }
@@ -174,10 +182,8 @@ impl Writer {
         if tables.is_empty() {
             self.omit(&[name]);
         } else {
-            self.put(
-                name,
-                Value::Array(tables.into_iter().map(|t| node(Value::Table(t))).collect()),
-            );
+            let tables = tables.into_iter().map(|table| node(Value::Table(table)));
+            self.put(name, Value::Array(tables.collect()));
         }
     }
 }

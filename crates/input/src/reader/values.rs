@@ -268,10 +268,7 @@ impl Reader<'_> {
 
     /// Two quantities.
     pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
-        self.value(name, |reader, field, node| {
-            let Kind::Point(dimension) = field.kind else { reader.defined_otherwise(name) };
-            reader.read_point(name, node, dimension, field.kind)
-        })
+        self.list(name)
     }
 
     /// Two quantities.
@@ -286,8 +283,14 @@ impl Reader<'_> {
 
     /// Three quantities that may be absent.
     pub fn optional_triple(&self, name: &'static str) -> Result<Option<[f64; 3]>> {
+        self.list(name)
+    }
+
+    fn list<const N: usize>(&self, name: &'static str) -> Result<Option<[f64; N]>> {
         self.value(name, |reader, field, node| {
-            let Kind::Triple(dimension) = field.kind else { reader.defined_otherwise(name) };
+            let (Kind::Point(dimension) | Kind::Triple(dimension)) = field.kind else {
+                reader.defined_otherwise(name)
+            };
             reader.read_point(name, node, dimension, field.kind)
         })
     }

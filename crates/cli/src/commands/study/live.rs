@@ -1,6 +1,5 @@
 //! A line on the terminal while a study runs, and Ctrl-C that keeps what was done.
 
-use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
@@ -9,11 +8,11 @@ use barrelstack_campaign::study::Progress;
 use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
-use crate::progress::{Lines, style};
+use crate::progress::{Bar, Lines, style};
 
 /// Tells how far a study is, and whether the user wants it to stop.
 pub(super) struct Live {
-    bar: Option<ProgressBar>,
+    bar: Bar,
     lines: Lines,
     /// Whether the cases are a sample, so that their share of collapse means something.
     sample: bool,
@@ -24,7 +23,7 @@ pub(super) struct Live {
 impl Live {
     /// Starts; shows a line only when asked to and only on a terminal.
     pub(super) fn new(show: bool, sample: bool) -> Self {
-        let bar = (show && std::io::stderr().is_terminal()).then(|| {
+        let bar = Bar::new(show, || {
             let bar = ProgressBar::no_length();
             bar.set_style(style("{spinner} reading the motions"));
             bar.enable_steady_tick(Duration::from_millis(200));
@@ -52,7 +51,7 @@ impl Live {
     /// Shows how far it is.
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
         self.damaged.store(progress.damaged, Ordering::Relaxed);
-        if let Some(bar) = &self.bar {
+        if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style(
                     "{spinner} {bar:30} {pos} of {len} cases, {per_sec}, {eta} to go; {msg}",
@@ -64,12 +63,8 @@ impl Live {
             bar.set_length(progress.cases);
             bar.set_position(progress.before + progress.now);
             if let Some((p, [low, high])) = progress.tally.collapse().filter(|_| self.sample) {
-                bar.set_message(format!(
-                    "collapse {:.0} % ({:.0} to {:.0} %)",
-                    100.0 * p,
-                    100.0 * low,
-                    100.0 * high
-                ));
+                let [p, low, high] = [p, low, high].map(|share| 100.0 * share);
+                bar.set_message(format!("collapse {p:.0} % ({low:.0} to {high:.0} %)"));
             } else {
                 let tally = progress.tally;
                 bar.set_message(format!("{} of {} collapse", tally.collapsed, tally.judged));
@@ -80,14 +75,5 @@ impl Live {
             format!("{} of {} cases", progress.before + progress.now, progress.cases)
         });
         self.interrupt.flow()
-    }
-}
-
-/// Takes the line away, also where the study ends in an error.
-impl Drop for Live {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 }

@@ -19,7 +19,7 @@ use indicatif::ProgressBar;
 use super::input::{self, Chain, Input};
 use crate::interrupt::Interrupt;
 use crate::printer;
-use crate::progress::{self, Lines};
+use crate::progress::{Bar, Lines, style};
 use crate::store::store;
 use columns::{Found, cells};
 use journal::{Entry, Journal};
@@ -158,7 +158,10 @@ pub(super) fn run(
     let settings =
         format!("{}; {}; flatfile {fingerprint:016x}", batch.settings, batch.input.told());
     let journal = Journal::open(batch.out, &settings, &specs)?;
-    let bar = bar(!batch.folder.quiet, sources.len());
+    let bar = Bar::new(!batch.folder.quiet, || {
+        let template = "{spinner} {bar:30} {pos} of {len} records, {per_sec}, {eta} to go";
+        ProgressBar::new(sources.len() as u64).with_style(style(template))
+    });
     let lines = Lines::new(!batch.folder.quiet);
     crate::interrupt::keeps(format!(
         "what was done is in {}: the same command goes on from there",
@@ -186,12 +189,14 @@ pub(super) fn run(
         Ok(Done::Noted)
     };
     let done = pool::map(&sources, one, &|done| {
-        bar.set_position(done as u64);
+        if let Some(bar) = &bar.0 {
+            bar.set_position(done as u64);
+        }
         lines.at(done as f64, sources.len() as f64, || {
             format!("{done} of {} records", sources.len())
         });
     });
-    bar.finish_and_clear();
+    drop(bar);
     let mut table = StudyTable::empty(&specs);
     let (mut refused, mut stopped) = (Vec::new(), false);
     for (done, source) in done.into_iter().zip(&sources) {
@@ -229,19 +234,14 @@ impl Measurements {
 
     /// Tells what was done, and gives the status: 130 if it was stopped.
     pub(super) fn tell(&self) -> anyhow::Result<ExitCode> {
+        let before = (self.before > 0).then(|| format!(" ({} of them before)", self.before));
         let mut lines = vec![format!(
             "{} measured{}, {} refused",
             printer::counted(self.table.rows() as u64, "record"),
-            if self.before > 0 {
-                format!(" ({} of them before)", self.before)
-            } else {
-                String::new()
-            },
+            before.unwrap_or_default(),
             printer::counted(self.refused.len() as u64, "file")
         )];
-        for (_, reason) in self.refused.iter().take(NAMED) {
-            lines.push(format!("  {reason}"));
-        }
+        lines.extend(self.refused.iter().take(NAMED).map(|(_, reason)| format!("  {reason}")));
         if self.refused.len() > NAMED {
             lines.push(format!("  and {} more in refused.csv", self.refused.len() - NAMED));
         }
@@ -326,15 +326,6 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     let bytes = input::bytes(path)?;
     let text = String::from_utf8_lossy(&bytes);
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
-}
-
-fn bar(show: bool, records: usize) -> ProgressBar {
-    use std::io::IsTerminal as _;
-    if !(show && std::io::stderr().is_terminal()) {
-        return ProgressBar::hidden();
-    }
-    let template = "{spinner} {bar:30} {pos} of {len} records, {per_sec}, {eta} to go";
-    ProgressBar::new(records as u64).with_style(progress::style(template))
 }
 
 /// The stage in one word, raw records told as processed where they are measured so.
