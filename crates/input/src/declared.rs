@@ -14,8 +14,16 @@ pub trait Declared: Sized {
     /// Reads the fields; the caller checks what they mean together and ends the reading.
     fn read_fields(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes the fields.
+    /// Writes the fields, but those that a field brings.
     fn write_fields(&self, writer: &mut Writer);
+
+    /// Starts its table.
+    fn start(&self) -> Writer {
+        Writer::new(Self::section())
+    }
+
+    /// Writes the fields that the one which chooses brings.
+    fn write_chosen(&self, _: &mut Writer) {}
 
     /// Reads a table that has these fields only and in which every value goes with every other.
     fn read(reader: Reader<'_>) -> Result<Self, InputError> {
@@ -26,8 +34,9 @@ pub trait Declared: Sized {
 
     /// Writes a table that has these fields only.
     fn write(&self) -> Table {
-        let mut writer = Writer::new(Self::section());
+        let mut writer = self.start();
         self.write_fields(&mut writer);
+        self.write_chosen(&mut writer);
         writer.finish()
     }
 }
@@ -39,6 +48,14 @@ pub trait Held: Sized {
 
     /// Writes the field of a name.
     fn write(&self, writer: &mut Writer, name: &'static str);
+
+    /// Reads the field of a name, which is that of what is known where the file leaves it out.
+    fn read_over(reader: &Reader<'_>, name: &'static str, known: &Self) -> Result<Self, InputError>
+    where
+        Self: Clone,
+    {
+        if reader.leaves_out(name) { Ok(known.clone()) } else { Self::read(reader, name) }
+    }
 }
 
 /// A plain number, or a quantity in SI.
@@ -100,6 +117,7 @@ macro_rules! held {
 }
 
 held! {
+    [f64; 2]: Reader::point, |writer, name, value| writer.point(name, *value);
     [f64; 3]: Reader::triple, |writer, name, value| writer.triple(name, *value);
     Option<[f64; 3]>: Reader::optional_triple, |writer, name, value| {
         writer.optional(name, *value, Writer::triple);
@@ -108,8 +126,24 @@ held! {
     Option<String>: Reader::optional_text, |writer, name, value| {
         writer.optional_text(name, value.as_deref());
     };
+    [String; 2]: Reader::pair, Writer::pair;
     u32: Reader::integer, |writer, name, value| writer.integer(name, *value);
+    Option<u32>: Reader::optional_integer, |writer, name, value| {
+        writer.optional(name, *value, Writer::integer);
+    };
     bool: Reader::flag, |writer, name, value| writer.flag(name, *value);
+    Vec<[f64; 2]>: Reader::points, |writer, name, value| writer.points(name, value);
+}
+
+/// A list of tables.
+impl<T: Declared> Held for Vec<T> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        reader.sections(name)?.into_iter().map(T::read).collect()
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        writer.tables(name, self.iter().map(T::write).collect());
+    }
 }
 
 /// A table that may be absent.
@@ -123,10 +157,10 @@ impl<T: Declared> Held for Option<T> {
     }
 }
 
-/// A member of a closed set.
+/// A member of a closed set; where what is left out derives from others, the first, for the caller to correct.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.choice(name)
+        if reader.leaves_out(name) { Ok(T::NAMES[0].1) } else { reader.choice(name) }
     }
 
     fn write(&self, writer: &mut Writer, name: &'static str) {
@@ -136,6 +170,9 @@ impl<T: Named> Held for T {
 
 /// Declares a type with the table that it is read from: each field once, with its type, what it holds, what an
 /// absent one means, and its help, which is its doc comment.
+///
+/// A table whose further fields are chosen `by` one of these says so, and the type of that one is made by
+/// [`choices!`](crate::choices).
 ///
 /// ```
 /// use barrelstack_input::declared::Declared;
@@ -165,7 +202,7 @@ macro_rules! section {
         $(#[$about:meta])*
         $visible:vis struct $type:ident;
         $(#[doc = $help:literal])+
-        $seen:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)?;
+        $seen:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)? $(, by $tag:ident of $choices:expr)?;
         $(
             $(#[doc = $text:literal])+
             $field:ident: $held:ty = $kind:expr, $default:expr;
@@ -184,6 +221,7 @@ macro_rules! section {
             $(#[doc = $help])+
             $seen static $section = $name;
             $($(#[doc = $text])+ $field = $kind, $default;)*
+            $(of $choices, by $tag;)?
             $(at most one of $rivals;)?
         }
 
@@ -203,12 +241,24 @@ macro_rules! section {
             fn write_fields(&self, writer: &mut $crate::writer::Writer) {
                 $($crate::declared::Held::write(&self.$field, writer, stringify!($field));)*
             }
+
+            $(
+                fn start(&self) -> $crate::writer::Writer {
+                    let name = $crate::choices::Chosen::name(&self.$tag);
+                    $crate::writer::Writer::chosen(&$section, name)
+                }
+
+                fn write_chosen(&self, writer: &mut $crate::writer::Writer) {
+                    $crate::choices::Chosen::write_chosen(&self.$tag, writer);
+                }
+            )?
         }
     };
 }
 
 /// Declares a table that is read by hand: each field once, with what it holds, what an absent one means, and its help,
-/// which is its doc comment; then the fields that depend on one of them, and those of which at most one may be given.
+/// which is its doc comment; then the fields that depend on one of them, listed here or
+/// by [`choices!`](crate::choices), and those of which at most one may be given.
 ///
 /// ```
 /// use barrelstack_input::field::{Default, Field, Kind, Range};
@@ -249,6 +299,7 @@ macro_rules! table {
                 $($(#[doc = $own_text:literal])+ $own:ident = $own_kind:expr, $own_default:expr;)*
             } $(then [$($last:expr),+])?
         )+})?
+        $(of $choices:expr, by $chooser:ident;)?
         $(at most one of $rivals:expr;)*
     ) => {
         $(#[doc = $help])+
@@ -256,7 +307,7 @@ macro_rules! table {
             name: $name,
             help: concat!($($help),+).trim_ascii(),
             fields: &$crate::fields!($($(#[doc = $text])+ $field = $kind, $default;)*),
-            variants: $crate::table!(@option $($crate::field::Variants {
+            variants: $crate::first!($(Some($crate::field::Variants {
                 tag: stringify!($tag),
                 list: &[$($crate::field::Variant {
                     name: $variant,
@@ -267,12 +318,13 @@ macro_rules! table {
                         $(then [$($last),+])?
                     ),
                 }),+],
-            })?),
+            }),)? $(Some($crate::field::Variants {
+                tag: stringify!($chooser),
+                list: &$choices,
+            }),)? None),
             exclusive: &[$($rivals),*],
         };
     };
-    (@option) => { None };
-    (@option $value:expr) => { Some($value) };
 }
 
 /// A list of fields in the words of [`table!`](crate::table).
@@ -293,5 +345,14 @@ macro_rules! fields {
             ),)*
             $($($last,)+)?
         ]
+    };
+}
+
+/// The first of some, for what may be left out of a declaration.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! first {
+    ($first:expr $(, $other:expr)*) => {
+        $first
     };
 }

@@ -179,30 +179,6 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Declares a closed set whose members have names in files.
-///
-/// ```
-/// use barrelstack_input::field::{Named as _, names};
-///
-/// barrelstack_input::named! {
-///     /// Which way.
-///     pub enum Way { Along = "along", Across = "across" }
-/// }
-/// assert_eq!((Way::Across.name(), names::<Way>()), ("across", vec!["along", "across"]));
-/// ```
-#[macro_export]
-macro_rules! named {
-    ($(#[doc = $help:literal])+ $seen:vis enum $type:ident { $($member:ident = $name:literal),+ $(,)? }) => {
-        $(#[doc = $help])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        $seen enum $type { $(#[doc = concat!("`", $name, "` in files.")] $member),+ }
-
-        impl $crate::field::Named for $type {
-            const NAMES: &'static [(&'static str, Self)] = &[$(($name, Self::$member)),+];
-        }
-    };
-}
-
 /// The names of a closed set.
 pub fn names<T: Named>() -> Vec<&'static str> {
     T::NAMES.iter().map(|(name, _)| *name).collect()

@@ -14,6 +14,7 @@
     reason = "all that reads returns the first problem found, at its place"
 )]
 
+pub mod choices;
 pub mod declared;
 pub mod dimension;
 pub mod error;

@@ -24,7 +24,11 @@ impl Writer {
 
     /// Starts a table of a variant and writes the field that chooses it.
     pub fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
-        let name = tag.name();
+        Self::chosen(section, tag.name())
+    }
+
+    /// Starts a table of the variant of a name and writes the field that chooses it.
+    pub fn chosen(section: &'static Section, name: &'static str) -> Self {
         let variants = section.variants.as_ref();
         let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
         debug_assert!(variant.is_some(), "the section has no variant \"{name}\"");

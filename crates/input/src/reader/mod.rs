@@ -115,6 +115,18 @@ impl<'a> Reader<'a> {
         self.entry(name).is_some()
     }
 
+    /// Whether a field is left out that has no value of its own then.
+    pub fn leaves_out(&self, name: &'static str) -> bool {
+        !self.has(name)
+            && matches!(self.field(name).default, Default::Nothing | Default::Derived(_))
+    }
+
+    /// The name of the variant that the table chose.
+    pub fn chosen(&self) -> Result<&'static str> {
+        let tag = self.section.variants.as_ref().map_or("", |variants| variants.tag);
+        self.variant.map(|variant| variant.name).ok_or_else(|| self.missing(tag))
+    }
+
     /// The section as users know it.
     pub fn label(&self) -> String {
         if self.path.is_empty() {

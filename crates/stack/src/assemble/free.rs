@@ -76,18 +76,19 @@ fn element(
             None => (Assembly::GROUND, point),
         }
     };
-    let [first, second] = [0, 1].map(|end| place(&spec.between[end], spec.points[end]));
+    let [first, second] =
+        [(0, spec.at), (1, spec.to)].map(|(end, point)| place(&spec.between[end], point));
     let link =
         Link { name: spec.name.clone(), bodies: [first.0, second.0], points: [first.1, second.1] };
     let never = |force: Option<f64>| force.map_or(f64::INFINITY, |it| it * scale.force());
     let spring = |it: f64| it * scale.stiffness(1.0, false);
     let damper = |it: f64| it * scale.damping(false);
     let (stiffness, damping) = (spring(spec.stiffness), damper(spec.damping));
-    let length = match spec.law {
+    let length = match spec.kind {
         ElementLaw::Strap { length, .. } | ElementLaw::Rod { length, .. } => length,
         ElementLaw::Guide { .. } => None,
     };
-    let mut element: Element<Planar> = match spec.law {
+    let mut element: Element<Planar> = match spec.kind {
         ElementLaw::Strap { yields_at, strength, .. } => {
             let (yields_at, strength) = (never(yields_at), never(strength));
             Strap { link, length: 0.0, stiffness, damping, yields_at, strength }.into()

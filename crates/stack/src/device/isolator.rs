@@ -11,9 +11,9 @@ use barrelstack_dynamics::{
     BodyId, ContactPair, Counts, Guide, Link, Node, Nodes, Placed, Shape, Space, Vec2, math,
 };
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::field::{Default, Kind, Range, names};
 use barrelstack_input::reader::Reader;
-use barrelstack_input::{Dimension, InputError, section};
+use barrelstack_input::{Dimension, InputError, named, section};
 
 use super::{Cost, Each, Loose, Setting, Words};
 use crate::assemble::{Assembly, Builder, Draft, Outline, PartKind, Seat, Similitude, Solid};
@@ -53,20 +53,16 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// What the platform moves on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Path {
-    /// There is no isolator.
-    None,
-    /// A level path.
-    Flat,
-    /// Circular dishes.
-    Dish,
-}
-
-impl Named for Path {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("none", Self::None), ("flat", Self::Flat), ("dish", Self::Dish)];
+named! {
+    /// What the platform moves on.
+    pub enum Path {
+        /// There is no isolator.
+        None = "none",
+        /// A level path.
+        Flat = "flat",
+        /// Circular dishes.
+        Dish = "dish",
+    }
 }
 
 section! {

@@ -6,9 +6,9 @@
 
 use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::field::{Default, Kind, Range, names};
 use barrelstack_input::reader::Reader;
-use barrelstack_input::{Dimension, InputError, section};
+use barrelstack_input::{Dimension, InputError, named, section};
 
 use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
 use crate::assemble::{Builder, PartKind, Similitude};
@@ -63,18 +63,14 @@ pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String
     })
 }
 
-/// What straps tie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ties {
-    /// Every barrel to its own rack, down both of its sides.
-    BarrelsToRacks,
-    /// The same, and every rack to the rack below it, so that the levels become one block.
-    LevelsTogether,
-}
-
-impl Named for Ties {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("barrels-to-racks", Self::BarrelsToRacks), ("levels-together", Self::LevelsTogether)];
+named! {
+    /// What straps tie.
+    pub enum Ties {
+        /// Every barrel to its own rack, down both of its sides.
+        BarrelsToRacks = "barrels-to-racks",
+        /// The same, and every rack to the rack below it, so that the levels become one block.
+        LevelsTogether = "levels-together",
+    }
 }
 
 section! {

@@ -4,9 +4,9 @@
 
 use barrelstack_dynamics::{Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::field::{Default, Kind, Range, names};
 use barrelstack_input::reader::Reader;
-use barrelstack_input::{Dimension, InputError, section};
+use barrelstack_input::{Dimension, InputError, named, section};
 
 use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
 use crate::assemble::{Assembly, Builder, Outline, PartKind, Similitude};
@@ -41,36 +41,28 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// What racks are tied to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Anchor {
-    /// A wall at either end of the rack.
-    Wall,
-    /// The ceiling above both ends of the rack.
-    Ceiling,
-    /// The racks beside it on the same level.
-    Neighbors,
+named! {
+    /// What racks are tied to.
+    pub enum Anchor {
+        /// A wall at either end of the rack.
+        Wall = "wall",
+        /// The ceiling above both ends of the rack.
+        Ceiling = "ceiling",
+        /// The racks beside it on the same level.
+        Neighbors = "neighbors",
+    }
 }
 
-impl Named for Anchor {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("wall", Self::Wall), ("ceiling", Self::Ceiling), ("neighbors", Self::Neighbors)];
-}
-
-/// On which sides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// On the left.
-    Left,
-    /// On the right.
-    Right,
-    /// On both.
-    Both,
-}
-
-impl Named for Side {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("left", Self::Left), ("right", Self::Right), ("both", Self::Both)];
+named! {
+    /// On which sides.
+    pub enum Side {
+        /// On the left.
+        Left = "left",
+        /// On the right.
+        Right = "right",
+        /// On both.
+        Both = "both",
+    }
 }
 
 section! {

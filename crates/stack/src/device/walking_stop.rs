@@ -4,9 +4,9 @@
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::field::{Default, Kind, Named, Range, names};
+use barrelstack_input::field::{Default, Kind, Range, names};
 use barrelstack_input::reader::Reader;
-use barrelstack_input::{Dimension, InputError, section};
+use barrelstack_input::{Dimension, InputError, named, section};
 
 use super::{Cost, Each, LEVELS, Loose, Setting, Words, check_levels, lowest};
 use crate::assemble::{Builder, Outline, PartKind, Similitude};
@@ -45,20 +45,16 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// In which plane they hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Holds {
-    /// Along the barrels: a hook over the hoop or the end of a barrel.
-    Along,
-    /// Across the barrels: a saddle on its round, without friction.
-    Across,
-    /// Both.
-    Both,
-}
-
-impl Named for Holds {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("along", Self::Along), ("across", Self::Across), ("both", Self::Both)];
+named! {
+    /// In which plane they hold.
+    pub enum Holds {
+        /// Along the barrels: a hook over the hoop or the end of a barrel.
+        Along = "along",
+        /// Across the barrels: a saddle on its round, without friction.
+        Across = "across",
+        /// Both.
+        Both = "both",
+    }
 }
 
 section! {

@@ -2,28 +2,33 @@
 
 use std::f64::consts::PI;
 
+use barrelstack_input::declared::Held;
+use barrelstack_input::named;
+
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Field, Kind, Range, Section, names};
+use super::known::known;
 use super::reader::Reader;
 use super::stack::View;
 use super::tree::Table;
 use super::writer::Writer;
 use crate::slosh::{self, Wave};
 
-/// What the barrel holds and how the contents turn with it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fill {
-    /// Full, and the wine turns with the wood like a solid.
-    FullFrozen,
-    /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
-    /// turns only in part about a transverse axis.
-    FullFluid,
-    /// Filled in part, to [`Barrel::filled`]: waves go in it, and the wine does not turn with the wood.
-    Part,
-    /// Wood only.
-    Empty,
+named! {
+    /// What the barrel holds and how the contents turn with it.
+    pub enum Fill {
+        /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
+        /// turns only in part about a transverse axis.
+        FullFluid = "full-fluid",
+        /// Full, and the wine turns with the wood like a solid.
+        FullFrozen = "full-frozen",
+        /// Filled in part, to [`Barrel::filled`]: waves go in it, and the wine does not turn with the wood.
+        Part = "part",
+        /// Wood only.
+        Empty = "empty",
+    }
 }
 
 impl Fill {
@@ -38,34 +43,42 @@ impl Fill {
     }
 }
 
-/// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
-/// heads.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Barrel {
-    /// Catalog name the barrel was made from.
-    pub base: String,
-    /// Mass of wood and contents (kg).
-    pub mass: f64,
-    /// Mass of the wood and hoops alone (kg).
-    pub empty_mass: f64,
-    /// Length over the chimes (m).
-    pub length: f64,
-    /// Outer diameter at the bilge, the widest place (m).
-    pub bilge_diameter: f64,
-    /// Outer diameter at the heads (m).
-    pub head_diameter: f64,
-    /// Thickness of staves and heads (m).
-    pub stave_thickness: f64,
-    /// Nominal volume of the contents (m³).
-    pub capacity: f64,
-    /// Diameter of the circle that stands for the barrel in the transverse view (m).
-    pub section_diameter: f64,
-    /// Force (N) between it and a rack that its staves bear.
-    pub stave_capacity: f64,
-    /// Contents.
-    pub fill: Fill,
-    /// Share of the capacity that is filled, where it is so in part.
-    pub filled: f64,
+known! {
+    /// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
+    /// heads.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Barrel {
+        /// Catalog name the barrel was made from.
+        pub base: &'static str,
+    }
+    /// The fields of a barrel.
+    const FIELDS, after BASE;
+    /// Contents, and whether they turn with the barrel.
+    fill: Fill = Kind::Choice(names::<Fill>), Default::Value("\"full-fluid\"");
+    /// Share of the capacity that is filled, where `fill` is "part", of this barrel or of one that differs.
+    filled: f64 = Kind::Number(FILLED), Default::Value("0.9");
+    /// Mass of wood and contents.
+    mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
+        Default::Derived("the empty mass, and what of the capacity is filled times 990 kg/m^3");
+    /// Mass of wood and hoops.
+    empty_mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
+    /// Length over the chimes.
+    length: f64 = SIZE, CATALOG;
+    /// Outer diameter at the widest place.
+    bilge_diameter: f64 = SIZE, CATALOG;
+    /// Outer diameter at the heads.
+    head_diameter: f64 = SIZE, CATALOG;
+    /// Thickness of staves and heads.
+    stave_thickness: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-3, above: false, greatest: 1.0 }), CATALOG;
+    /// Nominal volume.
+    capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
+    /// Diameter of the circle that stands for the barrel in the transverse view.
+    section_diameter: f64 = SIZE, Default::Derived("that of the barrel above the rails of the rack");
+    /// Force between a barrel and a rack that its staves bear without being crushed: an assumption, white oak crushed
+    /// across its grain at 4.3 MPa (Record 1914), 10 cm long under each of two rails of 5 cm.
+    stave_capacity: f64 =
+        Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Value("\"43 kN\"");
 }
 
 impl Barrel {
@@ -249,15 +262,6 @@ fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     0.5 * thickness * (staves + heads)
 }
 
-impl Named for Fill {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("full-fluid", Self::FullFluid),
-        ("full-frozen", Self::FullFrozen),
-        ("part", Self::Part),
-        ("empty", Self::Empty),
-    ];
-}
-
 const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
@@ -265,73 +269,18 @@ const SIZE: Kind =
 /// Fuller, the surface is too small for a wave that counts; emptier, the wine is a puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
 
+const BASE: Field = Field::new(
+    "base",
+    Kind::Choice(catalog::barrel_names),
+    Default::Value("\"bordeaux-225\""),
+    "Barrel of the catalog.",
+);
+
 /// A barrel.
 pub static BARREL: Section = Section {
     name: "barrel",
     help: "A barrel of the catalog, with what differs.",
-    fields: &[
-        Field::new(
-            "base",
-            Kind::Choice(catalog::barrel_names),
-            Default::Value("\"bordeaux-225\""),
-            "Barrel of the catalog.",
-        ),
-        Field::new(
-            "fill",
-            Kind::Choice(names::<Fill>),
-            Default::Value("\"full-fluid\""),
-            "Contents, and whether they turn with the barrel.",
-        ),
-        Field::new(
-            "filled",
-            Kind::Number(FILLED),
-            Default::Value("0.9"),
-            "Share of the capacity that is filled, where `fill` is \"part\", of this barrel or of one that differs.",
-        ),
-        Field::new(
-            "mass",
-            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-            Default::Derived("the empty mass, and what of the capacity is filled times 990 kg/m^3"),
-            "Mass of wood and contents.",
-        ),
-        Field::new(
-            "empty_mass",
-            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-            CATALOG,
-            "Mass of wood and hoops.",
-        ),
-        Field::new("length", SIZE, CATALOG, "Length over the chimes."),
-        Field::new("bilge_diameter", SIZE, CATALOG, "Outer diameter at the widest place."),
-        Field::new("head_diameter", SIZE, CATALOG, "Outer diameter at the heads."),
-        Field::new(
-            "stave_thickness",
-            Kind::Quantity(
-                &[Dimension::LENGTH],
-                Range { least: 1e-3, above: false, greatest: 1.0 },
-            ),
-            CATALOG,
-            "Thickness of staves and heads.",
-        ),
-        Field::new(
-            "capacity",
-            Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)),
-            CATALOG,
-            "Nominal volume.",
-        ),
-        Field::new(
-            "section_diameter",
-            SIZE,
-            Default::Derived("that of the barrel above the rails of the rack"),
-            "Diameter of the circle that stands for the barrel in the transverse view.",
-        ),
-        Field::new(
-            "stave_capacity",
-            Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE),
-            Default::Value("\"43 kN\""),
-            "Force between a barrel and a rack that its staves bear without being crushed: an assumption, white oak \
-             crushed across its grain at 4.3 MPa (Record 1914), 10 cm long under each of two rails of 5 cm.",
-        ),
-    ],
+    fields: FIELDS,
     variants: None,
     exclusive: &[],
 };
@@ -340,27 +289,13 @@ pub static BARREL: Section = Section {
 pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel, ScenarioError> {
     let base = reader.catalog_name("base")?;
     let Some(known) = catalog::barrel(&base) else { return Err(reader.missing("base")) };
-    let fill: Fill = reader.choice("fill")?;
-    let or = |name, regular| Ok(reader.optional_quantity(name)?.unwrap_or(regular));
-    let empty_mass = or("empty_mass", known.empty_mass)?;
-    let capacity = or("capacity", known.capacity)?;
-    let filled = reader.number("filled")?;
-    let mut barrel = Barrel {
-        mass: or("mass", empty_mass + fill.mass(capacity, filled))?,
-        empty_mass,
-        length: or("length", known.length)?,
-        bilge_diameter: or("bilge_diameter", known.bilge_diameter)?,
-        head_diameter: or("head_diameter", known.head_diameter)?,
-        stave_thickness: or("stave_thickness", known.stave_thickness)?,
-        capacity,
-        section_diameter: 0.0,
-        stave_capacity: reader.quantity("stave_capacity")?,
-        fill,
-        filled,
-        base,
-    };
-    let above_rails = barrel.diameter_at(rail_half_spacing);
-    barrel.section_diameter = or("section_diameter", above_rails)?;
+    let mut barrel = Barrel::read_over(&reader, &known.barrel())?;
+    if reader.leaves_out("mass") {
+        barrel.mass = barrel.empty_mass + barrel.fill.mass(barrel.capacity, barrel.filled);
+    }
+    if reader.leaves_out("section_diameter") {
+        barrel.section_diameter = barrel.diameter_at(rail_half_spacing);
+    }
     check(&reader, &barrel)?;
     reader.finish();
     Ok(barrel)
@@ -422,17 +357,7 @@ fn check(reader: &Reader<'_>, barrel: &Barrel) -> Result<(), ScenarioError> {
 /// Writes a barrel.
 pub(super) fn write(barrel: &Barrel) -> Table {
     let mut writer = Writer::new(&BARREL);
-    writer.text("base", &barrel.base);
-    writer.choice("fill", barrel.fill);
-    writer.number("filled", barrel.filled);
-    writer.quantity("mass", barrel.mass);
-    writer.quantity("empty_mass", barrel.empty_mass);
-    writer.quantity("length", barrel.length);
-    writer.quantity("bilge_diameter", barrel.bilge_diameter);
-    writer.quantity("head_diameter", barrel.head_diameter);
-    writer.quantity("stave_thickness", barrel.stave_thickness);
-    writer.quantity("capacity", barrel.capacity);
-    writer.quantity("section_diameter", barrel.section_diameter);
-    writer.quantity("stave_capacity", barrel.stave_capacity);
+    writer.text("base", barrel.base);
+    barrel.write_fields(&mut writer);
     writer.finish()
 }

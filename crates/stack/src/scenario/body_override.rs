@@ -1,5 +1,7 @@
 //! A body of a stack that differs from the others.
 
+use barrelstack_input::named;
+
 use super::barrel::Fill;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
@@ -9,13 +11,14 @@ use super::stack::{COLUMNS, LEVELS, StackSpec};
 use super::tree::Table;
 use super::writer::Writer;
 
-/// The kind of body that an override changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StackBody {
-    /// A barrel; columns count barrels.
-    Barrel,
-    /// A rack; columns count racks.
-    Rack,
+named! {
+    /// The kind of body that an override changes.
+    pub enum StackBody {
+        /// A barrel; columns count barrels.
+        Barrel = "barrel",
+        /// A rack; columns count racks.
+        Rack = "rack",
+    }
 }
 
 /// What differs at one body of a stack.
@@ -38,11 +41,6 @@ pub struct BodyOverride {
     pub offset_x: f64,
     /// The same along the barrels, positive away, in space (m).
     pub offset_y: f64,
-}
-
-impl Named for StackBody {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("barrel", Self::Barrel), ("rack", Self::Rack)];
 }
 
 /// A body that differs.

@@ -4,6 +4,7 @@
 
 use std::f64::consts::PI;
 
+use super::barrel::{Barrel, Fill};
 use super::rack::{Cradle, Posts, Rack, RackKind, SeatContact};
 
 /// Density of wine (kg/m³).
@@ -28,6 +29,27 @@ pub struct CatalogBarrel {
     pub capacity: f64,
     /// Where the numbers come from.
     pub source: &'static str,
+}
+
+impl CatalogBarrel {
+    /// The barrel, but for what it holds and the rack that it lies on.
+    pub(super) const fn barrel(&self) -> Barrel {
+        let Self { name, length, bilge_diameter, head_diameter, stave_thickness, .. } = *self;
+        Barrel {
+            base: name,
+            fill: Fill::Empty,
+            filled: 0.0,
+            mass: self.empty_mass,
+            empty_mass: self.empty_mass,
+            length,
+            bilge_diameter,
+            head_diameter,
+            stave_thickness,
+            capacity: self.capacity,
+            section_diameter: 0.0,
+            stave_capacity: 0.0,
+        }
+    }
 }
 
 /// The barrels.

@@ -2,6 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use barrelstack_input::choices::Chosen as _;
+use barrelstack_input::declared::{Declared as _, Held};
+use barrelstack_input::section;
+
 use super::dimension::Dimension;
 use super::element::{self, FreeElement};
 use super::error::ScenarioError;
@@ -16,23 +20,31 @@ use super::writer::Writer;
 pub use super::nodes::{ChosenNode, Nodes};
 pub use super::shape::{PartShape, Shape};
 
-/// The ground of a free scene: the half-plane below a line through the origin.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ground {
-    /// Slope of the surface, positive when it rises to the right (rad).
-    pub slope: f64,
+section! {
+    /// The ground of a free scene.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Ground;
+    /// The ground: the half-plane below a line through the origin.
+    pub static GROUND = "ground";
+    /// Slope, positive when it rises to the right.
+    slope: f64 =
+        Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
     /// Label used by interfaces.
-    pub kind: String,
+    kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
-/// Viscous drag on a body, relative to the ground at rest (Candia, de la Llera and Almazán 2008,
-/// eq. 2.8).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viscous {
-    /// On the velocity of the center of mass (N·s/m).
-    pub linear: f64,
-    /// On the spin (N·m·s).
-    pub angular: f64,
+section! {
+    /// Viscous drag on a body, relative to the ground at rest.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Viscous;
+    /// Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).
+    pub static VISCOUS = "viscous";
+    /// Force per velocity of the center of mass.
+    linear: f64 =
+        Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
+    /// Moment per spin.
+    angular: f64 =
+        Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }
 
 /// One body of a free scene.
@@ -116,45 +128,6 @@ impl FreeBody {
 
 /// Most bodies of a free scene.
 const MOST_BODIES: usize = 5000;
-
-/// The ground.
-pub static GROUND: Section = Section {
-    name: "ground",
-    help: "The ground: the half-plane below a line through the origin.",
-    fields: &[
-        Field::new(
-            "slope",
-            Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)),
-            Default::Value("\"0 deg\""),
-            "Slope, positive when it rises to the right.",
-        ),
-        Field::new("kind", Kind::Text, Default::Value("\"ground\""), "Label used by interfaces."),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
-/// Viscous drag.
-pub static VISCOUS: Section = Section {
-    name: "viscous",
-    help: "Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).",
-    fields: &[
-        Field::new(
-            "linear",
-            Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE),
-            Default::Value("\"0 N s/m\""),
-            "Force per velocity of the center of mass.",
-        ),
-        Field::new(
-            "angular",
-            Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE),
-            Default::Value("\"0 N m s\""),
-            "Moment per spin.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
 
 /// A further boundary.
 pub static BOUNDARY: Section = Section {
@@ -262,7 +235,7 @@ pub static BODY: Section = Section {
 
 /// Reads the fields of a free scene from the top of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
-    let ground = read_ground(root.section("ground")?)?;
+    let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
     let mut names = BTreeSet::new();
     for reader in root.sections("body")? {
@@ -283,12 +256,6 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let interfaces = read_interfaces(root, &ground, &bodies)?;
     let elements = element::read(root, &ground, &bodies)?;
     Ok(FreeScene { ground, bodies, interfaces, elements })
-}
-
-fn read_ground(reader: Reader<'_>) -> Result<Ground, ScenarioError> {
-    let ground = Ground { slope: reader.quantity("slope")?, kind: reader.text("kind")? };
-    reader.finish();
-    Ok(ground)
 }
 
 fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError> {
@@ -318,10 +285,6 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
         );
         return Err(reader.inconsistent("center_of_mass", message));
     }
-    let viscous = match reader.optional_section("viscous")? {
-        Some(viscous) => Some(read_viscous(viscous)?),
-        None => None,
-    };
     let body = FreeBody {
         kind: reader.optional_text("kind")?.unwrap_or_else(|| name.clone()),
         name,
@@ -337,17 +300,10 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
         boundaries,
         group: reader.optional_text("group")?,
         fixed_to_ground: reader.flag("fixed_to_ground")?,
-        viscous,
+        viscous: Held::read(&reader, "viscous")?,
     };
     reader.finish();
     Ok(body)
-}
-
-fn read_viscous(reader: Reader<'_>) -> Result<Viscous, ScenarioError> {
-    let viscous =
-        Viscous { linear: reader.quantity("linear")?, angular: reader.quantity("angular")? };
-    reader.finish();
-    Ok(viscous)
 }
 
 fn read_interfaces(
@@ -425,21 +381,18 @@ fn of_kind<'a>(
 
 /// Writes the fields of a free scene at the top of the file.
 pub(super) fn write(writer: &mut Writer, scene: &FreeScene) {
-    let mut ground = Writer::new(&GROUND);
-    ground.quantity("slope", scene.ground.slope);
-    ground.text("kind", &scene.ground.kind);
-    writer.table("ground", ground.finish());
+    writer.table("ground", scene.ground.write());
     writer.tables("body", scene.bodies.iter().map(write_body).collect());
     let interfaces = scene.interfaces.iter().map(interface::write_free).collect();
     writer.tables("interface", interfaces);
-    writer.tables("element", scene.elements.iter().map(element::write).collect());
+    writer.tables("element", scene.elements.iter().map(FreeElement::write).collect());
 }
 
 fn write_boundary(boundary: &Boundary) -> Table {
     let mut writer = Writer::new(&BOUNDARY);
     writer.text("kind", &boundary.kind);
     match &boundary.shape {
-        Some(shape) => writer.table("shape", shape::write(shape)),
+        Some(shape) => writer.table("shape", shape.write_as(&SHAPE)),
         None => writer.omit(&["shape"]),
     }
     writer.table("nodes", nodes::write(&boundary.nodes));
@@ -458,21 +411,10 @@ fn write_body(body: &FreeBody) -> Table {
     writer.point("velocity", body.velocity);
     writer.quantity("spin", body.spin);
     writer.flag("fixed_to_ground", body.fixed_to_ground);
-    match &body.group {
-        Some(group) => writer.text("group", group),
-        None => writer.omit(&["group"]),
-    }
-    writer.table("shape", shape::write(&body.shape));
+    writer.optional_text("group", body.group.as_deref());
+    writer.table("shape", body.shape.write_as(&SHAPE));
     writer.table("nodes", nodes::write(&body.nodes));
     writer.tables("boundary", body.boundaries.iter().map(write_boundary).collect());
-    match body.viscous {
-        Some(viscous) => {
-            let mut inner = Writer::new(&VISCOUS);
-            inner.quantity("linear", viscous.linear);
-            inner.quantity("angular", viscous.angular);
-            writer.table("viscous", inner.finish());
-        }
-        None => writer.omit(&["viscous"]),
-    }
+    body.viscous.write(&mut writer, "viscous");
     writer.finish()
 }

@@ -1,24 +1,20 @@
 //! What no cellar can exclude and nobody knows to the last digit.
 
-use barrelstack_input::section;
+use barrelstack_input::{named, section};
 
 use super::dimension::Dimension;
-use super::field::{Default, Kind, Named, Range, names};
+use super::field::{Default, Kind, Range, names};
 
-/// What variants differ in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Imperfection {
-    /// Places and masses, which no cellar has twice.
-    Hair,
-    /// Friction and contact constants, which nobody has measured on this stack.
-    Ignorance,
-    /// Both.
-    Both,
-}
-
-impl Named for Imperfection {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("both", Self::Both), ("hair", Self::Hair), ("ignorance", Self::Ignorance)];
+named! {
+    /// What variants differ in.
+    pub enum Imperfection {
+        /// Both.
+        Both = "both",
+        /// Places and masses, which no cellar has twice.
+        Hair = "hair",
+        /// Friction and contact constants, which nobody has measured on this stack.
+        Ignorance = "ignorance",
+    }
 }
 
 const SHARE: Kind = Kind::Number(Range::between(0.0, 0.1));

@@ -42,6 +42,7 @@ pub mod element;
 pub mod free;
 pub mod imperfections;
 pub mod interface;
+mod known;
 mod load;
 pub mod nodes;
 pub mod pair;

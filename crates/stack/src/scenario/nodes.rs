@@ -1,8 +1,11 @@
 //! Where the boundary of a body of a free scene carries contact nodes.
 
+use barrelstack_input::declared::Held;
+use barrelstack_input::{named, section};
+
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Field, Kind, Range, Section, names};
 use super::reader::Reader;
 use super::shape::Shape;
 use super::tree::Table;
@@ -25,25 +28,25 @@ pub enum Nodes {
     At(Vec<ChosenNode>),
 }
 
-/// A node at a chosen place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChosenNode {
-    /// Place `[x, z]` in local coordinates, from the reference point of the shape (m).
-    pub at: [f64; 2],
-    /// Length of boundary that it stands for (m).
-    pub tributary_length: f64,
+section! {
+    /// A node at a chosen place.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct ChosenNode;
+    /// A contact node at a chosen place.
+    static NODE = "node";
+    /// Place in the body, from the reference point of the shape.
+    at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
+    /// Length of boundary that it stands for, for laws per meter of boundary.
+    tributary_length: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"1 cm\"");
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NodeRule {
-    Corners,
-    Rolling,
-    Exact,
-}
-
-impl Named for NodeRule {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("corners", Self::Corners), ("rolling", Self::Rolling), ("exact", Self::Exact)];
+named! {
+    pub(super) enum NodeRule {
+        Corners = "corners",
+        Rolling = "rolling",
+        Exact = "exact",
+    }
 }
 
 /// Most contact nodes of one body.
@@ -82,28 +85,6 @@ pub static NODES: Section = Section {
     exclusive: &[&["rule", "spacing", "count", "list"]],
 };
 
-/// A node at a chosen place.
-static NODE: Section = Section {
-    name: "node",
-    help: "A contact node at a chosen place.",
-    fields: &[
-        Field::new(
-            "at",
-            Kind::Point(Dimension::LENGTH),
-            Default::Required,
-            "Place in the body, from the reference point of the shape.",
-        ),
-        Field::new(
-            "tributary_length",
-            Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE),
-            Default::Value("\"1 cm\""),
-            "Length of boundary that it stands for, for laws per meter of boundary.",
-        ),
-    ],
-    variants: None,
-    exclusive: &[],
-};
-
 /// Reads the nodes of a boundary of this shape; without one they are at chosen places.
 pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, ScenarioError> {
     let Some(nodes) = reader.optional_section("nodes")? else {
@@ -119,14 +100,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     let rule: Option<NodeRule> = nodes.optional_choice("rule")?;
     let spacing = nodes.optional_quantity("spacing")?;
     let count = nodes.optional_integer("count")?;
-    let mut list = Vec::new();
-    for node in nodes.sections("list")? {
-        list.push(ChosenNode {
-            at: node.point("at")?,
-            tributary_length: node.quantity("tributary_length")?,
-        });
-        node.finish();
-    }
+    let list = Vec::<ChosenNode>::read(&nodes, "list")?;
     let rule = rule
         .map(|rule| match rule {
             NodeRule::Corners => Nodes::Corners,
@@ -191,15 +165,7 @@ pub(super) fn write(nodes: &Nodes) -> Table {
         Nodes::Exact => writer.choice("rule", NodeRule::Exact),
         Nodes::Spacing(spacing) => writer.quantity("spacing", *spacing),
         Nodes::Count(count) => writer.integer("count", *count),
-        Nodes::At(list) => {
-            let node = |node: &ChosenNode| {
-                let mut writer = Writer::new(&NODE);
-                writer.point("at", node.at);
-                writer.quantity("tributary_length", node.tributary_length);
-                writer.finish()
-            };
-            writer.tables("list", list.iter().map(node).collect());
-        }
+        Nodes::At(list) => list.write(&mut writer, "list"),
     }
     writer.omit(&["rule", "spacing", "count", "list"]);
     writer.finish()

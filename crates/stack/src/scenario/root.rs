@@ -1,9 +1,10 @@
 //! The top of a scenario file.
 
 use barrelstack_input::declared::Declared as _;
+use barrelstack_input::named;
 
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Section, Variant, Variants, names};
+use super::field::{Default, Field, Kind, Section, Variant, Variants, names};
 use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
@@ -16,16 +17,12 @@ use super::{
 /// Version of the scenario language.
 pub(super) const SCHEMA: u32 = 1;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum SceneKind {
-    Stack,
-    Free,
-    FreeSpatial,
-}
-
-impl Named for SceneKind {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("stack", Self::Stack), ("free", Self::Free), ("free-spatial", Self::FreeSpatial)];
+named! {
+    enum SceneKind {
+        Stack = "stack",
+        Free = "free",
+        FreeSpatial = "free-spatial",
+    }
 }
 
 /// The top of a scenario file.

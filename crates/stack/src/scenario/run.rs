@@ -1,56 +1,58 @@
 //! How a scenario is run, what is kept, and when a stack counts as collapsed.
 
-use barrelstack_input::section;
+use barrelstack_input::choices::Chosen as _;
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::{choices, named, section};
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, Variant, Variants, names};
+use super::field::{Default, Kind, Range, names};
 use super::reader::Reader;
 use super::tree::Table;
-use super::writer::Writer;
 
 /// Fields of `[run]` that end a run early.
 pub const ENDS: [&str; 3] = ["until", "duration", "stop_after_collapse"];
 
-/// Time integration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
-    /// Semi-implicit Euler, fixed step.
-    SemiImplicitEuler,
-    /// Velocity Verlet, fixed step.
-    VelocityVerlet,
-    /// Classical Runge–Kutta of order four, fixed step.
-    RungeKutta4,
-    /// Bogacki–Shampine of order three with error control.
-    BogackiShampine {
+choices! {
+    /// Time integration.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub enum Method, among the fields of RUN;
+    /// The methods.
+    static METHODS;
+    /// Order two, fixed step.
+    VelocityVerlet = "velocity-verlet";
+    /// Order one, fixed step.
+    SemiImplicitEuler = "semi-implicit-euler";
+    /// Order four, fixed step.
+    RungeKutta4 = "runge-kutta-4";
+    /// Order three with error control.
+    BogackiShampine = "bogacki-shampine" {
         /// Relative error allowed in one step.
-        tolerance: f64,
-    },
+        tolerance: f64 =
+            Kind::Number(Range { least: 1e-14, above: false, greatest: 0.1 }), Default::Value("1e-6");
+    }
 }
 
-/// What ends a run by itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Until {
-    /// The motion is over, and what moves has come to rest.
-    Rest,
-    /// The time is over.
-    Duration,
+named! {
+    /// What ends a run by itself.
+    pub enum Until {
+        /// The motion is over, and what moves has come to rest.
+        Rest = "rest",
+        /// The time is over.
+        Duration = "duration",
+    }
 }
 
-impl Named for Until {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("rest", Self::Rest), ("duration", Self::Duration)];
-}
-
-/// How near the motion of the bodies is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Accuracy {
-    /// For many cases, of which shares are wanted.
-    Screening,
-    /// Falls within 10 ms and drifts within 1 % of those of ten times shorter steps.
-    Standard,
-    /// For single cases whose every number is wanted.
-    Fine,
+named! {
+    /// How near the motion of the bodies is computed.
+    pub enum Accuracy {
+        /// For many cases, of which shares are wanted.
+        Screening = "screening",
+        /// Falls within 10 ms and drifts within 1 % of those of ten times shorter steps.
+        Standard = "standard",
+        /// For single cases whose every number is wanted.
+        Fine = "fine",
+    }
 }
 
 impl Accuracy {
@@ -64,151 +66,47 @@ impl Accuracy {
     }
 }
 
-impl Named for Accuracy {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("screening", Self::Screening), ("standard", Self::Standard), ("fine", Self::Fine)];
-}
-
-/// How a scenario is run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunSpec {
-    /// What ends the run by itself.
-    pub until: Until,
-    /// Longest time of a run that ends by rest, after the end of its motion (s).
-    pub patience: f64,
-    /// Length of the run (s), of one that ends by rest the longest; `None` for that of the motion, with
-    /// `patience` or 5 s more.
-    pub duration: Option<f64>,
-    /// Time integration.
-    pub method: Method,
-    /// How near the motion is computed, where no step is given.
-    pub accuracy: Accuracy,
-    /// Time step, or first step of an adaptive method (s); `None` for a step from the contacts.
-    pub step: Option<f64>,
-    /// Time to keep running after a collapse (s); `None` to run to the end.
-    pub stop_after_collapse: Option<f64>,
-    /// Acceleration of gravity (m/s²).
-    pub gravity: f64,
-    /// Length scale `λ` of Froude similitude applied to bodies, contacts and motion: mass `λ³`,
-    /// stiffness `λ²`, damping `λ^2.5`, time `√λ`.
-    pub similitude: f64,
-    /// Whether the bodies are brought to rest under gravity before the motion starts.
-    pub settle: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum MethodName {
-    SemiImplicitEuler,
-    VelocityVerlet,
-    RungeKutta4,
-    BogackiShampine,
-}
-
-impl Named for MethodName {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("velocity-verlet", Self::VelocityVerlet),
-        ("semi-implicit-euler", Self::SemiImplicitEuler),
-        ("runge-kutta-4", Self::RungeKutta4),
-        ("bogacki-shampine", Self::BogackiShampine),
-    ];
-}
-
 /// Longest run (s).
 const LONGEST_RUN: f64 = 3600.0;
 
 /// Most steps of a run of fixed step.
 const MOST_STEPS: f64 = 1e9;
 
-/// How it is run.
-pub static RUN: Section = Section {
-    name: "run",
-    help: "How the scenario is run.",
-    fields: &[
-        Field::new(
-            "until",
-            Kind::Choice(names::<Until>),
-            Default::Derived("\"rest\" for a stack, \"duration\" for a free scene"),
-            "What ends the run by itself: the ground is still, or below 0.02 g after a collapse, and what moves has come to rest, or the duration is over.",
-        ),
-        Field::new(
-            "patience",
-            Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)),
-            Default::Value("\"30 s\""),
-            "Longest time that a run which ends by rest goes on after the motion.",
-        ),
-        Field::new(
-            "duration",
-            Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
-            Default::Derived("that of the motion, and `patience` or else 5 s more"),
-            "Simulated time; of a run that ends by rest, the longest.",
-        ),
-        Field::new(
-            "method",
-            Kind::Choice(names::<MethodName>),
-            Default::Value("\"velocity-verlet\""),
-            "Time integration.",
-        ),
-        Field::new(
-            "accuracy",
-            Kind::Choice(names::<Accuracy>),
-            Default::Value("\"standard\""),
-            "How near the motion is computed where no step is given: \"standard\" takes steps with which falls come within 10 ms and drifts within 1 % of those of ten times shorter ones, \"screening\" 1.5 times as long ones, \"fine\" a quarter.",
-        ),
-        Field::new(
-            "step",
-            Kind::WordOr(
-                "auto",
-                &[Dimension::TIME],
-                Range { least: 1e-9, above: false, greatest: 0.1 },
-            ),
-            Default::Value("\"auto\""),
-            "Time step, or first step of an adaptive method; \"auto\" takes it from the contacts and the accuracy. Impacts divide it while they last.",
-        ),
-        Field::new(
-            "stop_after_collapse",
-            Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)),
-            Default::Derived("never stop early"),
-            "Time to keep running after a collapse.",
-        ),
-        Field::new(
-            "gravity",
-            Kind::Quantity(&[Dimension::ACCELERATION], Range::between(0.0, 1000.0)),
-            Default::Value("\"9.80665 m/s^2\""),
-            "Acceleration of gravity.",
-        ),
-        Field::new(
-            "similitude",
-            Kind::Number(Range { least: 1e-3, above: false, greatest: 1e3 }),
-            Default::Value("1.0"),
-            "Length scale of Froude similitude applied to bodies, contacts and motion together.",
-        ),
-        Field::new(
-            "settle",
-            Kind::Flag,
-            Default::Value("true"),
-            "Whether the bodies are brought to rest under gravity before the motion starts.",
-        ),
-    ],
-    variants: Some(Variants {
-        tag: "method",
-        list: &[
-            Variant { name: "velocity-verlet", help: "Order two, fixed step.", fields: &[] },
-            Variant { name: "semi-implicit-euler", help: "Order one, fixed step.", fields: &[] },
-            Variant { name: "runge-kutta-4", help: "Order four, fixed step.", fields: &[] },
-            Variant {
-                name: "bogacki-shampine",
-                help: "Order three with error control.",
-                fields: &[Field::new(
-                    "tolerance",
-                    Kind::Number(Range { least: 1e-14, above: false, greatest: 0.1 }),
-                    Default::Value("1e-6"),
-                    "Relative error allowed in one step.",
-                )],
-            },
-        ],
-    }),
-    exclusive: &[],
-};
+section! {
+    /// How a scenario is run.
+    ///
+    /// Under a similitude `λ` masses are scaled by `λ³`, stiffness by `λ²`, damping by `λ^2.5` and time by `√λ`.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct RunSpec;
+    /// How the scenario is run.
+    pub static RUN = "run", by method of METHODS;
+    /// What ends the run by itself: the ground is still, or below 0.02 g after a collapse, and what moves has come to rest, or the duration is over.
+    until: Until = Kind::Choice(names::<Until>),
+        Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
+    /// Longest time that a run which ends by rest goes on after the motion.
+    patience: f64 = Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Value("\"30 s\"");
+    /// Simulated time; of a run that ends by rest, the longest.
+    duration: Option<f64> = Kind::Quantity(&[Dimension::TIME], Range::up_to(LONGEST_RUN)),
+        Default::Derived("that of the motion, and `patience` or else 5 s more");
+    /// Time integration.
+    method: Method = Kind::Choice(Method::names), Default::Value("\"velocity-verlet\"");
+    /// How near the motion is computed where no step is given: "standard" takes steps with which falls come within 10 ms and drifts within 1 % of those of ten times shorter ones, "screening" 1.5 times as long ones, "fine" a quarter.
+    accuracy: Accuracy = Kind::Choice(names::<Accuracy>), Default::Value("\"standard\"");
+    /// Time step, or first step of an adaptive method; "auto" takes it from the contacts and the accuracy. Impacts divide it while they last.
+    step: Option<f64> =
+        Kind::WordOr("auto", &[Dimension::TIME], Range { least: 1e-9, above: false, greatest: 0.1 }),
+        Default::Value("\"auto\"");
+    /// Time to keep running after a collapse.
+    stop_after_collapse: Option<f64> =
+        Kind::Quantity(&[Dimension::TIME], Range::between(0.0, LONGEST_RUN)), Default::Derived("never stop early");
+    /// Acceleration of gravity.
+    gravity: f64 = Kind::Quantity(&[Dimension::ACCELERATION], Range::between(0.0, 1000.0)),
+        Default::Value("\"9.80665 m/s^2\"");
+    /// Length scale of Froude similitude applied to bodies, contacts and motion together.
+    similitude: f64 = Kind::Number(Range { least: 1e-3, above: false, greatest: 1e3 }), Default::Value("1.0");
+    /// Whether the bodies are brought to rest under gravity before the motion starts.
+    settle: bool = Kind::Flag, Default::Value("true");
+}
 
 section! {
     /// What is kept of a run.
@@ -249,26 +147,10 @@ section! {
 ///
 /// `until` ends it where the file does not say what does.
 pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, ScenarioError> {
-    let method = match reader.choice::<MethodName>("method")? {
-        MethodName::SemiImplicitEuler => Method::SemiImplicitEuler,
-        MethodName::VelocityVerlet => Method::VelocityVerlet,
-        MethodName::RungeKutta4 => Method::RungeKutta4,
-        MethodName::BogackiShampine => {
-            Method::BogackiShampine { tolerance: reader.number("tolerance")? }
-        }
-    };
-    let run = RunSpec {
-        until: reader.optional_choice("until")?.unwrap_or(until),
-        patience: reader.quantity("patience")?,
-        duration: reader.optional_quantity("duration")?,
-        method,
-        accuracy: reader.choice("accuracy")?,
-        step: reader.word_or_quantity("step")?,
-        stop_after_collapse: reader.optional_quantity("stop_after_collapse")?,
-        gravity: reader.quantity("gravity")?,
-        similitude: reader.number("similitude")?,
-        settle: reader.flag("settle")?,
-    };
+    let mut run = RunSpec::read_fields(&reader)?;
+    if reader.leaves_out("until") {
+        run.until = until;
+    }
     if let (Some(duration), Some(step)) = (run.duration, run.step)
         && duration / step > MOST_STEPS
     {
@@ -284,24 +166,8 @@ pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, Scen
 
 /// Writes how it is run.
 pub(super) fn write_run(run: &RunSpec) -> Table {
-    let name = match run.method {
-        Method::SemiImplicitEuler => MethodName::SemiImplicitEuler,
-        Method::VelocityVerlet => MethodName::VelocityVerlet,
-        Method::RungeKutta4 => MethodName::RungeKutta4,
-        Method::BogackiShampine { .. } => MethodName::BogackiShampine,
-    };
-    let mut writer = Writer::variant(&RUN, name);
-    if let Method::BogackiShampine { tolerance } = run.method {
-        writer.number("tolerance", tolerance);
-    }
-    writer.choice("until", run.until);
-    writer.quantity("patience", run.patience);
-    writer.optional_quantity("duration", run.duration);
-    writer.choice("accuracy", run.accuracy);
-    writer.word_or_quantity("step", run.step);
-    writer.optional_quantity("stop_after_collapse", run.stop_after_collapse);
-    writer.quantity("gravity", run.gravity);
-    writer.number("similitude", run.similitude);
-    writer.flag("settle", run.settle);
+    let mut writer = run.start();
+    run.write_chosen(&mut writer);
+    run.write_fields(&mut writer);
     writer.finish()
 }

@@ -1,5 +1,7 @@
 //! A stack of barrels on racks.
 
+use barrelstack_input::named;
+
 use crate::device::{self, Devices};
 
 use super::barrel::{self, BARREL, Barrel};
@@ -7,7 +9,7 @@ use super::body_override::{self, BodyOverride, OVERRIDE, StackBody};
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Field, Kind, Range, Section, names};
 use super::pair::StackInterfaces;
 use super::quantity::rounded;
 use super::rack::{self, RACK, Rack};
@@ -146,22 +148,14 @@ impl View {
     }
 }
 
-/// In which planes a stack is looked at, as files say it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Planes {
-    Transverse,
-    Longitudinal,
-    Both,
-    Spatial,
-}
-
-impl Named for Planes {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("transverse", Self::Transverse),
-        ("longitudinal", Self::Longitudinal),
-        ("both", Self::Both),
-        ("spatial", Self::Spatial),
-    ];
+named! {
+    /// In which planes a stack is looked at, as files say it.
+    enum Planes {
+        Transverse = "transverse",
+        Longitudinal = "longitudinal",
+        Both = "both",
+        Spatial = "spatial",
+    }
 }
 
 /// Most levels and columns of a stack.

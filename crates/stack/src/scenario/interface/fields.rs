@@ -1,46 +1,28 @@
 //! The fields of `[interface]`.
 
+use barrelstack_input::named;
+
 use crate::scenario::dimension::Dimension;
-use crate::scenario::field::{
-    Default, Field, Kind, Named, Range, Section, Variant, Variants, names,
-};
+use crate::scenario::field::{Default, Field, Kind, Range, Section, Variant, Variants, names};
 
 use super::Basis;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Law {
-    SpeedGap,
-    KelvinVoigt,
-    HuntCrossley,
-    Hertz,
-    Rebound,
+named! {
+    pub(super) enum Law {
+        SpeedGap = "speed-gap",
+        KelvinVoigt = "kelvin-voigt",
+        HuntCrossley = "hunt-crossley",
+        Hertz = "hertz",
+        Rebound = "rebound",
+    }
 }
 
-impl Named for Law {
-    const NAMES: &'static [(&'static str, Self)] = &[
-        ("speed-gap", Self::SpeedGap),
-        ("kelvin-voigt", Self::KelvinVoigt),
-        ("hunt-crossley", Self::HuntCrossley),
-        ("hertz", Self::Hertz),
-        ("rebound", Self::Rebound),
-    ];
-}
-
-impl Named for Basis {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("node", Self::Node), ("length", Self::Length)];
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FrictionKind {
-    None,
-    Coulomb,
-    Regularized,
-}
-
-impl Named for FrictionKind {
-    const NAMES: &'static [(&'static str, Self)] =
-        &[("coulomb", Self::Coulomb), ("regularized", Self::Regularized), ("none", Self::None)];
+named! {
+    pub(super) enum FrictionKind {
+        Coulomb = "coulomb",
+        Regularized = "regularized",
+        None = "none",
+    }
 }
 
 const LAW: Field = Field::new(

@@ -6,14 +6,17 @@ mod text;
 pub use fields::{FREE_INTERFACE, FRICTION, IMPACT, INTERFACE};
 pub(super) use text::{PairDefaults, read, write, write_free};
 
-/// To what a contact constant belongs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
-    /// Constants hold for one contact node, whatever the spacing of the nodes.
-    Node,
-    /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
-    /// node.
-    Length,
+use barrelstack_input::named;
+
+named! {
+    /// To what a contact constant belongs.
+    pub enum Basis {
+        /// Constants hold for one contact node, whatever the spacing of the nodes.
+        Node = "node",
+        /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
+        /// node.
+        Length = "length",
+    }
 }
 
 /// Dissipation of a law whose restitution depends on what strikes.

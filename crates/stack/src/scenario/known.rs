@@ -1,0 +1,59 @@
+//! What the catalog knows, and a file may change.
+
+/// Declares a type that is read over one of the catalog: first what no field of its own states, then each field as in
+/// [`section!`](barrelstack_input::section), with its key in files where that is another name than that of the member.
+///
+/// A field that a file leaves out, and that has no value of its own then, is that of the catalog.
+macro_rules! known {
+    (
+        $(#[$about:meta])*
+        pub struct $type:ident { $($(#[$kept:meta])* pub $own:ident: $given:ty,)* }
+        $(#[doc = $list:literal])+
+        const $fields:ident $(, after $first:expr)?;
+        $(
+            $(#[doc = $help:literal])+
+            $field:ident $(as $key:literal)?: $held:ty = $kind:expr, $default:expr;
+        )+
+    ) => {
+        $(#[$about])*
+        pub struct $type {
+            $($(#[$kept])* pub $own: $given,)*
+            $($(#[doc = $help])+ pub $field: $held,)+
+        }
+
+        $(#[doc = $list])+
+        const $fields: &[Field] = &[
+            $($first,)?
+            $(Field::new(
+                barrelstack_input::first!($($key,)? stringify!($field)),
+                $kind,
+                $default,
+                concat!($($help),+).trim_ascii(),
+            ),)+
+        ];
+
+        impl $type {
+            /// Reads it over one of the catalog.
+            fn read_over(reader: &Reader<'_>, known: &Self) -> Result<Self, ScenarioError> {
+                Ok(Self {
+                    $($own: Clone::clone(&known.$own),)*
+                    $($field: Held::read_over(
+                        reader,
+                        barrelstack_input::first!($($key,)? stringify!($field)),
+                        &known.$field,
+                    )?,)+
+                })
+            }
+
+            /// Writes its fields.
+            fn write_fields(&self, writer: &mut Writer) {
+                $(self.$field.write(
+                    writer,
+                    barrelstack_input::first!($($key,)? stringify!($field)),
+                );)+
+            }
+        }
+    };
+}
+
+pub(super) use known;
