@@ -3,10 +3,10 @@
 use barrelstack_dynamics::solid::Barrel;
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::field::{Default, Field, Kind, Range, Section, Variant, Variants};
+use barrelstack_input::field::{Default, Kind, Range, Section, Variant, Variants};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::writer::Writer;
-use barrelstack_input::{Dimension, InputError, choices, section};
+use barrelstack_input::{Dimension, InputError, choices, fields, section};
 
 choices! {
     /// A solid about its reference point.
@@ -69,12 +69,10 @@ const SIZE: Kind =
 pub static SOLID: Section = Section {
     name: "solid",
     help: "Solid of a body in space, about its reference point.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(Solid::names),
-        Default::Required,
-        "Form of the solid.",
-    )],
+    fields: &fields! {
+        /// Form of the solid.
+        type = Kind::Choice(Solid::names), Default::Required;
+    },
     variants: Some(Variants { tag: "type", list: &SOLIDS }),
     exclusive: &[],
 };
@@ -82,12 +80,10 @@ pub static SOLID: Section = Section {
 static PART_SOLID: Section = Section {
     name: "part-solid",
     help: "Solid of a part, about its reference point.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(part_names),
-        Default::Required,
-        "Form of the solid, bounded and no compound itself.",
-    )],
+    fields: &fields! {
+        /// Form of the solid, bounded and no compound itself.
+        type = Kind::Choice(part_names), Default::Required;
+    },
     variants: Some(Variants { tag: "type", list: OF_PARTS }),
     exclusive: &[],
 };

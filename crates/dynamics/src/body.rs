@@ -166,23 +166,35 @@ impl Body<Planar> {
             offset: Vec2::default(),
             rotation: Rotation2::identity(),
         };
-        Self {
-            name: "ground".into(),
-            motion: Motion::Prescribed,
-            // No force moves it.
-            mass: 1.0,
-            inertia: 1.0,
-            damping: None,
-            pose: Pose { position: Vec2::default(), orientation },
-            twist: Twist::default(),
-            surfaces: vec![floor],
-            nodes: Vec::new(),
-            faces: Vec::new(),
-        }
+        let pose = Pose { position: Vec2::default(), orientation };
+        // No force moves it, so its mass is of no account.
+        let body = Self::free("ground", 1.0, 1.0, pose);
+        Self { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
     }
 }
 
 impl<S: Space> Body<S> {
+    /// A free body at rest, without boundaries, of a mass (kg) and a moment of inertia (kg·m²).
+    pub fn free(
+        name: impl Into<String>,
+        mass: S::Real,
+        inertia: S::Inertia,
+        pose: Pose<S>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            motion: Motion::Free,
+            mass,
+            inertia,
+            damping: None,
+            pose,
+            twist: Twist::default(),
+            surfaces: Vec::new(),
+            nodes: Vec::new(),
+            faces: Vec::new(),
+        }
+    }
+
     /// Whether it carries a surface that has no end.
     pub fn is_unbounded(&self) -> bool {
         self.surfaces.iter().any(|placed| placed.surface.reach().is_infinite())

@@ -327,18 +327,19 @@ macro_rules! table {
     };
 }
 
-/// A list of fields in the words of [`table!`](crate::table).
+/// A list of fields in the words of [`table!`](crate::table): each once, under its name or the key in its place, between
+/// others that are known.
 #[macro_export]
 macro_rules! fields {
     (
         $(with [$($first:expr),+])?
-        $($(#[doc = $text:literal])+ $field:ident = $kind:expr, $default:expr;)*
+        $($(#[doc = $text:literal])+ $field:ident $(as $key:literal)? = $kind:expr, $default:expr;)*
         $(then [$($last:expr),+])?
     ) => {
         [
             $($($first,)+)?
             $($crate::field::Field::new(
-                stringify!($field),
+                $crate::first!($($key,)? stringify!($field)),
                 $kind,
                 $default,
                 concat!($($text),+).trim_ascii(),

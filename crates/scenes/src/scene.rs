@@ -7,9 +7,8 @@ use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
     Basis, Body, BodyId, ContactPair, Counts, Drive, EnergyLedger, FrictionLaw, Interface, Method,
-    Model, ModelError, Motion, Node, Nodes, NormalLaw, Placed, Planar, Pose, RunError, Scratch,
-    SettleError, Settled, Shape, Simulation, Space, State, Twist, Vec2, look, math, settle,
-    simulate,
+    Model, ModelError, Node, Nodes, NormalLaw, Placed, Planar, Pose, RunError, Scratch,
+    SettleError, Settled, Shape, Simulation, Space, State, Vec2, look, math, settle, simulate,
 };
 
 use crate::GRAVITY;
@@ -52,16 +51,9 @@ pub fn disc(
     center: Vec2,
 ) -> Body<Planar> {
     Body {
-        name: name.into(),
-        motion: Motion::Free,
-        mass,
-        inertia: mass * gyration_squared,
-        damping: None,
-        pose: Pose { position: center, orientation: 0.0 },
-        twist: Twist::default(),
         surfaces: vec![centered(Shape::Circle(Circle { radius }))],
         nodes: vec![Nodes::Rolling { center: Vec2::default(), radius, tributary_length: 1.0 }],
-        faces: Vec::new(),
+        ..Body::free(name, mass, mass * gyration_squared, pose(center.x, center.z, 0.0))
     }
 }
 
@@ -90,17 +82,11 @@ pub fn finely_noded_block(
     pose: Pose<Planar>,
 ) -> Body<Planar> {
     let shape = Shape::Polygon(rectangle(width, height));
+    let inertia = mass * (width * width + height * height) / 12.0;
     Body {
-        name: name.into(),
-        motion: Motion::Free,
-        mass,
-        inertia: mass * (width * width + height * height) / 12.0,
-        damping: None,
-        pose,
-        twist: Twist::default(),
         nodes: vec![fixed(&shape.nodes(spacing))],
-        faces: Vec::new(),
         surfaces: vec![centered(shape)],
+        ..Body::free(name, mass, inertia, pose)
     }
 }
 

@@ -2,8 +2,7 @@
 
 use barrelstack_dynamics::solid::{Ball, Hull, Rounded};
 use barrelstack_dynamics::{
-    Body, Motion, Node, Nodes, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Twist, Vec3,
-    math,
+    Body, Motion, Node, Nodes, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
 };
 
 /// Free fall (m/s²) as felt on a plane that falls at an angle (rad) in the direction `heading` (rad, from
@@ -25,18 +24,7 @@ pub fn centered(surface: Solid) -> Placed<Spatial> {
 
 /// A free body without boundaries, of a mass (kg) and principal moments of inertia (kg·m²).
 pub fn free(name: &str, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
-    Body {
-        name: name.into(),
-        motion: Motion::Free,
-        mass,
-        inertia,
-        damping: None,
-        pose: Pose { position, orientation: Quaternion::identity() },
-        twist: Twist::default(),
-        surfaces: Vec::new(),
-        nodes: Vec::new(),
-        faces: Vec::new(),
-    }
+    Body::free(name, mass, inertia, Pose { position, orientation: Quaternion::identity() })
 }
 
 /// The ground with what is fixed to it.

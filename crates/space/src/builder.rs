@@ -5,8 +5,8 @@ use barrelstack::device::{Isolators, Words};
 use barrelstack::scenario::{BodyOverride, StackBody, StackPair, StackSpec, View};
 use barrelstack_dynamics::solid::{Barrel, Hull, Rounded, compound};
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Counts, Element, Interface, InterfaceId, Motion, Nodes, Placed,
-    Pose, Rotation3, Spatial, Twist, Vec3,
+    Body, BodyId, ContactPair, Counts, Element, Interface, InterfaceId, Nodes, Placed, Pose,
+    Rotation3, Spatial, Vec3,
 };
 
 use crate::device::Loose;
@@ -224,21 +224,15 @@ impl<'a> Builder<'a> {
             [View::Transverse, View::Longitudinal].map(|view| contents.inertia(view));
         let hull = Hull::Barrel(self.barrel);
         let centered = Rounded { tributary_length: TRIBUTARY, ..Rounded::centered(hull) };
+        let pose = Pose { position: self.mirrored(place), orientation: along_barrels() };
         let body = Body {
-            name: name.clone(),
-            motion: Motion::Free,
-            mass: contents.mass,
-            inertia: Vec3::new(axial, across, across),
-            damping: None,
-            pose: Pose { position: self.mirrored(place), orientation: along_barrels() },
-            twist: Twist::default(),
             surfaces: vec![Placed {
                 surface: hull.surface(),
                 offset: Vec3::default(),
                 rotation: Rotation3::identity(),
             }],
             nodes: vec![Nodes::Whole(centered)],
-            faces: Vec::new(),
+            ..Body::free(&name, contents.mass, Vec3::new(axial, across, across), pose)
         };
         let part = Part {
             level,

@@ -36,14 +36,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         racks: count(PartKind::Rack),
         free_bodies: count(PartKind::Body),
         time_step: stack.step,
-        rest: settled.map(|settled| AtRest {
-            steps: settled.steps,
-            deepest_sinking: sunk,
-            unbalanced: settled.unbalanced,
-            locked_friction: settled.locked.friction,
-            holding: settled.locked.holding,
-            slipping: settled.locked.slipping,
-        }),
+        rest: settled.map(|settled| AtRest::of(settled, sunk)),
         motion: ground.first.motion.as_ref().map(MotionSummary::of),
         // How far sticks give is told of planes alone.
         sticks: Vec::new(),

@@ -53,7 +53,7 @@ impl Heading {
 }
 
 /// What became of one body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
     pub rest: Vec3,
@@ -108,17 +108,7 @@ impl<'a> Fates<'a> {
         let ground = state.poses[Stack::GROUND].position;
         let fate = |pose: &barrelstack_dynamics::Pose<Spatial>| Fate {
             rest: pose.position - ground,
-            left_seat: None,
-            fell_at: None,
-            drop: 0.0,
-            fall_force: 0.0,
-            moved: Vec3::default(),
-            moved_at_collapse: Vec3::default(),
-            residual_slip: [0.0; 2],
-            peak_displacement: 0.0,
-            peak_slip: [0.0; 2],
-            peak_tilt: 0.0,
-            peak_uplift: 0.0,
+            ..Fate::default()
         };
         let upright: Vec<_> = state.poses.iter().map(|pose| pose.orientation.matrix()).collect();
         Self {

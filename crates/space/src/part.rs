@@ -2,7 +2,7 @@
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{
-    Body, BodyId, Motion, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Twist, Vec3,
+    Body, BodyId, Motion, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Vec3,
 };
 
 /// What a body in space means.
@@ -60,21 +60,13 @@ impl Part {
 
 /// The ground: all below a level plane through the origin.
 pub(crate) fn ground() -> Body<Spatial> {
-    Body {
-        name: "ground".into(),
-        motion: Motion::Prescribed,
-        // No force moves it.
-        mass: 1.0,
-        inertia: Vec3::new(1.0, 1.0, 1.0),
-        damping: None,
-        pose: Pose { position: Vec3::default(), orientation: Quaternion::identity() },
-        twist: Twist::default(),
-        surfaces: vec![Placed {
-            surface: Solid::HalfSpace,
-            offset: Vec3::default(),
-            rotation: Rotation3::identity(),
-        }],
-        nodes: Vec::new(),
-        faces: Vec::new(),
-    }
+    let floor = Placed {
+        surface: Solid::HalfSpace,
+        offset: Vec3::default(),
+        rotation: Rotation3::identity(),
+    };
+    let pose = Pose { position: Vec3::default(), orientation: Quaternion::identity() };
+    // No force moves it, so its mass is of no account.
+    let body = Body::free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), pose);
+    Body { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
 }

@@ -57,27 +57,27 @@ described! {
 
     /// In which directions variants fall.
     #[derive(Clone, Debug, PartialEq)]
-    pub struct Directions {
+    pub struct Directions of cases: &[Case] {
         /// Variants whose first body leaves its seat to the right, x positive.
-        pub first_right: u32,
+        pub first_right: u32 = first(cases, Heading::Right),
         /// To the left.
-        pub first_left: u32,
+        pub first_left: u32 = first(cases, Heading::Left),
         /// Away along the barrels, y positive.
-        pub first_away: u32,
+        pub first_away: u32 = first(cases, Heading::Away),
         /// The other way along the barrels.
-        pub first_near: u32,
+        pub first_near: u32 = first(cases, Heading::Near),
         /// Fallen barrels of all variants that came to lie to the right of where they stood, more than along.
-        pub debris_right: u32,
+        pub debris_right: u32 = debris(cases, Heading::Right),
         /// To the left.
-        pub debris_left: u32,
+        pub debris_left: u32 = debris(cases, Heading::Left),
         /// Away along the barrels, more than across.
-        pub debris_away: u32,
+        pub debris_away: u32 = debris(cases, Heading::Away),
         /// The other way along the barrels.
-        pub debris_near: u32,
+        pub debris_near: u32 = debris(cases, Heading::Near),
     }
 
     /// What happened in space.
-    #[derive(Clone, Debug)]
+    #[derive(Clone, Debug, Default)]
     pub struct OutcomeInSpace {
         /// What it was.
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
@@ -154,49 +154,44 @@ described! {
 
     /// How it was computed.
     #[derive(Clone, Debug)]
-    pub struct RunInSpace {
+    pub struct RunInSpace of run: &Run {
         /// Integration method.
-        pub method: &'static str,
+        pub method: &'static str = run.simulation.method.name(),
         /// Time step.
-        pub time_step: f64 as "s",
+        pub time_step: f64 as "s" = run.simulation.time_step,
         /// Accepted steps.
-        pub steps: u64,
+        pub steps: u64 = run.work.steps,
         /// Evaluations of all forces.
-        pub evaluations: u64,
+        pub evaluations: u64 = run.work.evaluations,
         /// Contact elements tested.
-        pub contact_evaluations: u64,
+        pub contact_evaluations: u64 = run.work.contact_evaluations,
         /// Simulated time reached.
-        pub end_time: f64 as "s",
+        pub end_time: f64 as "s" = run.end_time,
         /// Why it ended.
-        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"],
+        pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] =
+            run.ending.name(),
         /// Steps taken to find equilibrium.
-        pub settle_steps: Option<u64>,
+        pub settle_steps: Option<u64> = run.settled.map(|settled| settled.steps),
         /// Time on the clock, all variants included.
-        pub wall_seconds: Option<f64> as "s",
+        pub wall_seconds: Option<f64> as "s" = None,
     }
 }
 
-impl Directions {
-    /// Of cases.
-    pub fn of(cases: &[Case]) -> Self {
-        let count = |of: &dyn Fn(&Case) -> usize| {
-            u32::try_from(cases.iter().map(of).sum::<usize>()).unwrap_or(u32::MAX)
-        };
-        let first = |to: Heading| count(&|case| usize::from(case.first == Some(to)));
-        let debris =
-            |to: Heading| count(&|case| case.debris.iter().filter(|way| **way == to).count());
-        Self {
-            first_right: first(Heading::Right),
-            first_left: first(Heading::Left),
-            first_away: first(Heading::Away),
-            first_near: first(Heading::Near),
-            debris_right: debris(Heading::Right),
-            debris_left: debris(Heading::Left),
-            debris_away: debris(Heading::Away),
-            debris_near: debris(Heading::Near),
-        }
-    }
+/// How many cases fall this way first.
+fn first(cases: &[Case], way: Heading) -> u32 {
+    count(cases, |case| usize::from(case.first == Some(way)))
+}
 
+/// How many fallen barrels of all cases came to lie this way.
+fn debris(cases: &[Case], way: Heading) -> u32 {
+    count(cases, |case| case.debris.iter().filter(|lies| **lies == way).count())
+}
+
+fn count(cases: &[Case], of: impl Fn(&Case) -> usize) -> u32 {
+    u32::try_from(cases.iter().map(of).sum::<usize>()).unwrap_or(u32::MAX)
+}
+
+impl Directions {
     /// Variants whose first body leaves its seat across the barrels, and along them.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
@@ -229,17 +224,7 @@ impl Summary {
             energy: run.energy.as_ref().map(EnergyBooks::of),
             motion: motion(first),
             other_component: run.ground.second.as_ref().and_then(motion),
-            run: RunInSpace {
-                method: run.simulation.method.name(),
-                time_step: run.simulation.time_step,
-                steps: run.work.steps,
-                evaluations: run.work.evaluations,
-                contact_evaluations: run.work.contact_evaluations,
-                end_time: run.end_time,
-                ending: run.ending.name(),
-                settle_steps: run.settled.map(|settled| settled.steps),
-                wall_seconds: None,
-            },
+            run: RunInSpace::of(run),
             warnings: run.warnings.clone(),
             provenance: Provenance {
                 program: "barrelstack",
@@ -261,16 +246,11 @@ fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
     let interrupted = run.ending == Ending::Interrupted && sound;
     let mut summary = OutcomeInSpace {
         kind: if interrupted { "interrupted" } else { run.outcome.kind() },
-        mode: None,
-        time: None,
-        first: None,
         heading: run.heading.map(Heading::name).filter(|_| sound),
-        from_level: None,
-        to_level: None,
         first_fall: run.first_fall.filter(|_| sound),
         barrels_fallen: sound.then(|| run.fallen().count()),
         barrels: run.stack.of_kind(PartKind::Barrel).count(),
-        reason: None,
+        ..OutcomeInSpace::default()
     };
     match &run.outcome {
         Outcome::Collapse { mode, time, first, from_level, to_level } => {

@@ -53,28 +53,9 @@ impl Case {
             let moved = run.fates[*body].moved;
             (moved.x * moved.x + moved.y * moved.y).sqrt()
         };
-        let result = CaseResult {
-            first_fall: run.first_fall.filter(|_| sound),
+        let told = CaseResult {
+            outcome: Ok(run.outcome.clone()),
             barrels: barrels.len(),
-            falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
-            fall_heights: if sound {
-                run.fallen().map(|body| run.fates[body].drop).collect()
-            } else {
-                Vec::new()
-            },
-            fall_forces: if sound {
-                run.fallen().map(|body| run.fates[body].fall_force).collect()
-            } else {
-                Vec::new()
-            },
-            demands: if sound { demands(run) } else { Demands::default() },
-            joints: if sound {
-                let named = run.seats.named(&run.stack);
-                named.map(|(name, joint)| (name, joint.clone())).collect()
-            } else {
-                Vec::new()
-            },
-            residual_displacement: sound.then(|| barrels.iter().map(way).fold(0.0, f64::max)),
             ending: Some(run.ending),
             cut: Some(if run.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(run.end_time),
@@ -83,11 +64,21 @@ impl Case {
             warnings: run.warnings.clone(),
             ..CaseResult::failed(String::new())
         };
-        Self {
-            result: CaseResult { outcome: Ok(run.outcome.clone()), ..result },
-            first: run.heading.filter(|_| sound),
-            debris: if sound { run.debris().collect() } else { Vec::new() },
+        if !sound {
+            return Self { result: told, first: None, debris: Vec::new() };
         }
+        let named = run.seats.named(&run.stack);
+        let result = CaseResult {
+            first_fall: run.first_fall,
+            falls: barrels.iter().map(fall).collect(),
+            fall_heights: run.fallen().map(|body| run.fates[body].drop).collect(),
+            fall_forces: run.fallen().map(|body| run.fates[body].fall_force).collect(),
+            demands: demands(run),
+            joints: named.map(|(name, joint)| (name, joint.clone())).collect(),
+            residual_displacement: Some(barrels.iter().map(way).fold(0.0, f64::max)),
+            ..told
+        };
+        Self { result, first: run.heading, debris: run.debris().collect() }
     }
 
     /// The way of the first body and those of fallen barrels; none without a verdict.

@@ -1,5 +1,7 @@
 //! Is a scenario sound, and does its stack stand before it is shaken?
 
+use barrelstack_dynamics::Settled;
+use barrelstack_dynamics::settle::Locked;
 use barrelstack_report::described;
 
 use crate::assemble::PartKind;
@@ -56,6 +58,14 @@ described! {
         pub holding: usize,
         /// Contacts at their limit of friction.
         pub slipping: usize,
+    }
+}
+
+impl AtRest {
+    /// Of how equilibrium was found, and the deepest sinking (m) of a body there.
+    pub fn of(Settled { steps, unbalanced, locked }: Settled, deepest_sinking: f64) -> Self {
+        let Locked { friction: locked_friction, holding, slipping } = locked;
+        Self { steps, deepest_sinking, unbalanced, locked_friction, holding, slipping }
     }
 }
 
@@ -127,14 +137,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         let sunk = assembly.model.bodies().iter().zip(&state.poses);
         let deepest =
             sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max);
-        AtRest {
-            steps: settled.steps,
-            deepest_sinking: deepest,
-            unbalanced: settled.unbalanced,
-            locked_friction: settled.locked.friction,
-            holding: settled.locked.holding,
-            slipping: settled.locked.slipping,
-        }
+        AtRest::of(settled, deepest)
     });
     let sticks = if scenario.run.settle {
         SoftStick::of(&assembly, &scratch, ground.motion.as_ref())

@@ -1,9 +1,9 @@
 //! Bodies of several solids, such as racks of tubes, and which of their solids may meet.
 
 use super::{Bulk, Hull, Rounded};
-use crate::body::{Body, BodyId, Motion, Nodes, Placed};
+use crate::body::{Body, BodyId, Nodes, Placed};
 use crate::model::{ContactPair, Counts, InterfaceId};
-use crate::space::{Pose, Rotation3, Spatial, Twist, Vec3};
+use crate::space::{Pose, Rotation3, Spatial, Vec3};
 
 /// A solid of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,16 +40,9 @@ pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spati
         Nodes::Whole(Rounded { hull: part.hull, center, rotation, tributary_length })
     };
     Body {
-        name: name.into(),
-        motion: Motion::Free,
-        mass: whole.mass,
-        inertia,
-        damping: None,
-        pose: Pose { position: whole.center, orientation },
-        twist: Twist::default(),
         surfaces: parts.iter().map(surface).collect(),
         nodes: parts.iter().map(node).collect(),
-        faces: Vec::new(),
+        ..Body::free(name, whole.mass, inertia, Pose { position: whole.center, orientation })
     }
 }
 

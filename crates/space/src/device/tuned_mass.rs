@@ -2,7 +2,7 @@
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::TunedMass;
-use barrelstack_dynamics::{Body, Link, Motion, Pose, Quaternion, Twist, Vec3};
+use barrelstack_dynamics::{Body, Link, Pose, Quaternion, Vec3};
 
 use crate::builder::Builder;
 use crate::part::Part;
@@ -22,19 +22,9 @@ pub(super) fn place(device: &TunedMass, builder: &mut Builder<'_>) {
         // Every force goes through its center, so it never turns.
         let inertia = device.mass * half * half;
         let position = builder.bodies[rack].pose.position;
+        let pose = Pose { position, orientation: Quaternion::identity() };
         let mass = builder.add(
-            Body {
-                name: name.clone(),
-                motion: Motion::Free,
-                mass: device.mass,
-                inertia: Vec3::new(inertia, inertia, inertia),
-                damping: None,
-                pose: Pose { position, orientation: Quaternion::identity() },
-                twist: Twist::default(),
-                surfaces: Vec::new(),
-                nodes: Vec::new(),
-                faces: Vec::new(),
-            },
+            Body::free(&name, device.mass, Vec3::new(inertia, inertia, inertia), pose),
             Part { carrier: Some(rack), size: half, ..Part::alone(&name, PartKind::Device) },
         );
         let corner = |x: f64, y: f64, z: f64| position + Vec3::new(x * half, y * half, z * rise);

@@ -1,7 +1,7 @@
 //! The parts list of a stack: bodies in order, each a compound of convex solids, scaled.
 
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Element, Interface, Motion, Nodes, Planar, Pose, Shape, Twist, Vec2,
+    Body, BodyId, ContactPair, Element, Interface, Nodes, Planar, Pose, Shape, Vec2,
 };
 
 use super::interfaces::interface;
@@ -124,18 +124,12 @@ impl<'a> Builder<'a> {
             let (center, square_radius) = uniform(&draft.solids);
             (center, draft.mass * square_radius)
         };
-        let mut body = Body {
-            name: draft.name.clone(),
-            motion: Motion::Free,
-            mass: draft.mass * self.scale.mass(),
-            inertia: inertia * self.scale.inertia(),
-            damping: None,
-            pose: Pose { position: (draft.position + center) * length, orientation: 0.0 },
-            twist: Twist::default(),
-            surfaces: Vec::new(),
-            nodes: Vec::new(),
-            faces: Vec::new(),
-        };
+        let mut body = Body::free(
+            &draft.name,
+            draft.mass * self.scale.mass(),
+            inertia * self.scale.inertia(),
+            Pose { position: (draft.position + center) * length, orientation: 0.0 },
+        );
         let add = |solid: Solid| solid.add_to(&mut body, center, length);
         let touches: Vec<Touch> = draft.solids.into_iter().map(add).collect();
         let outlines = body.surfaces.iter().map(outline_of);

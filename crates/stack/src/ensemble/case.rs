@@ -98,32 +98,30 @@ impl CaseResult {
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         let left = ground.end() - time;
-        Self {
-            first_fall: fates.first_fall().filter(|_| sound),
+        let told = Self {
+            outcome: Ok(verdict.outcome),
             barrels: barrels.len(),
-            falls: if sound { barrels.iter().map(fall).collect() } else { Vec::new() },
-            fall_heights: if sound { fallen().map(|fate| fate.drop).collect() } else { Vec::new() },
-            fall_forces: if sound {
-                fallen().filter_map(|f| f.fall_force).collect()
-            } else {
-                Vec::new()
-            },
-            demands: if sound {
-                Demands::of(assembly, fates, stresses, joints)
-            } else {
-                Demands::default()
-            },
-            joints: if sound { joints.joints.iter().map(named).collect() } else { Vec::new() },
-            residual_displacement: (sound && !barrels.is_empty())
-                .then(|| residual.fold(0.0, largest)),
             ending: Some(verdict.ending),
             cut: Some(if verdict.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(time),
             steps: Some(verdict.steps),
             energy_residual_ratio: verdict.energy.map(|energy| energy.residual_ratio()),
             warnings: verdict.warnings,
-            trail: if sound { trail } else { Trail::default() },
-            outcome: Ok(verdict.outcome),
+            ..Self::failed(String::new())
+        };
+        if !sound {
+            return told;
+        }
+        Self {
+            first_fall: fates.first_fall(),
+            falls: barrels.iter().map(fall).collect(),
+            fall_heights: fallen().map(|fate| fate.drop).collect(),
+            fall_forces: fallen().filter_map(|fate| fate.fall_force).collect(),
+            demands: Demands::of(assembly, fates, stresses, joints),
+            joints: joints.joints.iter().map(named).collect(),
+            residual_displacement: (!barrels.is_empty()).then(|| residual.fold(0.0, largest)),
+            trail,
+            ..told
         }
     }
 

@@ -8,7 +8,7 @@ use barrelstack_input::named;
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Range, Section, names};
+use super::field::{Default, Kind, Range, Section, names};
 use super::known::known;
 use super::reader::Reader;
 use super::stack::View;
@@ -52,7 +52,10 @@ known! {
         pub base: &'static str,
     }
     /// The fields of a barrel.
-    const FIELDS, after BASE;
+    const FIELDS, after {
+        /// Barrel of the catalog.
+        base = Kind::Choice(catalog::barrel_names), Default::Value("\"bordeaux-225\"");
+    };
     /// Contents, and whether they turn with the barrel.
     fill: Fill = Kind::Choice(names::<Fill>), Default::Value("\"full-fluid\"");
     /// Share of the capacity that is filled, where `fill` is "part", of this barrel or of one that differs.
@@ -268,13 +271,6 @@ const SIZE: Kind =
 
 /// Fuller, the surface is too small for a wave that counts; emptier, the wine is a puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
-
-const BASE: Field = Field::new(
-    "base",
-    Kind::Choice(catalog::barrel_names),
-    Default::Value("\"bordeaux-225\""),
-    "Barrel of the catalog.",
-);
 
 /// A barrel.
 pub static BARREL: Section = Section {

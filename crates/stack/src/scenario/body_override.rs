@@ -1,11 +1,11 @@
 //! A body of a stack that differs from the others.
 
-use barrelstack_input::named;
+use barrelstack_input::{fields, named};
 
 use super::barrel::Fill;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Named, Range, Section, names};
+use super::field::{Default, Kind, Named, Range, Section, names};
 use super::reader::Reader;
 use super::stack::{COLUMNS, LEVELS, StackSpec};
 use super::tree::Table;
@@ -47,52 +47,25 @@ pub struct BodyOverride {
 pub static OVERRIDE: Section = Section {
     name: "override",
     help: "A body of the stack that differs from the others.",
-    fields: &[
-        Field::new(
-            "kind",
-            Kind::Choice(names::<StackBody>),
-            Default::Value("\"barrel\""),
-            "Kind of body.",
-        ),
-        Field::new("level", LEVELS, Default::Required, "Level, 1 at the bottom."),
-        Field::new(
-            "column",
-            COLUMNS,
-            Default::Derived("every column of the level"),
-            "Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where \
-             the stack is looked at in both planes or in space.",
-        ),
-        Field::new(
-            "row",
-            COLUMNS,
-            Default::Derived("every row"),
-            "Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.",
-        ),
-        Field::new(
-            "mass",
-            Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-            Default::Nothing,
-            "Mass in place of the regular one.",
-        ),
-        Field::new(
-            "fill",
-            Kind::Choice(names::<Fill>),
-            Default::Nothing,
-            "Contents in place of the regular ones; barrels only.",
-        ),
-        Field::new(
-            "offset_x",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
-            Default::Value("\"0 m\""),
-            "Displacement from the regular place, positive to the right before mirroring.",
-        ),
-        Field::new(
-            "offset_y",
-            Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)),
-            Default::Value("\"0 m\""),
-            "Displacement from the regular place along the barrels, positive away, in space.",
-        ),
-    ],
+    fields: &fields! {
+        /// Kind of body.
+        kind = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
+        /// Level, 1 at the bottom.
+        level = LEVELS, Default::Required;
+        /// Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where the
+        /// stack is looked at in both planes or in space.
+        column = COLUMNS, Default::Derived("every column of the level");
+        /// Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.
+        row = COLUMNS, Default::Derived("every row");
+        /// Mass in place of the regular one.
+        mass = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
+        /// Contents in place of the regular ones; barrels only.
+        fill = Kind::Choice(names::<Fill>), Default::Nothing;
+        /// Displacement from the regular place, positive to the right before mirroring.
+        offset_x = Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
+        /// Displacement from the regular place along the barrels, positive away, in space.
+        offset_y = Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
+    },
     variants: None,
     exclusive: &[],
 };

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::{Declared as _, Held};
-use barrelstack_input::section;
+use barrelstack_input::{fields, section};
 
 use super::dimension::Dimension;
 use super::element::{self, FreeElement};
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Range, Section, names};
+use super::field::{Default, Kind, Range, Section, names};
 use super::interface::{self, Interface};
 use super::nodes::{self, NodeRule};
 use super::reader::Reader;
@@ -133,102 +133,62 @@ const MOST_BODIES: usize = 5000;
 pub static BOUNDARY: Section = Section {
     name: "boundary",
     help: "A boundary of a body beside that of its own shape; it weighs nothing.",
-    fields: &[
-        Field::new("kind", Kind::Text, Default::Required, "Label used by interfaces."),
-        Field::new(
-            "shape",
-            Kind::Table(&SHAPE),
-            Default::Nothing,
-            "Outline that others touch, from the reference point of the body's shape; without it the boundary is \
-             its nodes.",
-        ),
-        NODES_FIELD,
-    ],
+    fields: &fields! {
+        /// Label used by interfaces.
+        kind = Kind::Text, Default::Required;
+        /// Outline that others touch, from the reference point of the body's shape; without it the boundary is its
+        /// nodes.
+        shape = Kind::Table(&SHAPE), Default::Nothing;
+        /// Contact nodes.
+        nodes = NODES_KIND, NODES_DEFAULT;
+    },
     variants: None,
     exclusive: &[],
 };
 
 /// The nodes of a boundary.
-const NODES_FIELD: Field = Field::new(
-    "nodes",
-    Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES),
-    Default::Derived(
-        "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
-    ),
-    "Contact nodes.",
+const NODES_KIND: Kind = Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES);
+const NODES_DEFAULT: Default = Default::Derived(
+    "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
 );
 
 /// A body.
 pub static BODY: Section = Section {
     name: "body",
     help: "A rigid body of a free scene.",
-    fields: &[
-        Field::new("name", Kind::Text, Default::Required, "Unique name."),
-        Field::new("kind", Kind::Text, Default::Derived("the name"), "Label used by interfaces."),
-        Field::new("shape", Kind::Table(&SHAPE), Default::Required, "Outline."),
-        Field::new(
-            "mass",
-            Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
-            Default::Required,
-            "Mass.",
-        ),
-        Field::new(
-            "inertia",
-            Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
-            Default::Derived("that of a uniform plate of this outline"),
-            "Moment of inertia about the center of mass.",
-        ),
-        Field::new(
-            "center_of_mass",
-            Kind::Point(Dimension::LENGTH),
-            Default::Derived("the centroid of the outline"),
-            "Center of mass, from the reference point of the shape.",
-        ),
-        Field::new(
-            "position",
-            Kind::Point(Dimension::LENGTH),
-            Default::Required,
-            "Place of the reference point of the shape at the start.",
-        ),
-        Field::new(
-            "angle",
-            Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)),
-            Default::Value("\"0 deg\""),
-            "Inclination at the start, counterclockwise.",
-        ),
-        Field::new(
-            "velocity",
-            Kind::Point(Dimension::VELOCITY),
-            Default::Value("[\"0 m/s\", \"0 m/s\"]"),
-            "Velocity of the center of mass at the start.",
-        ),
-        Field::new(
-            "spin",
-            Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)),
-            Default::Value("\"0 rad/s\""),
-            "Spin at the start, counterclockwise.",
-        ),
-        NODES_FIELD,
-        Field::new(
-            "boundary",
-            Kind::Tables(&BOUNDARY),
-            Default::Nothing,
-            "Further boundaries, each of a kind of its own.",
-        ),
-        Field::new(
-            "group",
-            Kind::Text,
-            Default::Nothing,
-            "Bodies of one group do not meet by an interface that says `within_groups = false`.",
-        ),
-        Field::new(
-            "fixed_to_ground",
-            Kind::Flag,
-            Default::Value("false"),
-            "Whether the body moves with the ground.",
-        ),
-        Field::new("viscous", Kind::Table(&VISCOUS), Default::Nothing, "Viscous drag."),
-    ],
+    fields: &fields! {
+        /// Unique name.
+        name = Kind::Text, Default::Required;
+        /// Label used by interfaces.
+        kind = Kind::Text, Default::Derived("the name");
+        /// Outline.
+        shape = Kind::Table(&SHAPE), Default::Required;
+        /// Mass.
+        mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
+        /// Moment of inertia about the center of mass.
+        inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
+            Default::Derived("that of a uniform plate of this outline");
+        /// Center of mass, from the reference point of the shape.
+        center_of_mass = Kind::Point(Dimension::LENGTH), Default::Derived("the centroid of the outline");
+        /// Place of the reference point of the shape at the start.
+        position = Kind::Point(Dimension::LENGTH), Default::Required;
+        /// Inclination at the start, counterclockwise.
+        angle = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
+        /// Velocity of the center of mass at the start.
+        velocity = Kind::Point(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\"]");
+        /// Spin at the start, counterclockwise.
+        spin = Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)), Default::Value("\"0 rad/s\"");
+        /// Contact nodes.
+        nodes = NODES_KIND, NODES_DEFAULT;
+        /// Further boundaries, each of a kind of its own.
+        boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
+        /// Bodies of one group do not meet by an interface that says `within_groups = false`.
+        group = Kind::Text, Default::Nothing;
+        /// Whether the body moves with the ground.
+        fixed_to_ground = Kind::Flag, Default::Value("false");
+        /// Viscous drag.
+        viscous = Kind::Table(&VISCOUS), Default::Nothing;
+    },
     variants: None,
     exclusive: &[],
 };

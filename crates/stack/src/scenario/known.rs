@@ -9,7 +9,7 @@ macro_rules! known {
         $(#[$about:meta])*
         pub struct $type:ident { $($(#[$kept:meta])* pub $own:ident: $given:ty,)* }
         $(#[doc = $list:literal])+
-        const $fields:ident $(, after $first:expr)?;
+        const $fields:ident $(, after { $($first:tt)+ })?;
         $(
             $(#[doc = $help:literal])+
             $field:ident $(as $key:literal)?: $held:ty = $kind:expr, $default:expr;
@@ -22,15 +22,10 @@ macro_rules! known {
         }
 
         $(#[doc = $list])+
-        const $fields: &[Field] = &[
-            $($first,)?
-            $(Field::new(
-                barrelstack_input::first!($($key,)? stringify!($field)),
-                $kind,
-                $default,
-                concat!($($help),+).trim_ascii(),
-            ),)+
-        ];
+        const $fields: &[barrelstack_input::field::Field] = &barrelstack_input::fields! {
+            $($($first)+)?
+            $($(#[doc = $help])+ $field $(as $key)? = $kind, $default;)+
+        };
 
         impl $type {
             /// Reads it over one of the catalog.

@@ -1,11 +1,11 @@
 //! Where the boundary of a body of a free scene carries contact nodes.
 
 use barrelstack_input::declared::Held;
-use barrelstack_input::{named, section};
+use barrelstack_input::{fields, named, section};
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Range, Section, names};
+use super::field::{Default, Kind, Range, Section, names};
 use super::reader::Reader;
 use super::shape::Shape;
 use super::tree::Table;
@@ -56,31 +56,18 @@ const MOST_NODES: f64 = 20_000.0;
 pub static NODES: Section = Section {
     name: "nodes",
     help: "Where the boundary carries contact nodes: one of the fields.",
-    fields: &[
-        Field::new(
-            "rule",
-            Kind::Choice(names::<NodeRule>),
-            Default::Nothing,
-            "At the corners; at the one deepest point of a circle; or exact, where convex outlines touch \
-             each other with their deepest points and both bodies say so.",
-        ),
-        Field::new(
-            "spacing",
-            Kind::Quantity(
-                &[Dimension::LENGTH],
-                Range { least: 1e-4, above: false, greatest: 1e3 },
-            ),
-            Default::Nothing,
-            "Greatest distance between nodes along the boundary.",
-        ),
-        Field::new(
-            "count",
-            Kind::Integer(1, 2000),
-            Default::Nothing,
-            "Nodes on each side, or around a curved shape.",
-        ),
-        Field::new("list", Kind::Tables(&NODE), Default::Nothing, "Nodes at chosen places."),
-    ],
+    fields: &fields! {
+        /// At the corners; at the one deepest point of a circle; or exact, where convex outlines touch each other
+        /// with their deepest points and both bodies say so.
+        rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
+        /// Greatest distance between nodes along the boundary.
+        spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
+            Default::Nothing;
+        /// Nodes on each side, or around a curved shape.
+        count = Kind::Integer(1, 2000), Default::Nothing;
+        /// Nodes at chosen places.
+        list = Kind::Tables(&NODE), Default::Nothing;
+    },
     variants: None,
     exclusive: &[&["rule", "spacing", "count", "list"]],
 };

@@ -2,12 +2,12 @@
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::{choices, named};
+use barrelstack_input::{choices, fields, named};
 
 use super::catalog;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Range, Section, Variant, Variants, names};
+use super::field::{Default, Kind, Range, Section, Variant, Variants, names};
 use super::known::known;
 use super::reader::Reader;
 use super::tree::Table;
@@ -93,7 +93,10 @@ known! {
         pub posts: Option<Posts>,
     }
     /// The fields of all racks.
-    const FIELDS, after BASE;
+    const FIELDS, after {
+        /// Rack of the catalog.
+        base = Kind::Choice(catalog::rack_names), Default::Value("\"two-barrel\"");
+    };
     /// Mass of one rack.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
     /// Barrels side by side on one rack, in the transverse view.
@@ -129,13 +132,6 @@ known! {
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;
 }
 
-const BASE: Field = Field::new(
-    "base",
-    Kind::Choice(catalog::rack_names),
-    Default::Value("\"two-barrel\""),
-    "Rack of the catalog.",
-);
-
 const CATALOG: Default = Default::Derived("that of the catalog");
 
 const fn size(least: f64, greatest: f64) -> Kind {
@@ -148,12 +144,10 @@ const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5)
 pub static CRADLE: Section = Section {
     name: "cradle",
     help: "How a rack holds a barrel in the transverse view.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(Cradle::names),
-        Default::Value("\"supports\""),
-        "Two supports, or a circular trough.",
-    )],
+    fields: &fields! {
+        /// Two supports, or a circular trough.
+        type = Kind::Choice(Cradle::names), Default::Value("\"supports\"");
+    },
     variants: Some(Variants { tag: "type", list: &CRADLES }),
     exclusive: &[],
 };

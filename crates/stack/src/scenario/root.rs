@@ -1,10 +1,10 @@
 //! The top of a scenario file.
 
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::named;
+use barrelstack_input::{fields, named};
 
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Section, Variant, Variants, names};
+use super::field::{Default, Kind, Section, Variant, Variants, names};
 use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
@@ -29,116 +29,64 @@ named! {
 pub static ROOT: Section = Section {
     name: "scenario",
     help: "What stands where, what shakes it, and how it is run.",
-    fields: &[
-        Field::new(
-            "schema",
-            Kind::Integer(1, SCHEMA as i64),
-            Default::Required,
-            "Version of the scenario language.",
-        ),
-        Field::new(
-            "title",
-            Kind::Text,
-            Default::Derived("name of the file"),
-            "One line for people.",
-        ),
-        Field::new(
-            "extends",
-            Kind::Text,
-            Default::Nothing,
-            "Built-in scenario, or file ending in `.toml`, over which this one is laid.",
-        ),
-        Field::new(
-            "kind",
-            Kind::Choice(names::<SceneKind>),
-            Default::Value("\"stack\""),
-            "What stands.",
-        ),
-        Field::new("motion", Kind::Table(&motion::MOTION), Default::Nothing, "The ground motion."),
-        Field::new("run", Kind::Table(&run::RUN), Default::Nothing, "How it is run."),
-        Field::new("record", Kind::Table(&run::RECORD), Default::Nothing, "What is kept."),
-    ],
+    fields: &fields! {
+        /// Version of the scenario language.
+        schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
+        /// One line for people.
+        title = Kind::Text, Default::Derived("name of the file");
+        /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
+        extends = Kind::Text, Default::Nothing;
+        /// What stands.
+        kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
+        /// The ground motion.
+        motion = Kind::Table(&motion::MOTION), Default::Nothing;
+        /// How it is run.
+        run = Kind::Table(&run::RUN), Default::Nothing;
+        /// What is kept.
+        record = Kind::Table(&run::RECORD), Default::Nothing;
+    },
     variants: Some(Variants {
         tag: "kind",
         list: &[
             Variant {
                 name: "stack",
                 help: "A stack of barrels on racks.",
-                fields: &[
-                    Field::new(
-                        "stack",
-                        Kind::Table(&stack::STACK),
-                        Default::Required,
-                        "The stack.",
-                    ),
-                    Field::new(
-                        "interface",
-                        Kind::Table(&pair::INTERFACES),
-                        Default::Nothing,
-                        "Laws of contact by pair.",
-                    ),
-                    Field::new(
-                        "outcome",
-                        Kind::Table(&run::OUTCOME),
-                        Default::Nothing,
-                        "Thresholds that tell a collapse.",
-                    ),
-                    Field::new(
-                        "imperfections",
-                        Kind::Table(&imperfections::IMPERFECTIONS),
-                        Default::Nothing,
-                        "How the variants of the stack differ from what is stated here.",
-                    ),
-                ],
+                fields: &fields! {
+                    /// The stack.
+                    stack = Kind::Table(&stack::STACK), Default::Required;
+                    /// Laws of contact by pair.
+                    interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
+                    /// Thresholds that tell a collapse.
+                    outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
+                    /// How the variants of the stack differ from what is stated here.
+                    imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
+                },
             },
             Variant {
                 name: "free",
                 help: "Any planar bodies on a ground.",
-                fields: &[
-                    Field::new(
-                        "ground",
-                        Kind::Table(&free::GROUND),
-                        Default::Nothing,
-                        "The ground.",
-                    ),
-                    Field::new("body", Kind::Tables(&free::BODY), Default::Required, "The bodies."),
-                    Field::new(
-                        "interface",
-                        Kind::Tables(&interface::FREE_INTERFACE),
-                        Default::Nothing,
-                        "Laws of contact between kinds of body.",
-                    ),
-                    Field::new(
-                        "element",
-                        Kind::Tables(&element::ELEMENT),
-                        Default::Nothing,
-                        "Force elements between bodies.",
-                    ),
-                ],
+                fields: &fields! {
+                    /// The ground.
+                    ground = Kind::Table(&free::GROUND), Default::Nothing;
+                    /// The bodies.
+                    body = Kind::Tables(&free::BODY), Default::Required;
+                    /// Laws of contact between kinds of body.
+                    interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
+                    /// Force elements between bodies.
+                    element = Kind::Tables(&element::ELEMENT), Default::Nothing;
+                },
             },
             Variant {
                 name: "free-spatial",
                 help: "Any bodies in space on a ground.",
-                fields: &[
-                    Field::new(
-                        "ground",
-                        Kind::Table(&spatial::GROUND),
-                        Default::Nothing,
-                        "The ground.",
-                    ),
-                    Field::new(
-                        "body",
-                        Kind::Tables(&barrelstack_bodies::BODY),
-                        Default::Required,
-                        "The bodies.",
-                    ),
-                    Field::new(
-                        "interface",
-                        Kind::Tables(&interface::FREE_INTERFACE),
-                        Default::Nothing,
-                        "Laws of contact between kinds of body.",
-                    ),
-                ],
+                fields: &fields! {
+                    /// The ground.
+                    ground = Kind::Table(&spatial::GROUND), Default::Nothing;
+                    /// The bodies.
+                    body = Kind::Tables(&barrelstack_bodies::BODY), Default::Required;
+                    /// Laws of contact between kinds of body.
+                    interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
+                },
             },
         ],
     }),

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::{choices, section};
+use barrelstack_input::{choices, fields, section};
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Field, Kind, Range, Section, Variant, Variants};
+use super::field::{Default, Kind, Range, Section, Variant, Variants};
 use super::reader::Reader;
 use super::uniform::{area, cross, sides};
 use super::writer::Writer;
@@ -81,12 +81,10 @@ const MOST_CORNERS: usize = 200;
 pub static SHAPE: Section = Section {
     name: "shape",
     help: "Outline of a body, about its reference point.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(Shape::names),
-        Default::Required,
-        "Form of the outline.",
-    )],
+    fields: &fields! {
+        /// Form of the outline.
+        type = Kind::Choice(Shape::names), Default::Required;
+    },
     variants: Some(Variants { tag: "type", list: &SHAPES }),
     exclusive: &[],
 };
@@ -109,12 +107,10 @@ section! {
 static PART_SHAPE: Section = Section {
     name: "part-shape",
     help: "Outline of a part, about its reference point.",
-    fields: &[Field::new(
-        "type",
-        Kind::Choice(part_names),
-        Default::Required,
-        "Form of the outline, no compound itself.",
-    )],
+    fields: &fields! {
+        /// Form of the outline, no compound itself.
+        type = Kind::Choice(part_names), Default::Required;
+    },
     variants: Some(Variants { tag: "type", list: OF_PARTS }),
     exclusive: &[],
 };

@@ -1,6 +1,6 @@
 //! A stack of barrels on racks.
 
-use barrelstack_input::named;
+use barrelstack_input::{fields, named};
 
 use crate::device::{self, Devices};
 
@@ -166,62 +166,31 @@ pub(super) const COLUMNS: Kind = Kind::Integer(1, 40);
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// The fields of a stack of its own.
-const OWN: [Field; 9] = [
-    Field::new(
-        "view",
-        Kind::Choice(names::<Planes>),
-        Default::Value("\"transverse\""),
-        "Plane of the model: across the barrels, along them, or one after the other, each with a horizontal \
-         component of the record; or \"spatial\", the stack in space under all components at once.",
-    ),
-    Field::new("levels", LEVELS, Default::Required, "Levels of barrels."),
-    Field::new(
-        "columns",
-        COLUMNS,
-        Default::Required,
-        "Barrels per level in this view, a multiple of those that one rack carries; across the barrels where \
-         it is looked at in both planes or in space.",
-    ),
-    Field::new(
-        "columns_along",
-        COLUMNS,
-        Default::Derived(
-            "in both planes and in space, those that one rack carries; must not be given otherwise",
-        ),
-        "Barrels per level along the barrels, where the stack is looked at in both planes or in space.",
-    ),
-    Field::new(
-        "azimuth",
-        Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
-        Default::Derived("in space, 0 deg; must not be given otherwise"),
-        "Angle by which the stack is turned, seen from above against the clock, from where `motion.component` shakes \
-         it across its barrels and the other horizontal component along them.",
-    ),
-    Field::new(
-        "barrel",
-        Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL),
-        Default::Derived("bordeaux-225"),
-        "The barrel.",
-    ),
-    Field::new(
-        "rack",
-        Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK),
-        Default::Derived("two-barrel"),
-        "The rack.",
-    ),
-    Field::new(
-        "mirror",
-        Kind::Flag,
-        Default::Value("false"),
-        "Whether left and right change places.",
-    ),
-    Field::new(
-        "gap",
-        Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)),
-        Default::Value("\"0.05 m\""),
-        "Free distance between racks side by side.",
-    ),
-];
+const OWN: [Field; 9] = fields! {
+    /// Plane of the model: across the barrels, along them, or one after the other, each with a horizontal component
+    /// of the record; or "spatial", the stack in space under all components at once.
+    view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
+    /// Levels of barrels.
+    levels = LEVELS, Default::Required;
+    /// Barrels per level in this view, a multiple of those that one rack carries; across the barrels where it is
+    /// looked at in both planes or in space.
+    columns = COLUMNS, Default::Required;
+    /// Barrels per level along the barrels, where the stack is looked at in both planes or in space.
+    columns_along = COLUMNS,
+        Default::Derived("in both planes and in space, those that one rack carries; must not be given otherwise");
+    /// Angle by which the stack is turned, seen from above against the clock, from where `motion.component` shakes
+    /// it across its barrels and the other horizontal component along them.
+    azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
+        Default::Derived("in space, 0 deg; must not be given otherwise");
+    /// The barrel.
+    barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
+    /// The rack.
+    rack = Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK), Default::Derived("two-barrel");
+    /// Whether left and right change places.
+    mirror = Kind::Flag, Default::Value("false");
+    /// Free distance between racks side by side.
+    gap = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"0.05 m\"");
+};
 
 const OVERRIDES: Field = Field::new(
     "override",

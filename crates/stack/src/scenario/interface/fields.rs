@@ -1,6 +1,6 @@
 //! The fields of `[interface]`.
 
-use barrelstack_input::named;
+use barrelstack_input::{fields, named};
 
 use crate::scenario::dimension::Dimension;
 use crate::scenario::field::{Default, Field, Kind, Range, Section, Variant, Variants, names};
@@ -138,20 +138,12 @@ const LAWS: Variants = Variants {
             name: "rebound",
             help: "Spring with the power 1.5 of the penetration that gives back a stated share of the speed, \
                    whatever mass meets.",
-            fields: &[
-                Field::new(
-                    "restitution",
-                    Kind::Number(Range::up_to(1.0)),
-                    Default::Value("0.3"),
-                    "Ratio of normal speeds after and before an impact.",
-                ),
-                Field::new(
-                    "speed",
-                    Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
-                    Default::Value("\"0.1 m/s\""),
-                    "Speed below which the contact damps as well, so that what it bears comes to rest.",
-                ),
-            ],
+            fields: &fields! {
+                /// Ratio of normal speeds after and before an impact.
+                restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
+                /// Speed below which the contact damps as well, so that what it bears comes to rest.
+                speed = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Value("\"0.1 m/s\"");
+            },
         },
         Variant {
             name: "hertz",
@@ -223,12 +215,10 @@ const COEFFICIENT_FIELD: Field = Field::new(
 pub static FRICTION: Section = Section {
     name: "friction",
     help: "Tangential force of a contact.",
-    fields: &[Field::new(
-        "law",
-        Kind::Choice(names::<FrictionKind>),
-        Default::Value("\"coulomb\""),
-        "Tangential force as a function of slip.",
-    )],
+    fields: &fields! {
+        /// Tangential force as a function of slip.
+        law = Kind::Choice(names::<FrictionKind>), Default::Value("\"coulomb\"");
+    },
     variants: Some(Variants {
         tag: "law",
         list: &[
