@@ -49,6 +49,16 @@ pub trait Held: Sized {
     /// Writes the field of a name.
     fn write(&self, writer: &mut Writer, name: &'static str);
 
+    /// Reads the field of a name that may be absent.
+    fn read_optional(reader: &Reader<'_>, name: &'static str) -> Result<Option<Self>, InputError> {
+        (!reader.leaves_out(name)).then(|| Self::read(reader, name)).transpose()
+    }
+
+    /// Leaves the field of a name out, because it is absent.
+    fn omit(writer: &mut Writer, name: &'static str) {
+        writer.omit(&[name]);
+    }
+
     /// Reads the field of a name, which is that of what is known where the file leaves it out.
     fn read_over(reader: &Reader<'_>, name: &'static str, known: &Self) -> Result<Self, InputError>
     where
@@ -71,15 +81,8 @@ impl Held for f64 {
             writer.quantity(name, *self);
         }
     }
-}
 
-fn is_plain(kind: Kind) -> bool {
-    matches!(kind, Kind::Number(_))
-}
-
-/// A quantity in SI that may be absent, or has a word in its place.
-impl Held for Option<f64> {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+    fn read_optional(reader: &Reader<'_>, name: &'static str) -> Result<Option<Self>, InputError> {
         if has_word(reader.kind_of(name)) {
             reader.word_or_quantity(name)
         } else {
@@ -87,11 +90,29 @@ impl Held for Option<f64> {
         }
     }
 
-    fn write(&self, writer: &mut Writer, name: &'static str) {
+    fn omit(writer: &mut Writer, name: &'static str) {
         if has_word(writer.kind_of(name)) {
-            writer.word_or_quantity(name, *self);
+            writer.word_or_quantity(name, None);
         } else {
-            writer.optional_quantity(name, *self);
+            writer.omit(&[name]);
+        }
+    }
+}
+
+fn is_plain(kind: Kind) -> bool {
+    matches!(kind, Kind::Number(_))
+}
+
+/// What may be absent, or has a word in its place.
+impl<T: Held> Held for Option<T> {
+    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
+        T::read_optional(reader, name)
+    }
+
+    fn write(&self, writer: &mut Writer, name: &'static str) {
+        match self {
+            Some(value) => value.write(writer, name),
+            None => T::omit(writer, name),
         }
     }
 }
@@ -119,18 +140,9 @@ macro_rules! held {
 held! {
     [f64; 2]: Reader::point, |writer, name, value| writer.point(name, *value);
     [f64; 3]: Reader::triple, |writer, name, value| writer.triple(name, *value);
-    Option<[f64; 3]>: Reader::optional_triple, |writer, name, value| {
-        writer.optional(name, *value, Writer::triple);
-    };
     String: Reader::text, |writer, name, value| writer.text(name, value);
-    Option<String>: Reader::optional_text, |writer, name, value| {
-        writer.optional_text(name, value.as_deref());
-    };
     [String; 2]: Reader::pair, Writer::pair;
     u32: Reader::integer, |writer, name, value| writer.integer(name, *value);
-    Option<u32>: Reader::optional_integer, |writer, name, value| {
-        writer.optional(name, *value, Writer::integer);
-    };
     bool: Reader::flag, |writer, name, value| writer.flag(name, *value);
     Vec<[f64; 2]>: Reader::points, |writer, name, value| writer.points(name, value);
 }
@@ -146,17 +158,6 @@ impl<T: Declared> Held for Vec<T> {
     }
 }
 
-/// A table that may be absent.
-impl<T: Declared> Held for Option<T> {
-    fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
-        reader.optional_section(name)?.map(T::read).transpose()
-    }
-
-    fn write(&self, writer: &mut Writer, name: &'static str) {
-        writer.optional(name, self.as_ref().map(T::write), Writer::table);
-    }
-}
-
 /// A member of a closed set; where what is left out derives from others, the first, for the caller to correct.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
@@ -169,7 +170,7 @@ impl<T: Named> Held for T {
 }
 
 /// Declares a type with the table that it is read from: each field once, with its type, what it holds, what an
-/// absent one means, and its help, which is its doc comment.
+/// absent one means, and its help, which is its doc comment; `as` its key in files, where that is another name.
 ///
 /// A table whose further fields are chosen `by` one of these says so, and the type of that one is made by
 /// [`choices!`](crate::choices).
@@ -205,7 +206,7 @@ macro_rules! section {
         $seen:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)? $(, by $tag:ident of $choices:expr)?;
         $(
             $(#[doc = $text:literal])+
-            $field:ident: $held:ty = $kind:expr, $default:expr;
+            $field:ident $(as $key:literal)?: $held:ty = $kind:expr, $default:expr;
         )*
     ) => {
         $(#[$about])*
@@ -220,7 +221,7 @@ macro_rules! section {
         $crate::table! {
             $(#[doc = $help])+
             $seen static $section = $name;
-            $($(#[doc = $text])+ $field = $kind, $default;)*
+            $($(#[doc = $text])+ $field $(as $key)? = $kind, $default;)*
             $(of $choices, by $tag;)?
             $(at most one of $rivals;)?
         }
@@ -234,12 +235,19 @@ macro_rules! section {
                 reader: &$crate::reader::Reader<'_>,
             ) -> ::std::result::Result<Self, $crate::InputError> {
                 Ok(Self {
-                    $($field: $crate::declared::Held::read(reader, stringify!($field))?,)*
+                    $($field: $crate::declared::Held::read(
+                        reader,
+                        $crate::first!($($key,)? stringify!($field)),
+                    )?,)*
                 })
             }
 
             fn write_fields(&self, writer: &mut $crate::writer::Writer) {
-                $($crate::declared::Held::write(&self.$field, writer, stringify!($field));)*
+                $($crate::declared::Held::write(
+                    &self.$field,
+                    writer,
+                    $crate::first!($($key,)? stringify!($field)),
+                );)*
             }
 
             $(
@@ -252,6 +260,19 @@ macro_rules! section {
                     $crate::choices::Chosen::write_chosen(&self.$tag, writer);
                 }
             )?
+        }
+
+        impl $crate::declared::Held for $type {
+            fn read(
+                reader: &$crate::reader::Reader<'_>,
+                name: &'static str,
+            ) -> ::std::result::Result<Self, $crate::InputError> {
+                $crate::declared::Declared::read(reader.section(name)?)
+            }
+
+            fn write(&self, writer: &mut $crate::writer::Writer, name: &'static str) {
+                writer.table(name, $crate::declared::Declared::write(self));
+            }
         }
     };
 }
@@ -292,7 +313,7 @@ macro_rules! table {
     (
         $(#[doc = $help:literal])+
         $seen:vis static $section:ident = $name:literal;
-        $($(#[doc = $text:literal])+ $field:ident = $kind:expr, $default:expr;)*
+        $($(#[doc = $text:literal])+ $field:ident $(as $key:literal)? = $kind:expr, $default:expr;)*
         $(by $tag:ident {$(
             $(#[doc = $meaning:literal])+
             $variant:literal $(with [$($first:expr),+])? {
@@ -306,7 +327,7 @@ macro_rules! table {
         $seen static $section: $crate::field::Section = $crate::field::Section {
             name: $name,
             help: concat!($($help),+).trim_ascii(),
-            fields: &$crate::fields!($($(#[doc = $text])+ $field = $kind, $default;)*),
+            fields: &$crate::fields!($($(#[doc = $text])+ $field $(as $key)? = $kind, $default;)*),
             variants: $crate::first!($(Some($crate::field::Variants {
                 tag: stringify!($tag),
                 list: &[$($crate::field::Variant {

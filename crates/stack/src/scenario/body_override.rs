@@ -1,15 +1,15 @@
 //! A body of a stack that differs from the others.
 
-use barrelstack_input::{fields, named};
+use barrelstack_input::declared::Declared as _;
+use barrelstack_input::{named, section};
 
 use super::barrel::Fill;
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Kind, Named, Range, Section, names};
+use super::field::{Default, Kind, Named, Range, names};
 use super::reader::Reader;
 use super::stack::{COLUMNS, LEVELS, StackSpec};
 use super::tree::Table;
-use super::writer::Writer;
 
 named! {
     /// The kind of body that an override changes.
@@ -21,65 +21,37 @@ named! {
     }
 }
 
-/// What differs at one body of a stack.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyOverride {
+section! {
+    /// What differs at one body of a stack.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct BodyOverride;
+    /// A body of the stack that differs from the others.
+    pub static OVERRIDE = "override";
     /// Kind of body.
-    pub body: StackBody,
+    body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
-    pub level: u32,
-    /// Column, 1 at the left before any mirroring: of barrels, or of racks when `body` is a rack;
-    /// `None` for the whole level.
-    pub column: Option<u32>,
-    /// Row in space, 1 nearest: of barrels along the barrels, or of racks when `body` is a rack; `None` for all.
-    pub row: Option<u32>,
-    /// Mass in place of the regular one (kg).
-    pub mass: Option<f64>,
+    level: u32 = LEVELS, Default::Required;
+    /// Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where the stack
+    /// is looked at in both planes or in space.
+    column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
+    /// Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.
+    row: Option<u32> = COLUMNS, Default::Derived("every row");
+    /// Mass in place of the regular one.
+    mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
     /// Contents in place of the regular ones; barrels only.
-    pub fill: Option<Fill>,
-    /// Displacement from the regular place, positive to the right before any mirroring (m).
-    pub offset_x: f64,
-    /// The same along the barrels, positive away, in space (m).
-    pub offset_y: f64,
+    fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
+    /// Displacement from the regular place, positive to the right before mirroring.
+    offset_x: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
+    /// Displacement from the regular place along the barrels, positive away, in space.
+    offset_y: f64 =
+        Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }
-
-/// A body that differs.
-pub static OVERRIDE: Section = Section {
-    name: "override",
-    help: "A body of the stack that differs from the others.",
-    fields: &fields! {
-        /// Kind of body.
-        kind = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
-        /// Level, 1 at the bottom.
-        level = LEVELS, Default::Required;
-        /// Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where the
-        /// stack is looked at in both planes or in space.
-        column = COLUMNS, Default::Derived("every column of the level");
-        /// Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.
-        row = COLUMNS, Default::Derived("every row");
-        /// Mass in place of the regular one.
-        mass = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-        /// Contents in place of the regular ones; barrels only.
-        fill = Kind::Choice(names::<Fill>), Default::Nothing;
-        /// Displacement from the regular place, positive to the right before mirroring.
-        offset_x = Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-        /// Displacement from the regular place along the barrels, positive away, in space.
-        offset_y = Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-    },
-    variants: None,
-    exclusive: &[],
-};
 
 /// Reads what differs of a body of a stack.
 pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, ScenarioError> {
-    let body: StackBody = reader.choice("kind")?;
-    let level = reader.integer("level")?;
-    let column = reader.optional_integer("column")?;
-    let mass = reader.optional_quantity("mass")?;
-    let fill: Option<Fill> = reader.optional_choice("fill")?;
-    let offset_x = reader.quantity("offset_x")?;
-    let row = reader.optional_integer("row")?;
-    let offset_y = reader.quantity("offset_y")?;
+    let change = BodyOverride::read_fields(&reader)?;
+    let BodyOverride { body, level, column, row, mass, fill, offset_y, .. } = change;
     let only_in_space = [("row", row.is_some()), ("offset_y", offset_y != 0.0)];
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
@@ -128,26 +100,15 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
         return Err(reader.inconsistent("mass", message));
     }
     reader.finish();
-    Ok(BodyOverride { body, level, column, row, mass, fill, offset_x, offset_y })
+    Ok(change)
 }
 
 /// Writes what differs of a body.
 pub(super) fn write(body: &BodyOverride) -> Table {
-    let mut writer = Writer::new(&OVERRIDE);
-    writer.choice("kind", body.body);
-    writer.integer("level", body.level);
-    match body.column {
-        Some(column) => writer.integer("column", column),
-        None => writer.omit(&["column"]),
-    }
-    match body.row {
-        Some(row) => writer.integer("row", row),
-        None => writer.omit(&["row"]),
-    }
-    writer.optional_quantity("mass", body.mass);
-    writer.optional_text("fill", body.fill.map(Named::name));
-    writer.quantity("offset_x", body.offset_x);
+    let mut table = body.write();
     // A scenario of a plane is written, and so hashed, as before.
-    writer.optional_quantity("offset_y", Some(body.offset_y).filter(|y| *y != 0.0));
-    writer.finish()
+    if body.offset_y == 0.0 {
+        table.remove("offset_y");
+    }
+    table
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use barrelstack_input::choices::Chosen as _;
-use barrelstack_input::declared::{Declared as _, Held};
+use barrelstack_input::declared::{self, Declared as _};
 use barrelstack_input::{fields, section};
 
 use super::dimension::Dimension;
@@ -260,7 +260,7 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
         boundaries,
         group: reader.optional_text("group")?,
         fixed_to_ground: reader.flag("fixed_to_ground")?,
-        viscous: Held::read(&reader, "viscous")?,
+        viscous: declared::Held::read(&reader, "viscous")?,
     };
     reader.finish();
     Ok(body)
@@ -375,6 +375,6 @@ fn write_body(body: &FreeBody) -> Table {
     writer.table("shape", body.shape.write_as(&SHAPE));
     writer.table("nodes", nodes::write(&body.nodes));
     writer.tables("boundary", body.boundaries.iter().map(write_boundary).collect());
-    body.viscous.write(&mut writer, "viscous");
+    declared::Held::write(&body.viscous, &mut writer, "viscous");
     writer.finish()
 }
