@@ -83,7 +83,7 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
 /// Where the dimensions of the catalog come from.
 fn dimensions(run: &Run) -> Option<Block> {
     let stack = run.scenario.stack()?;
-    let barrel = catalog::barrel(&stack.barrel.base);
+    let barrel = catalog::barrel(stack.barrel.base);
     let rack = catalog::rack(stack.rack.base);
     let mut sources = Vec::new();
     sources.extend(barrel.map(|known| format!("Barrel {}: {}.", known.name, known.source)));
