@@ -59,7 +59,7 @@ fn wine_that_stands_still_adds_less_than_wine_that_turns() {
 fn a_thin_straight_shell_has_the_inertia_of_a_tube_with_lids() {
     let (radius, length, wall, mass) = (0.3_f64, 0.9_f64, 1e-3_f64, 40.0_f64);
     let barrel = Barrel {
-        base: "bordeaux-225".to_owned(),
+        base: "bordeaux-225",
         mass,
         empty_mass: mass,
         length,

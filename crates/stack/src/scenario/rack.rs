@@ -240,5 +240,10 @@ pub(super) fn write(rack: &Rack) -> Table {
     if let Some(posts) = rack.posts {
         posts.write_fields(&mut writer);
     }
-    writer.finish()
+    let mut table = writer.finish();
+    // Lists of what is stated have the feet behind the cradle.
+    if let Some(feet) = table.entries.iter().position(|entry| entry.key == "foot_height") {
+        table.entries.swap(feet, feet + 1);
+    }
+    table
 }
