@@ -10,6 +10,8 @@ use barrelstack_input::{Dimension, InputError, choices, fields, section};
 
 choices! {
     /// A solid about its reference point.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub enum Solid;
     /// The forms of solids.

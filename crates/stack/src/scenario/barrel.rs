@@ -46,6 +46,8 @@ impl Fill {
 known! {
     /// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
     /// heads.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Barrel {
         /// Catalog name the barrel was made from.

@@ -23,6 +23,8 @@ named! {
 
 section! {
     /// What differs at one body of a stack.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct BodyOverride;
     /// A body of the stack that differs from the others.

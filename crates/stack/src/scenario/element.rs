@@ -12,6 +12,8 @@ use super::free::{FreeBody, Ground};
 
 section! {
     /// A force element between two bodies of a free scene.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct FreeElement;
     /// A force element between points of two bodies of a free scene.
@@ -34,6 +36,8 @@ section! {
 
 choices! {
     /// What a force element does.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub enum ElementLaw, among the fields of ELEMENT;
     /// The laws.

@@ -24,6 +24,8 @@ pub enum RackKind {
 
 choices! {
     /// How a rack holds a barrel in the transverse view.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub enum Cradle;
     /// The ways.
@@ -67,6 +69,8 @@ impl SeatContact {
 
 known! {
     /// The posts of a rack that stands on the rack below.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Posts {}
     /// The fields of racks on posts.
@@ -83,6 +87,8 @@ known! {
 
 known! {
     /// A rack.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Rack {
         /// Catalog name the rack was made from.

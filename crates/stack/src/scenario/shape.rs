@@ -15,6 +15,8 @@ use super::writer::Writer;
 
 choices! {
     /// Outline of a body, about its reference point.
+    ///
+    /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub enum Shape;
     /// The forms of outlines.
