@@ -143,31 +143,26 @@ impl History {
 
     /// Largest absolute acceleration (m/s²).
     pub fn pga(&self) -> f64 {
-        match self {
-            Self::Sampled(sampled) => sampled.pga(),
-            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.acceleration),
-        }
+        self.peak(Sampled::pga, |k| k.acceleration)
     }
 
     /// Largest absolute velocity (m/s); at the samples if the history is sampled.
     pub fn pgv(&self) -> f64 {
-        match self {
-            Self::Sampled(sampled) => sampled.pgv(),
-            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.velocity),
-        }
+        self.peak(Sampled::pgv, |k| k.velocity)
     }
 
     /// Largest absolute displacement up to the end of shaking (m); at the samples if sampled.
     pub fn pgd(&self) -> f64 {
-        match self {
-            Self::Sampled(sampled) => sampled.pgd(),
-            Self::Analytic(_) | Self::Sum(_) => self.search_peak(|k| k.displacement),
-        }
+        self.peak(Sampled::pgd, |k| k.displacement)
     }
 
-    /// Scans at the natural step and refines every local extremum by golden section.
-    fn search_peak(&self, quantity: impl Fn(Kinematics) -> f64) -> f64 {
+    /// That of the samples; of others scans at the natural step and refines every local extremum by golden
+    /// section.
+    fn peak(&self, sampled: fn(&Sampled) -> f64, quantity: fn(Kinematics) -> f64) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
+        if let Self::Sampled(samples) = self {
+            return sampled(samples);
+        }
         let duration = self.duration();
         let step = self.natural_step();
         if !(step > 0.0 && duration / step <= 1e8) {

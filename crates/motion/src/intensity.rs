@@ -155,10 +155,9 @@ impl IntensityMeasure {
     pub fn check(&self) -> Result<(), MotionError> {
         match *self {
             Self::SignificantDuration { from, to } => {
-                let (within, found) =
-                    (0.0 <= from && from < to && to <= 1.0, format!("{from} and {to}"));
-                let what = "significant duration";
-                MotionError::require(within, what, "fractions 0 <= from < to <= 1", found)
+                let within = 0.0 <= from && from < to && to <= 1.0;
+                let (what, expected) = ("significant duration", "fractions 0 <= from < to <= 1");
+                MotionError::require(within, what, expected, format!("{from} and {to}"))
             }
             Self::BracketedDuration { threshold } => {
                 MotionError::require_positive("bracketed duration threshold (m/s2)", threshold)

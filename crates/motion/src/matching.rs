@@ -137,12 +137,7 @@ impl GroundMotion {
         settings: &Matching,
     ) -> Result<Matched, MotionError> {
         target.check()?;
-        let sampled = match &self.horizontal {
-            History::Sampled(sampled) => sampled.clone(),
-            other @ (History::Analytic(_) | History::Sum(_)) => {
-                other.sampled(other.natural_step())?
-            }
-        };
+        let sampled = self.horizontal.sampled(self.horizontal.natural_step())?;
         check(settings, sampled.time_step())?;
         let (time_step, given) = subdivided(&sampled, settings.shortest);
         let goals = |periods: &[f64]| periods.iter().map(|&t| target.acceleration(t)).collect();
@@ -175,8 +170,8 @@ impl GroundMotion {
         let missed = work.missed(&acceleration, settings.tolerance);
         let horizontal = History::Sampled(Sampled::new(time_step, acceleration)?);
         let vertical = self.vertical.as_ref().map(|history| history.scaled(factor));
-        let mut motion = GroundMotion::new(self.name.clone(), horizontal, vertical);
-        motion.provenance.clone_from(&self.provenance);
+        let provenance = self.provenance.clone();
+        let motion = Self { provenance, ..Self::new(self.name.clone(), horizontal, vertical) };
         let chosen = settings.method;
         let mut matched = Matched { motion, misfit, missed, rounds, chosen, first };
         matched.motion.provenance.push(format!(

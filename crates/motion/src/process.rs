@@ -121,9 +121,9 @@ impl Processing {
         )?;
         let (slowest, nyquist) = (1.0 / (time_step * samples as f64), 0.5 / time_step);
         if let Some(corner) = self.high_pass {
-            let (within, what) = (corner > 0.0 && corner < nyquist, "high-pass corner (Hz)");
+            let within = corner > 0.0 && corner < nyquist;
             let expected = format!("above 0 and below the Nyquist frequency, {nyquist} Hz");
-            MotionError::require(within, what, expected, corner)?;
+            MotionError::require(within, "high-pass corner (Hz)", expected, corner)?;
         }
         let Some(low) = self.low_pass else { return Ok(()) };
         MotionError::require(

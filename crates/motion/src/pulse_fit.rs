@@ -45,13 +45,9 @@ pub fn dominant_pulse(
     longest: f64,
 ) -> Result<PulseFit, MotionError> {
     MotionError::require_positive("shortest pulse period (s)", shortest)?;
-    let (longer, above) = (longest > shortest, format!("above the shortest, {shortest} s"));
-    MotionError::require(
-        longer && longest.is_finite(),
-        "longest pulse period (s)",
-        above,
-        longest,
-    )?;
+    let longer = longest > shortest && longest.is_finite();
+    let expected = format!("above the shortest, {shortest} s");
+    MotionError::require(longer, "longest pulse period (s)", expected, longest)?;
     let least = 8.0 * motion.time_step();
     let expected = format!("at least eight steps, {least} s");
     MotionError::require(shortest >= least, "shortest pulse period (s)", expected, shortest)?;

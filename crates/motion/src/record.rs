@@ -129,9 +129,8 @@ impl Channel {
     ) -> Result<Self, MotionError> {
         let sampled = history.sampled(time_step)?;
         let acceleration = sampled.acceleration().to_vec();
-        let mut channel = Self::new(name, direction, sampled.time_step(), acceleration);
-        channel.initial_velocity = sampled.velocity()[0];
-        Ok(channel)
+        let channel = Self::new(name, direction, sampled.time_step(), acceleration);
+        Ok(Self { initial_velocity: sampled.velocity()[0], ..channel })
     }
 
     /// Time from the first to the last sample (s).

@@ -204,13 +204,11 @@ impl Sampled {
 /// The integral of sampled values up to every sample, by trapezoids from 0.
 pub(crate) fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
-    let mut integral = Vec::with_capacity(values.len());
-    integral.push(sum);
-    for pair in values.windows(2) {
+    let after = values.windows(2).map(|pair| {
         sum += 0.5 * time_step * (pair[0] + pair[1]);
-        integral.push(sum);
-    }
-    integral
+        sum
+    });
+    std::iter::once(0.0).chain(after).collect()
 }
 
 /// Velocity and displacement at the samples of a piecewise-linear acceleration.

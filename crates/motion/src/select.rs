@@ -331,14 +331,12 @@ fn rotate(
         .zip(&two.acceleration)
         .map(|(a, b)| weight_one * a + weight_two * b)
         .collect();
-    let mut channel = Channel::new(
-        format!("{azimuth} deg"),
-        Direction::horizontal(azimuth),
-        one.time_step,
+    Ok(Channel {
+        name: format!("{azimuth} deg"),
+        direction: Direction::horizontal(azimuth),
         acceleration,
-    );
-    (channel.start, channel.site) = (one.start, one.site);
-    channel.initial_velocity =
-        weight_one * one.initial_velocity + weight_two * two.initial_velocity;
-    Ok(channel)
+        initial_velocity: weight_one * one.initial_velocity + weight_two * two.initial_velocity,
+        peaks: Vec::new(),
+        ..one
+    })
 }

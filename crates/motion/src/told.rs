@@ -22,13 +22,11 @@ impl Display for Pulse {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
             Self::Sine { amplitude, period, cycles, ramp_cycles } => {
+                let [amplitude, period, cycles] = [amplitude, period, cycles].map(Short);
                 write!(
                     f,
-                    "harmonic displacement of amplitude {} m and period {} s, \
-                     {} cycles, ",
-                    Short(amplitude),
-                    Short(period),
-                    Short(cycles)
+                    "harmonic displacement of amplitude {amplitude} m and period {period} s, \
+                     {cycles} cycles, "
                 )?;
                 match ramp_cycles {
                     0.0 => write!(f, "without ramps"),

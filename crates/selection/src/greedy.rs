@@ -155,8 +155,8 @@ fn check(
 ) -> Result<(), MotionError> {
     MotionError::require(choosing.count >= 2, "size of the set", "at least 2", choosing.count)?;
     let [least, largest] = choosing.scale;
-    let (range, found) =
-        (least > 0.0 && largest >= least && largest.is_finite(), format!("{least} to {largest}"));
+    let range = least > 0.0 && largest >= least && largest.is_finite();
+    let found = format!("{least} to {largest}");
     MotionError::require(range, "factors", "0 < smallest <= largest", found)?;
     let periods = target.periods().len();
     for candidate in candidates {

@@ -70,8 +70,8 @@ impl SelectionTarget {
             let row = |what: &str| format!("target of a selection, row {}, {what}", k + 1);
             MotionError::require_positive(&row("period (s)"), periods[k])?;
             MotionError::require_positive(&row("median (m/s2)"), median[k])?;
-            let (within, what) =
-                ((0.0..=5.0).contains(&deviation[k]), row("standard deviation of ln Sa"));
+            let within = (0.0..=5.0).contains(&deviation[k]);
+            let what = row("standard deviation of ln Sa");
             MotionError::require(within, what, "0 to 5", deviation[k])?;
             let before = k.checked_sub(1).map_or(0.0, |before| periods[before]);
             let above = format!("above {before}");

@@ -195,27 +195,17 @@ impl Spectra {
 
     /// The first stretch of frequencies with enough signal that spans those of the criterion.
     fn band(&self, criterion: &NoiseCriterion) -> Option<(f64, f64)> {
-        let enough = |k: usize| self.ratio[k] >= criterion.ratio;
-        let mut start = None;
-        for k in 0..self.ratio.len() {
-            match (start, enough(k)) {
-                (None, true) => start = Some(k),
-                (Some(first), false) => {
-                    if self.spans(first, k - 1, criterion) {
-                        return Some((self.frequency[first], self.frequency[k - 1]));
-                    }
-                    start = None;
-                }
-                (None, false) | (Some(_), true) => {}
+        let enough = |ratio: &f64| *ratio >= criterion.ratio;
+        let mut begin = 0;
+        for stretch in self.ratio.chunk_by(|one, next| enough(one) == enough(next)) {
+            let end = begin + stretch.len();
+            let (low, high) = (self.frequency[begin], self.frequency[end - 1]);
+            if enough(&stretch[0]) && low <= criterion.from && high > criterion.to {
+                return Some((low, high));
             }
+            begin = end;
         }
-        let last = self.ratio.len().checked_sub(1)?;
-        let first = start.filter(|first| self.spans(*first, last, criterion))?;
-        Some((self.frequency[first], self.frequency[last]))
-    }
-
-    fn spans(&self, first: usize, last: usize, criterion: &NoiseCriterion) -> bool {
-        self.frequency[first] <= criterion.from && self.frequency[last] > criterion.to
+        None
     }
 
     /// Smallest ratio between the frequencies of the criterion.

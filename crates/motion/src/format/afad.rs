@@ -31,16 +31,11 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
 
 fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
     let number = |key: &str| {
-        let found = field(source, key);
-        let value = found
-            .as_ref()
-            .and_then(|(line, text)| leading_number(text.as_bytes()).map(|value| (*line, value)));
-        value.ok_or_else(|| {
-            source.header(
-                found.as_ref().map(|(line, _)| *line),
-                format!("a number for \"{key}\""),
-                found.as_ref().map_or("none".to_owned(), |(_, text)| format!("\"{text}\"")),
-            )
+        let (line, text) = field(source, key).unzip();
+        let value = text.as_ref().and_then(|text| leading_number(text.as_bytes()));
+        line.zip(value).ok_or_else(|| {
+            let found = text.map_or("none".to_owned(), |text| format!("\"{text}\""));
+            source.header(line, format!("a number for \"{key}\""), found)
         })
     };
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);

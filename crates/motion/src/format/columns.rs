@@ -248,13 +248,12 @@ fn is_time(column: &[f64]) -> bool {
 
 /// The coarsest resolution of the printed times: one unit of the most digits shown.
 fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> f64 {
-    let mut finest = f64::INFINITY;
-    for line in first..end.min(first + 200) {
+    let resolution = |line: usize| {
         let text = latin1(source.raw(line));
         let word = text.split([' ', '\t', ',', ';']).find(|word| !word.is_empty()).unwrap_or("");
-        finest = finest.min(super::source::resolution(word));
-    }
-    if finest.is_finite() { finest } else { 1e-6 }
+        super::source::resolution(word)
+    };
+    (first..end.min(first + 200)).map(resolution).reduce(f64::min).unwrap_or(1e-6)
 }
 
 /// Names from the last header line, when it has one to a column.
@@ -283,29 +282,19 @@ fn header_names(source: &Source<'_>, first: usize, width: usize) -> Vec<String> 
 /// The unit in parentheses or after "units" in a header line that speaks of acceleration, or the one
 /// that stands in parentheses behind every name but that of the time.
 fn stated_unit(source: &Source<'_>, first: usize) -> Option<AccelerationUnit> {
-    for line in 0..first {
-        let text = source.text(line).to_ascii_lowercase();
-        if let Some(at) = text.find("acc")
-            && let Some(open) = text[at..].find(['(', '['])
-        {
-            let rest = &text[at + open + 1..];
-            let word = rest.split([')', ']']).next().unwrap_or("");
-            if let Ok(unit) = word.parse() {
-                return Some(unit);
-            }
-        }
-        if let Some((_, rest)) = text.split_once("unit") {
-            let word = rest.trim_start_matches(['s', ':', '=', ' ']);
-            let word = word.split([' ', ',', ';']).next().unwrap_or("");
-            if let Ok(unit) = word.parse() {
-                return Some(unit);
-            }
-        }
-        if let Some(unit) = unit_of_every_column(&text) {
-            return Some(unit);
-        }
-    }
-    None
+    let in_parentheses = |text: &str| {
+        let (_, rest) = text[text.find("acc")?..].split_once(['(', '['])?;
+        rest.split([')', ']']).next()?.parse().ok()
+    };
+    let behind_its_word = |text: &str| {
+        let word = text.split_once("unit")?.1.trim_start_matches(['s', ':', '=', ' ']);
+        word.split([' ', ',', ';']).next()?.parse().ok()
+    };
+    (0..first).map(|line| source.text(line).to_ascii_lowercase()).find_map(|text| {
+        in_parentheses(&text)
+            .or_else(|| behind_its_word(&text))
+            .or_else(|| unit_of_every_column(&text))
+    })
 }
 
 /// `time (s),EW (m/s2),NS (m/s2)`: one unit of acceleration for all that is not time.

@@ -79,20 +79,15 @@ fn read_channel(
     let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
     channel.start = start(source, first);
     channel.site = Site::default().at(position(&source.text(name_line.saturating_sub(2))));
-    let mut measured =
-        vec![(Quantity::Acceleration, unit.factor(), math::peak(&channel.acceleration))];
-    for (key, quantity) in [("vel", Quantity::Velocity), ("dis", Quantity::Displacement)] {
-        if let Some((block, after)) = read_block(source, record, next, key, 1e9)? {
-            measured.push((quantity, GAL, GAL * math::peak(&block)));
+    let peak = math::peak(&channel.acceleration);
+    let mut measured = vec![("accel", Quantity::Acceleration, unit.factor(), peak)];
+    for (word, quantity) in [("veloc", Quantity::Velocity), ("displ", Quantity::Displacement)] {
+        if let Some((block, after)) = read_block(source, record, next, &word[..3], 1e9)? {
+            measured.push((word, quantity, GAL, GAL * math::peak(&block)));
             next = after;
         }
     }
-    for (quantity, factor, measured) in measured {
-        let word = match quantity {
-            Quantity::Acceleration => "accel",
-            Quantity::Velocity => "veloc",
-            Quantity::Displacement => "displ",
-        };
+    for (word, quantity, factor, measured) in measured {
         let stated = header
             .clone()
             .filter(|&line| source.text(line).to_ascii_uppercase().starts_with("PEAK"))

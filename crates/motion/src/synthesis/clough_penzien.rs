@@ -63,9 +63,9 @@ impl Envelope {
             Self::Jennings { rise, decay_start, decay } => {
                 MotionError::require_positive("envelope rise (s)", rise)?;
                 MotionError::require_positive("envelope decay (1/s)", decay)?;
-                let (after, what) = (decay_start >= rise, "envelope decay start (s)");
-                let expected = format!("at least the rise, {rise}");
-                MotionError::require(after, what, expected, decay_start)
+                let (what, expected) =
+                    ("envelope decay start (s)", format!("at least the rise, {rise}"));
+                MotionError::require(decay_start >= rise, what, expected, decay_start)
             }
             Self::SaragoniHart { peak, exponent } => {
                 MotionError::require_positive("envelope peak (s)", peak)?;

@@ -22,8 +22,8 @@ fn step_count(duration: f64, time_step: f64) -> Result<usize, MotionError> {
     MotionError::require_positive("duration (s)", duration)?;
     MotionError::require_positive("time step (s)", time_step)?;
     let steps = (duration / time_step * (1.0 - 1e-12)).ceil();
-    let (fits, expected) =
-        ((2.0..=MOST_SAMPLES).contains(&steps), format!("2 to {MOST_SAMPLES:e}"));
+    let fits = (2.0..=MOST_SAMPLES).contains(&steps);
+    let expected = format!("2 to {MOST_SAMPLES:e}");
     MotionError::require(fits, "duration over time step", expected, steps)?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 2e7")]
     Ok(steps as usize)
