@@ -9,15 +9,6 @@ pub struct Ida {
     points: Vec<(f64, f64)>,
 }
 
-/// A record that collapsed at one intensity and stood at a higher.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Resurrection {
-    /// The intensity of the collapse.
-    pub collapsed: f64,
-    /// The next intensity at which it stood.
-    pub stood: f64,
-}
-
 impl Ida {
     /// A curve through runs in any order; points whose intensity is not positive and finite, or
     /// whose demand is not a number, are left out.
@@ -69,41 +60,6 @@ impl Ida {
         })
     }
 
-    /// The lowest intensity at which the demand reaches a value: the capacity by Vamvatsikos and
-    /// Cornell's (2002) first crossing. `None` when it never does.
-    pub fn first_reaching(&self, demand: f64) -> Option<f64> {
-        let mut before = (0.0, 0.0);
-        for &(x, d) in &self.points {
-            if d >= demand {
-                return Some(if d.is_finite() && d > before.1 {
-                    before.0 + (demand - before.1) / (d - before.1) * (x - before.0)
-                } else if before.0 > 0.0 {
-                    (before.0 * x).sqrt()
-                } else {
-                    x
-                });
-            }
-            before = (x, d);
-        }
-        None
-    }
-
-    /// The intensities between which the record first collapsed: the last run that stood below,
-    /// zero if none did, and the first that collapsed. `None` when it never did.
-    pub fn first_collapse(&self) -> Option<(f64, f64)> {
-        let index = self.points.iter().position(|(_, d)| d.is_infinite())?;
-        Some((index.checked_sub(1).map_or(0.0, |i| self.points[i].0), self.points[index].0))
-    }
-
-    /// Every return from collapse, ascending.
-    pub fn resurrections(&self) -> Vec<Resurrection> {
-        let pairs = self.points.windows(2);
-        pairs
-            .filter(|pair| pair[0].1.is_infinite() && pair[1].1.is_finite())
-            .map(|pair| Resurrection { collapsed: pair[0].0, stood: pair[1].0 })
-            .collect()
-    }
-
     /// The demand that a share of records stays below at an intensity, infinite where too many have
     /// collapsed; `None` where some record says nothing, so that no record drops out of a curve in
     /// silence. A record that came back counts as standing where it stands.
@@ -137,16 +93,6 @@ mod tests {
         assert_eq!(ida.demand(0.57), Some(5.0));
         assert_eq!(ida.demand(9.0), Some(f64::INFINITY));
         assert_eq!(Ida::new([(0.1, 1.0)]).demand(0.2), None);
-    }
-
-    #[test]
-    fn a_record_that_comes_back_keeps_its_first_collapse_and_says_so() {
-        let ida = returning();
-        assert_eq!(ida.first_collapse(), Some((0.2, 0.4)));
-        assert_eq!(ida.resurrections(), [Resurrection { collapsed: 0.4, stood: 0.8 }]);
-        assert!((ida.first_reaching(2.0).unwrap() - 0.15).abs() < 1e-12);
-        assert!((ida.first_reaching(4.0).unwrap() - 0.08_f64.sqrt()).abs() < 1e-12);
-        assert_eq!(Ida::new([(0.1, 1.0)]).first_reaching(2.0), None);
     }
 
     #[test]

@@ -70,7 +70,7 @@ pub use goodness::{
     Goodness, Normality, goodness, goodness_by_simulation, goodness_in_bins, normality,
 };
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
-pub use ida::{Ida, Resurrection};
+pub use ida::Ida;
 pub use indices::{Index, sobol_indices};
 pub use math::{
     chi_square_above, normal, normal_density, normal_quantile, quantile, student_beyond,
