@@ -168,48 +168,25 @@ struct Decimal<'a> {
 impl<'a> Decimal<'a> {
     /// Splits a leading decimal number from the text.
     fn take(text: &'a str) -> Option<(Self, &'a str)> {
-        let bytes = text.as_bytes();
-        let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
-        let mut at = 0;
-        let negative = bytes.first() == Some(&b'-');
-        if matches!(bytes.first(), Some(b'-' | b'+')) {
-            at += 1;
-        }
-        let mut digits = String::new();
-        let mut exponent = 0_i64;
-        let mut seen = false;
-        let mut fraction = false;
-        loop {
-            if digit(at) {
-                seen = true;
-                digits.push(char::from(bytes[at]));
-                exponent -= i64::from(fraction);
-            } else if bytes.get(at) == Some(&b'.') && !fraction {
-                fraction = true;
-            } else {
-                break;
-            }
-            at += 1;
-        }
-        if !seen {
+        let unsigned = |text: &'a str| text.strip_prefix(['-', '+']).unwrap_or(text);
+        let (whole, rest) = split_digits(unsigned(text));
+        let (fraction, mut rest) = rest.strip_prefix('.').map_or(("", rest), split_digits);
+        if whole.is_empty() && fraction.is_empty() {
             return None;
         }
-        if matches!(bytes.get(at), Some(b'e' | b'E')) {
-            let sign = usize::from(matches!(bytes.get(at + 1), Some(b'-' | b'+')));
-            if digit(at + 1 + sign) {
-                let start = at + 1;
-                at = start + sign;
-                while digit(at) {
-                    at += 1;
-                }
-                // An exponent too long for i64 stays far beyond the range of f64 after the clamp.
-                let negative_exponent = bytes[start] == b'-';
-                let size = text[start + sign..at].parse::<i64>().unwrap_or(i64::MAX).min(1_000_000);
-                exponent += if negative_exponent { -size } else { size };
-            }
+        let mut exponent = -i64::try_from(fraction.len()).ok()?;
+        if let Some(power) = rest.strip_prefix(['e', 'E'])
+            && let (size, after) = split_digits(unsigned(power))
+            && !size.is_empty()
+        {
+            // An exponent too long for i64 stays far beyond the range of f64 after the clamp.
+            let size = size.parse::<i64>().unwrap_or(i64::MAX).min(1_000_000);
+            exponent += if power.starts_with('-') { -size } else { size };
+            rest = after;
         }
-        let digits = digits.trim_start_matches('0').to_owned();
-        Some((Self { negative, digits, exponent, text: &text[..at] }, &text[at..]))
+        let digits = format!("{whole}{fraction}").trim_start_matches('0').to_owned();
+        let taken = &text[..text.len() - rest.len()];
+        Some((Self { negative: text.starts_with('-'), digits, exponent, text: taken }, rest))
     }
 
     /// The number in SI: exact up to one rounding for decimal units, up to a few for the others.
@@ -242,6 +219,11 @@ impl<'a> Decimal<'a> {
         let angle = (0..scale.pi.unsigned_abs()).fold(1.0, |product, _| product * angle);
         sign * magnitude * angle * scale.factor
     }
+}
+
+/// The digits that a text starts with, and what follows them.
+fn split_digits(text: &str) -> (&str, &str) {
+    text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
 /// Decimal text to the nearest double; the text is well formed by construction, and infinity is

@@ -80,15 +80,6 @@ struct RunArgs {
 }
 
 #[derive(Debug, clap::Args)]
-struct PlanArgs {
-    #[command(flatten)]
-    which: Which,
-    /// Print one JSON document.
-    #[arg(long)]
-    json: bool,
-}
-
-#[derive(Debug, clap::Args)]
 struct ChunkArgs {
     #[command(flatten)]
     which: Which,
@@ -118,7 +109,13 @@ enum Action {
     /// Run what is missing and collect the table (the same as without `run`).
     Run(RunArgs),
     /// List the chunks, without running anything.
-    Plan(PlanArgs),
+    Plan {
+        #[command(flatten)]
+        which: Which,
+        /// Print one JSON document.
+        #[arg(long)]
+        json: bool,
+    },
     /// Run one chunk and write its shard; does nothing when the shard is there.
     RunChunk(ChunkArgs),
     /// Say how far a study is.
@@ -150,7 +147,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => return run(&args.run),
         Some(Action::Run(args)) => return run(args),
-        Some(Action::Plan(args)) => plan(args)?,
+        Some(Action::Plan { which, json }) => plan(which, *json)?,
         Some(Action::RunChunk(args)) => return run_chunk(args),
         Some(Action::Status(args)) => status(args)?,
         Some(Action::Collect(args)) => collect(args)?,
@@ -192,9 +189,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let damaged = live.damaged();
     drop(live);
     ran.map_err(stopped)?;
-    if damaged > 0 {
-        warn_of_damaged(damaged, out);
-    }
+    warn_of_damaged(damaged, out);
     let (answer, made) = collected(out)?;
     let page = report::write_page(out)?;
     if args.json {
@@ -255,6 +250,9 @@ described! {
 }
 
 fn warn_of_damaged(shards: usize, out: &Path) {
+    if shards == 0 {
+        return;
+    }
     printer::warning(&format!(
         "{} found in {}: set aside there with the ending .damaged, and made anew",
         printer::counted(shards as u64, "damaged shard"),
@@ -262,11 +260,11 @@ fn warn_of_damaged(shards: usize, out: &Path) {
     ));
 }
 
-fn plan(args: &PlanArgs) -> anyhow::Result<()> {
-    let study = load(&args.which.study)?;
+fn plan(which: &Which, json: bool) -> anyhow::Result<()> {
+    let study = load(&which.study)?;
     let at_most = study.is_adaptive();
     let following = study.following()?;
-    if args.json {
+    if json {
         return printer::document(&StudyPlan::of(&(&study, following)));
     }
     let (most, unit) = (if at_most { "at most " } else { "" }, study.chunk_unit());
@@ -302,9 +300,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
             printer::lines([format!("chunk {} was done before", args.chunk)])?;
         }
         Ok(ran) => {
-            if ran == ChunkRun::Again {
-                warn_of_damaged(1, &args.out);
-            }
+            warn_of_damaged(usize::from(ran == ChunkRun::Again), &args.out);
             printer::lines([format!("chunk {} is done", args.chunk)])?;
         }
         Err(error) => return Err(stopped(error)),

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
 use crate::quantity::shorten;
-use crate::tree::{Node, Origin, Sources, Table, Value};
+use crate::tree::{Entry, Node, Origin, Sources, Table, Value};
 
 mod values;
 
@@ -45,13 +45,11 @@ impl<'a> Reader<'a> {
 
     fn check_keys(&self) -> Result<()> {
         let Some(table) = self.table else { return Ok(()) };
-        for entry in &table.entries {
+        let valid: Vec<&str> =
+            self.section.fields_of(self.variant).map(|field| field.name).collect();
+        let unknown = |entry: &&Entry| !valid.contains(&entry.key.as_str());
+        if let Some(entry) = table.entries.iter().find(unknown) {
             let key = entry.key.as_str();
-            if self.section.fields_of(self.variant).any(|field| field.name == key) {
-                continue;
-            }
-            let valid: Vec<&str> =
-                self.section.fields_of(self.variant).map(|field| field.name).collect();
             let problem = match (&self.section.variants, self.variant) {
                 (Some(variants), Some(variant)) if self.section.any_field(key).is_some() => {
                     let owners: Vec<String> = variants
@@ -164,17 +162,18 @@ impl<'a> Reader<'a> {
 
     /// None of several fields is given.
     pub fn one_of(&self, names: &[&str]) -> InputError {
-        let choices: Vec<String> = names
-            .iter()
-            .map(|name| self.section.any_field(name).map_or_else(String::new, Field::example))
-            .collect();
+        let choices: Vec<String> = names.iter().map(|name| self.example_of(name)).collect();
         let problem = Problem::OneOf { section: self.label(), choices: choices.join(", ") };
         self.sources.error(self.origin, problem)
     }
 
+    fn example_of(&self, name: &str) -> String {
+        self.section.any_field(name).map_or_else(String::new, Field::example)
+    }
+
     /// A field that another value makes necessary is missing.
     pub fn missing(&self, name: &str) -> InputError {
-        let example = self.section.any_field(name).map_or_else(String::new, Field::example);
+        let example = self.example_of(name);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
     }
