@@ -20,7 +20,7 @@ use clap::Subcommand;
 
 pub(crate) use answer::StudyResult;
 
-use crate::interrupt::{Stopped, keeps};
+use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
 
@@ -293,9 +293,9 @@ fn plan(which: &Which, json: bool) -> anyhow::Result<()> {
 fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let study = load(&args.which.study)?;
     keeps(format!("chunk {} is to be run again", args.chunk));
-    let live = live::Live::new(false, false);
+    let interrupt = Interrupt::listen();
     let lanes = args.lanes.lanes.unwrap_or_else(Width::widest);
-    match study.run_chunk(&args.out, args.chunk, lanes, &|| live.stopped()) {
+    match study.run_chunk(&args.out, args.chunk, lanes, &|| interrupt.asked()) {
         Ok(ChunkRun::Before) => {
             printer::lines([format!("chunk {} was done before", args.chunk)])?;
         }

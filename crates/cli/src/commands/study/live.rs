@@ -38,11 +38,6 @@ impl Live {
         }
     }
 
-    /// Whether the user asked to stop.
-    pub(super) fn stopped(&self) -> bool {
-        self.interrupt.asked()
-    }
-
     /// How many shards were damaged and set aside.
     pub(super) fn damaged(&self) -> usize {
         self.damaged.load(Ordering::Relaxed)

@@ -296,28 +296,26 @@ fn entry(
     }
     let whole =
         source.paths().iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    let record = match input.unite(&records) {
-        Ok(record) => record,
-        Err(error) => {
-            entry.refused.push((whole.clone(), format!("{whole}: no record together: {error:#}")));
-            return (entry, true);
-        }
-    };
-    let worked = match work(source, &record) {
-        Ok(worked) => worked,
-        Err(error) => {
-            entry.refused.push((whole.clone(), format!("{whole}: {error:#}")));
-            return (entry, false);
-        }
-    };
-    match measure(&worked.record, &worked.before, periods) {
-        Ok(measured) => {
+    // The reason, and whether it will be the same the next time.
+    let refused = |reason: String, sure: bool| (format!("{whole}: {reason}"), sure);
+    let row = input
+        .unite(&records)
+        .map_err(|error| refused(format!("no record together: {error:#}"), true))
+        .and_then(|record| work(source, &record).map_err(|e| refused(format!("{e:#}"), false)))
+        .and_then(|worked| {
+            let measured = measure(&worked.record, &worked.before, periods)
+                .map_err(|error| refused(error.to_string(), true))?;
             let number = record_sequence_number(&source.record.files[0]);
             let flat = flatfile.zip(number).and_then(|((flatfile, _), n)| flatfile.get(n));
             let found = Found { source, worked: &worked, measured: &measured, number, flat };
-            entry.row = Some(cells(Some(&found), periods).into_iter().map(|(_, v)| v).collect());
+            Ok(cells(Some(&found), periods).into_iter().map(|(_, value)| value).collect())
+        });
+    match row {
+        Ok(row) => entry.row = Some(row),
+        Err((reason, sure)) => {
+            entry.refused.push((whole, reason));
+            return (entry, sure);
         }
-        Err(error) => entry.refused.push((whole.clone(), format!("{whole}: {error}"))),
     }
     (entry, true)
 }
