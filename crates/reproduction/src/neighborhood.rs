@@ -27,13 +27,8 @@ const QUESTIONS: [&str; 5] = [
     "along the barrels: it does within 3 to 6 s",
 ];
 
-/// How many draws keep each finding, and how many keep all.
-pub(super) struct Kept {
-    draws: usize,
-    /// None for what needs the paper's record.
-    each: [Option<usize>; 5],
-    pub(super) all: usize,
-}
+/// Which findings a draw keeps; none for what needs the paper's record.
+pub(super) type Kept = [Option<bool>; 5];
 
 /// A number between −1 and 1 of a draw: fractional parts of multiples of √primes (Richtmyer 1951), which
 /// fill the box evenly and are the same everywhere.
@@ -81,15 +76,15 @@ pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     jobs
 }
 
-/// Counts, from the summaries in the order of the jobs.
-pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Kept {
-    let mut kept = Kept { draws: 0, each: [Some(0); 5], all: 0 };
-    while let (true, Some(eight), Some(along)) = (kept.draws < COUNT, next.next(), next.next()) {
+/// What each draw keeps, from the summaries in the order of the jobs.
+pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Kept> {
+    let mut kept = Vec::new();
+    while let (true, Some(eight), Some(along)) = (kept.len() < COUNT, next.next(), next.next()) {
         let six = if with_six { next.next() } else { None };
         let within = |value: Option<f64>, low: f64, high: f64| {
             value.is_some_and(|value| (low..=high).contains(&value))
         };
-        let answers = [
+        kept.push([
             Some(eight.outcome.mode == Some("ejection") && eight.outcome.from_level == Some(4)),
             Some(within(eight.demands.top_drift_ratio, 0.04, 0.07)),
             six.map(|six| {
@@ -99,33 +94,27 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> K
             }),
             Some(along.outcome.mode == Some("rack-sliding") && along.outcome.from_level == Some(2)),
             Some(within(along.outcome.time, 3.0, 6.0)),
-        ];
-        for (count, answer) in kept.each.iter_mut().zip(answers) {
-            *count = match (*count, answer) {
-                (Some(count), Some(answer)) => Some(count + usize::from(answer)),
-                (_, None) | (None, _) => None,
-            };
-        }
-        kept.all += usize::from(answers.iter().all(|answer| answer.unwrap_or(true)));
-        kept.draws += 1;
+        ]);
     }
     kept
 }
 
 /// The table.
-pub(super) fn block(kept: &Kept) -> Block {
+pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(
             "The neighborhood of the reconstructed rack: {} racks whose lengths and angles lie within ±5 % \
              of it, with k and c within ±10 % and both coefficients of friction within ±5 %, drawn evenly.",
-            kept.draws
+            kept.len()
         ),
         &[("finding", ""), ("kept by", "of all draws")],
     );
-    for (question, count) in QUESTIONS.iter().zip(kept.each) {
+    for (at, question) in QUESTIONS.into_iter().enumerate() {
+        let count: Option<usize> = kept.iter().map(|answers| answers[at].map(usize::from)).sum();
         let cell = Cell::maybe(count.map(|count| count.to_string()));
-        table.rows.push(vec![Cell::text(*question), cell]);
+        table.rows.push(vec![Cell::text(question), cell]);
     }
-    table.rows.push(vec![Cell::text("all that were asked"), Cell::text(kept.all.to_string())]);
+    let all = kept.iter().filter(|answers| answers.iter().all(|answer| answer.unwrap_or(true)));
+    table.rows.push(vec![Cell::text("all that were asked"), Cell::text(all.count().to_string())]);
     Block::Table(table)
 }

@@ -54,7 +54,7 @@ pub(super) struct Results {
     /// Other racks that give the paper's numbers as well.
     pub(super) racks: Vec<Tried>,
     /// How many racks near the reconstructed one keep the paper's findings.
-    pub(super) neighborhood: Kept,
+    pub(super) neighborhood: Vec<Kept>,
     /// What moves each case.
     pub(super) studies: Vec<Study>,
 }
