@@ -87,16 +87,6 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// The page as one file that asks the network for nothing.
-    pub fn html(&self) -> String {
-        barrelstack_report::html(&self.document)
-    }
-
-    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
-    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
-        barrelstack_report::markdown(&self.document, figure_dir)
-    }
-
     /// The numbers for programs, in SI units.
     pub fn to_document(&self) -> DecisionDocument {
         DecisionDocument::of(self)

@@ -156,16 +156,6 @@ impl Ranking {
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
-    /// The page as one file that asks the network for nothing.
-    pub fn html(&self) -> String {
-        barrelstack_report::html(&self.document)
-    }
-
-    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
-    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
-        barrelstack_report::markdown(&self.document, figure_dir)
-    }
-
     /// The numbers for programs, in SI units.
     pub fn to_document(&self) -> ProtectDocument {
         ProtectDocument::of(self)

@@ -140,16 +140,6 @@ impl Sheet {
         self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
     }
 
-    /// The page as one file that asks the network for nothing.
-    pub fn html(&self) -> String {
-        barrelstack_report::html(&self.document)
-    }
-
-    /// The page as text, with its figures and tables as files for a folder named `figure_dir`.
-    pub fn markdown(&self, figure_dir: &str) -> barrelstack_report::MarkdownBundle {
-        barrelstack_report::markdown(&self.document, figure_dir)
-    }
-
     /// The numbers for programs, in SI units.
     pub fn to_document(&self) -> ScoreDocument {
         ScoreDocument::of(self)

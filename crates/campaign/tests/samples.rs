@@ -7,6 +7,7 @@ mod common;
 use barrelstack_campaign::decision::{Decision, Request, decide};
 use barrelstack_campaign::study::Role;
 use barrelstack_motion::Random;
+use barrelstack_report::html;
 use common::{integer, made, number, text};
 
 /// Samples of a study without bodies: 24 records, levels from 0.1 to 1 m/s, and the chance of collapse at a level.
@@ -59,15 +60,16 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
     let cases: u32 = found.curves[0].stripes.iter().map(|stripe| stripe.cases).sum();
     assert_eq!(cases, 10_000);
     // Measured: 175 kB, every figure drawn for the desk and for the phone.
-    assert!(found.html().len() < 200_000, "{} bytes", found.html().len());
+    assert!(html(&found.document).len() < 200_000, "{} bytes", html(&found.document).len());
     let headline = &found.document.verdict.headline;
     assert!(headline.contains("10000 cases") && headline.contains(" to "), "{headline}");
     // Measured: 0.489 to 0.502.
     let median = found.curves[0].median.unwrap();
     assert!(median.holds(0.5) && median.high - median.low < 0.02, "{median:?}");
-    assert!(found.html().contains("counted in 16 bins of about 625 neighbors"));
+    assert!(html(&found.document).contains("counted in 16 bins of about 625 neighbors"));
     if let Ok(folder) = std::env::var("BARRELSTACK_PAGES") {
-        std::fs::write(std::path::Path::new(&folder).join("samples.html"), found.html()).unwrap();
+        std::fs::write(std::path::Path::new(&folder).join("samples.html"), html(&found.document))
+            .unwrap();
     }
 }
 

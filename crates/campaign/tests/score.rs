@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+use barrelstack_report::html;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -55,7 +56,7 @@ fn the_score_is_the_least_of_all_states_and_directions_and_a_stop_loses_no_bit()
     let result = score(&chocked, &protocol, stopped.path(), &RunOptions::default(), &stop);
     assert!(matches!(result, Err(ScoreError::Study(StudyError::Stopped))));
     let resumed = scored(&chocked, &protocol, stopped.path()).unwrap();
-    assert_eq!(sheet.html(), resumed.html());
+    assert_eq!(html(&sheet.document), html(&resumed.document));
 }
 
 #[test]
