@@ -448,5 +448,5 @@ const FEWEST_OF_LEVEL: usize = 8;
 
 /// A value of a factor as text.
 pub(super) fn told(value: Option<Value>) -> String {
-    value.as_ref().map_or_else(String::new, word)
+    value.map_or_else(String::new, |value| word(&value))
 }

@@ -278,6 +278,6 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
 }
 
 fn readme(notes: &[String], about: &str) -> String {
-    let notes: String = notes.iter().map(|note| format!("- {note}\n")).collect();
-    format!("{about}\n{notes}")
+    let notes: Vec<String> = notes.iter().map(|note| format!("- {note}\n")).collect();
+    format!("{about}\n{}", notes.concat())
 }

@@ -92,9 +92,10 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     let told = |(index, curve): (usize, &LimitCurve)| {
         let words = curve.limit.words();
         let style = style(index);
-        fitted(curve, measure.scale, &words)
-            .map(|line| Series { style, ..line })
-            .unwrap_or_else(|| raw(curve, measure.scale, &format!("{words} (raw)"), index))
+        fitted(curve, measure.scale, &words).map_or_else(
+            || raw(curve, measure.scale, &format!("{words} (raw)"), index),
+            |line| Series { style, ..line },
+        )
     };
     let series = curves.iter().enumerate().map(told).collect();
     Figure::new(
