@@ -240,8 +240,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     let plain = fit(&[0.0, 0.0, math::log(e)], &|points| points.iter().map(bounce).collect());
     let (log_e, half) = log_interval(plain.as_ref(), 2)
         .ok_or_else(|| table.unsuited("the times do not follow a bounce sequence"))?;
-    let restitution =
-        Estimate::of_log("restitution", log_e, half, Dimension::NONE, |log| math::exp(log));
+    let restitution = Estimate::of_log("restitution", log_e, half, Dimension::NONE, math::exp);
     let mut warnings = Vec::new();
     let picture =
         |fit: Option<Fit>| bounces(&times, &fit.map(|fit| fit.residuals).unwrap_or_default(), unit);
