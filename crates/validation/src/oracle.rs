@@ -29,8 +29,6 @@ pub struct Ride {
     pub overturned: bool,
     /// Largest rotation (rad), up to the angle that counts as overturned.
     pub peak: f64,
-    /// Impacts.
-    pub impacts: u32,
 }
 
 /// Rotation (rad) from which nothing brings a block back.
@@ -141,7 +139,6 @@ impl Rocker {
                 (theta, spin) = (0.0, self.restitution * there.1);
                 from += high;
                 side = -side;
-                ride.impacts += 1;
                 if spin.abs() < REST {
                     (spin, side) = (0.0, 0.0);
                 }

@@ -177,9 +177,8 @@ fn table<'a>(theory: &str, rows: impl Iterator<Item = (&'a Problem, &'a Row)>) -
             Ok(outcome) => (outcome.value, outcome.order),
             Err(_) => (f64::NAN, None),
         };
-        let name = problem.id.split_once('/').map_or(problem.id.as_str(), |(_, name)| name);
         table.rows.push(vec![
-            Cell::text(name),
+            Cell::text(problem.name()),
             Cell::text(problem.unit),
             Cell::Number(problem.exact, 5),
             Cell::Number(value, 5),
@@ -193,8 +192,8 @@ fn table<'a>(theory: &str, rows: impl Iterator<Item = (&'a Problem, &'a Row)>) -
 }
 
 fn note(problem: &Problem, row: &Row) -> String {
-    let name = problem.id.split_once('/').map_or(problem.id.as_str(), |(_, name)| name);
-    let mut text = format!("{name}: {}; {} ({})", problem.title, problem.quantity, problem.source);
+    let Problem { title, quantity, source, .. } = problem;
+    let mut text = format!("{}: {title}; {quantity} ({source})", problem.name());
     match &row.answer {
         Ok(outcome) if outcome.note.is_empty() => {}
         Ok(outcome) => {

@@ -140,6 +140,11 @@ impl Problem {
     pub fn theory(&self) -> &str {
         self.id.split_once('/').map_or(self.id.as_str(), |(theory, _)| theory)
     }
+
+    /// What it is called within its theory.
+    pub fn name(&self) -> &str {
+        self.id.split_once('/').map_or(self.id.as_str(), |(_, name)| name)
+    }
 }
 
 /// What a problem looks at, made by [`setting`].

@@ -6,7 +6,7 @@ use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{cos, sin, tan};
 use barrelstack_dynamics::{Drive, NormalLaw, Planar, Still, Vec2};
 
-use crate::oracle::{OVERTURNED, Rocker};
+use crate::oracle::{OVERTURNED, Ride, Rocker};
 use crate::scene::{DOWN, Scene, block, coulomb, floor, interface, pose};
 use crate::{Effort, Failure, GRAVITY, swing, theory};
 
@@ -22,15 +22,6 @@ pub enum Corner {
     KelvinVoigt,
 }
 
-/// What became of a block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ride {
-    /// Whether it turned over.
-    pub overturned: bool,
-    /// Largest lean (rad).
-    pub peak: f64,
-}
-
 /// A block on two stiff corners that cannot slide.
 #[derive(Clone, Copy, Debug)]
 pub struct RockingBlock {
@@ -44,8 +35,6 @@ pub struct RockingBlock {
     pub contact_frequency: f64,
     /// ζ = c/(2√(km)) of a corner against the whole mass.
     pub damping_ratio: f64,
-    /// Nodes along the base: 2 corners, or more.
-    pub base_nodes: u32,
 }
 
 impl RockingBlock {
@@ -57,7 +46,6 @@ impl RockingBlock {
             corner: Corner::SpeedGap,
             contact_frequency: 3000.0,
             damping_ratio: 1.0,
-            base_nodes: 2,
         }
     }
 
@@ -101,7 +89,7 @@ impl RockingBlock {
             (self.radius * sin(self.alpha), self.radius * cos(self.alpha));
         let damping = restitution::damping(stiffness, self.damping_ratio, MASS);
         let tangential = restitution::damping(stiffness, self.damping_ratio.min(1.0), MASS);
-        let corners = if lean > 0.0 { 1.0 } else { f64::from(self.base_nodes) };
+        let corners = if lean > 0.0 { 1.0 } else { 2.0 };
         let sunk = MASS * GRAVITY / (corners * stiffness);
         let (x, z) = if lean > 0.0 {
             let direction = self.alpha - lean;
@@ -111,11 +99,8 @@ impl RockingBlock {
         };
         let mut body =
             block("block", (2.0 * half_width, 2.0 * half_height), MASS, pose(x, z - sunk, -lean));
-        let parts = f64::from(self.base_nodes - 1);
-        let mut nodes: Vec<Vec2> = (0..self.base_nodes)
-            .map(|i| Vec2::new(half_width * (2.0 * f64::from(i) / parts - 1.0), -half_height))
-            .collect();
-        nodes.extend([Vec2::new(half_width, half_height), Vec2::new(-half_width, half_height)]);
+        let nodes = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, z)| Vec2::new(x * half_width, z * half_height));
         body.nodes = vec![crate::scene::points(&nodes)];
         let normal = match self.corner {
             Corner::SpeedGap => NormalLaw::SpeedGap { stiffness, damping },
@@ -131,34 +116,18 @@ impl RockingBlock {
     /// # Errors
     /// When it does not come down.
     pub fn quarter_period(&self, share: f64) -> Result<f64, Failure> {
-        let (end, peaks) = self.swings(share, 1, 20.0)?;
-        match peaks.first() {
-            Some(_) => Ok(end * self.rate()),
+        match self.swings(share, 1, 20.0)?.first() {
+            Some((end, _)) => Ok(end * self.rate()),
             None => Err(Failure::Absent("the block does not come down".into())),
         }
     }
 
-    /// Lets the block go at a lean of `share · α`; the time (s) at which it is first upright, and the
-    /// peaks of the lean over α after each impact.
+    /// Lets the block go at a lean of `share · α`; for each impact, when (s) the block is upright, and the peak of the
+    /// lean over α that follows.
     ///
     /// # Errors
     /// When the numbers break down.
     pub fn swings(
-        &self,
-        share: f64,
-        impacts: usize,
-        patience: f64,
-    ) -> Result<(f64, Vec<f64>), Failure> {
-        let swings = self.timed_swings(share, impacts, patience)?;
-        let first = swings.first().map_or(f64::NAN, |swing| swing.0);
-        Ok((first, swings.into_iter().map(|swing| swing.1).collect()))
-    }
-
-    /// For each impact: when (s) the block is upright, and the peak of the lean over α that follows.
-    ///
-    /// # Errors
-    /// When the numbers break down.
-    pub fn timed_swings(
         &self,
         share: f64,
         impacts: usize,
@@ -211,8 +180,8 @@ impl RockingBlock {
             2.0 * sin(self.alpha - 0.5 * theta) * sin(0.5 * theta)
         };
         let patience = 6.0 / self.rate();
-        match self.swings(share, 1, patience)?.1.first() {
-            Some(peak) => Ok((height(*peak) / height(share)).sqrt()),
+        match self.swings(share, 1, patience)?.first() {
+            Some((_, peak)) => Ok((height(*peak) / height(share)).sqrt()),
             None => Err(Failure::Absent("the block does not come down".into())),
         }
     }

@@ -170,8 +170,8 @@ fn dish(radius: f64) -> Problem {
 
 /// The period (s) with which a quantity crosses zero after a time (s), if it swings.
 pub(super) fn period(ways: &[(f64, f64)], after: f64) -> Option<f64> {
-    let through: Vec<f64> = crossings(ways).into_iter().filter(|time| *time > after).collect();
-    mean_time(&through, 3).map(|half| 2.0 * half)
+    let from = ways.partition_point(|(time, _)| *time <= after);
+    mean_time(&crossings(&ways[from..]), 3).map(|half| 2.0 * half)
 }
 
 fn slides() -> Problem {

@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{atan2, cos, sin};
 use barrelstack_dynamics::shape::Polygon;
-use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Planar, Shape, Still, Vec2, settle};
+use barrelstack_dynamics::{
+    Body, FrictionLaw, Interface, NormalLaw, Planar, Shape, Still, Vec2, settle,
+};
 
 use crate::problem::{absolute, border, relative, setting};
 use crate::scene::{
@@ -89,6 +91,19 @@ fn sink() -> Problem {
         .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
+/// A disc of a radius (m) on two points of the ground at ± an angle (rad) from straight down.
+pub(super) fn on_two_points(
+    disc: Body<Planar>,
+    radius: f64,
+    angle: f64,
+    laws: Interface<Planar>,
+) -> Result<Scene, Failure> {
+    let point = |side: f64| Vec2::new(side * radius * sin(angle), -radius * cos(angle));
+    let ground = Body { nodes: vec![points(&[point(-1.0), point(1.0)])], ..ground_of(vec![]) };
+    let disc = Body { nodes: vec![], ..disc };
+    Ok(Scene::new(vec![ground, disc], laws, DOWN)?)
+}
+
 fn cradle(angle: f64) -> Problem {
     let mass = 275.0;
     let exact = mass * GRAVITY / (2.0 * cos(angle));
@@ -101,15 +116,11 @@ fn cradle(angle: f64) -> Problem {
     .asks("normal force of one", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
-        let mut ground = ground_of(vec![]);
-        let point = |side: f64| Vec2::new(side * radius * sin(angle), -radius * cos(angle));
-        ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
-        let mut barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
-        barrel.nodes = vec![];
+        let barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
         let damping = restitution::damping(stiffness, 0.5, mass);
         let normal = NormalLaw::SpeedGap { stiffness, damping };
         let laws = interface(normal, FrictionLaw::Frictionless);
-        let scene = Scene::new(vec![ground, barrel], laws, DOWN)?.settled(1e-10)?;
+        let scene = on_two_points(barrel, radius, angle, laws)?.settled(1e-10)?;
         let found = scene.scratch.contacts.iter().map(|c| c.normal_force).fold(0.0, f64::max);
         let sunk = -scene.state.poses[1].position.z;
         let steeper = atan2(radius * sin(angle), radius * cos(angle) - sunk);

@@ -98,7 +98,7 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
         let slender = 1.0 - (1.0 - ratio.powi(n) * 0.75).sqrt();
         let mut outcome = refine(effort, exact, |level| {
             let block = firm(effort, 1.0, alpha).refined(level - 1);
-            nth(&block.timed_swings(0.5, impacts, 10.0)?, impacts).map(|swing| swing.1)
+            nth(&block.swings(0.5, impacts, 10.0)?, impacts).map(|swing| swing.1)
         })?;
         outcome.note = format!("{}; slender block {slender:.4}", outcome.note);
         Ok(outcome)
@@ -123,7 +123,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
     .asks("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
     .refined(move |effort, level| {
         let block = firm(effort, 1.0, alpha).refined(level - 1);
-        let swings = block.timed_swings(0.5, impacts + 1, 12.0)?;
+        let swings = block.swings(0.5, impacts + 1, 12.0)?;
         let way = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
         Ok(way * block.rate())
     })

@@ -68,8 +68,8 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
         let Some(block) = block.calibrated(ratio)? else {
             return Err(Failure::Absent(format!("no damping ratio shows η = {ratio}")));
         };
-        let peaks = block.swings(0.5, 3, 20.0 / block.rate())?.1;
-        let Some(last) = peaks.get(2) else {
+        let swings = block.swings(0.5, 3, 20.0 / block.rate())?;
+        let Some((_, last)) = swings.get(2) else {
             return Err(Failure::Absent("fewer than three impacts".into()));
         };
         Ok(Outcome::of(*last).noted(format!(

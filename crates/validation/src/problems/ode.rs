@@ -45,16 +45,22 @@ fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
     (velocity, a / omega * (t - sin(omega * t) / omega))
 }
 
+/// Rates of lean and spin of a block of half-diagonal R = 1 m that leans on a corner, on ground of an acceleration
+/// (m/s²) over time.
+fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64; 2]) -> [f64; 2] {
+    // Moments about the corner: I θ″ = −m R [g sin(α − θ) + a cos(α − θ)] with I = 4/3 m R².
+    move |t, y| {
+        let from_upright = alpha - y[0];
+        let moment = GRAVITY * sin(from_upright) + acceleration(t) * cos(from_upright);
+        [y[1], -0.75 * moment]
+    }
+}
+
 /// A block that leans on one corner while the ground makes one sine of `push` g, first away from the
 /// corner: it sways about the lean at which it would fall, or goes over.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     let (radius, until) = (1.0, 1.0);
-    // Moments about the corner: I θ″ = −m R [g sin(α − θ) + a cos(α − θ)] with I = 4/3 m R².
-    let rates = move |t: f64, y: &[f64; 2]| {
-        let a = -push * GRAVITY * sin(omega * t);
-        let moment = GRAVITY * sin(alpha - y[0]) + a * cos(alpha - y[0]);
-        [y[1], -0.75 / radius * moment]
-    };
+    let rates = leaning(alpha, move |t| -push * GRAVITY * sin(omega * t));
     let exact = solution(rates, [0.5 * alpha, 0.0], (0.0, until))[0];
     setting(
         format!("ode/rocking-{name}"),
@@ -277,11 +283,7 @@ fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();
     let acceleration = move |t: f64| -push * GRAVITY * sin(omega * t);
-    let rates = move |t: f64, y: &[f64; 2]| {
-        let from_upright = rigid.alpha - y[0];
-        let moment = GRAVITY * sin(from_upright) + acceleration(t) * cos(from_upright);
-        [y[1], -0.75 * moment]
-    };
+    let rates = leaning(rigid.alpha, acceleration);
     let start = 0.5 * rigid.alpha;
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
     setting("ode/own-integrator-lean", "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
@@ -301,11 +303,7 @@ fn own_peak() -> Problem {
     let lift = atan2(share, (1.0 - share * share).sqrt()) / omega;
     let end = std::f64::consts::PI / omega;
     // The ground goes right, so the block leans left: lean is positive all the same.
-    let rates = move |t: f64, y: &[f64; 2]| {
-        let from_upright = rigid.alpha - y[0];
-        let moment = GRAVITY * sin(from_upright) - strength * sin(omega * t) * cos(from_upright);
-        [y[1], -0.75 * moment]
-    };
+    let rates = leaning(rigid.alpha, move |t| -strength * sin(omega * t));
     let [lean, spin] = solution(rates, [0.0, 0.0], (lift, end));
     // Energy from there on: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].
     let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);

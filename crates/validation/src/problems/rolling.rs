@@ -11,10 +11,12 @@ use barrelstack_dynamics::{Drive, FrictionLaw, NormalLaw, Planar, Shape, State, 
 use crate::drive::Shake;
 use crate::problem::{absolute, relative, setting};
 use crate::scene::{
-    DOWN, Scene, centered, coulomb, disc, floor, gravity_on_slope, ground_of, interface, points,
+    DOWN, Scene, centered, coulomb, disc, floor, gravity_on_slope, ground_of, interface,
 };
 use crate::swing::{mean_time, run_crossings};
 use crate::{Failure, GRAVITY, Problem, theory};
+
+use super::gravity::on_two_points;
 
 const SOURCE: &str = "rigid-body dynamics of rolling";
 const MASS: f64 = 100.0;
@@ -178,14 +180,10 @@ fn swing(ratio: f64) -> Problem {
     })
 }
 
-/// A disc on two points of the ground at ± an angle (rad) from straight down.
+/// The disc on two points of the ground.
 fn two_points(angle: f64, friction: FrictionLaw) -> Result<Scene, Failure> {
-    let mut ground = ground_of(vec![]);
-    let point = |side: f64| Vec2::new(side * RADIUS * sin(angle), -RADIUS * cos(angle));
-    ground.nodes = vec![points(&[point(-1.0), point(1.0)])];
-    let mut body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
-    body.nodes = vec![];
-    Ok(Scene::new(vec![ground, body], interface(firm(0), friction), DOWN)?.settled(1e-9)?)
+    let body = disc("barrel", RADIUS, MASS, 0.5 * RADIUS * RADIUS, Vec2::default());
+    Ok(on_two_points(body, RADIUS, angle, interface(firm(0), friction))?.settled(1e-9)?)
 }
 
 fn leaves(angle: f64) -> Problem {

@@ -223,7 +223,8 @@ fn in_a_stack(filled: f64) -> Problem {
         let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
         let ways = wine.values.iter().zip(&held.values).map(|(wine, barrel)| wine - barrel);
         let ways: Vec<(f64, f64)> = recording.times.iter().copied().zip(ways).collect();
-        let through: Vec<f64> = crossings(&ways).into_iter().filter(|time| *time > 1.0).collect();
+        let from = ways.partition_point(|(time, _)| *time <= 1.0).saturating_sub(1);
+        let through = crossings(&ways[from..]);
         match through[..] {
             [first, .., last] if through.len() > 4 => {
                 Ok(0.5 * (through.len() - 1) as f64 / (last - first))

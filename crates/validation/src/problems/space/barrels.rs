@@ -10,7 +10,7 @@ use barrelstack_dynamics::{
     Vec3,
 };
 
-use super::{G, STEP, STIFFNESS, axis, down, firm, rough, scene, upright};
+use super::{G, Role, STEP, STIFFNESS, axis, down, firm, rough, scene, upright};
 use crate::problem::{absent, relative, setting};
 use crate::scene::{Scene, interface, pair};
 use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
@@ -217,13 +217,6 @@ fn rock(
             _ => Err(Failure::Absent("the barrel does not rock".into())),
         }
     })
-}
-
-/// Which part of the pair the barrel is.
-#[derive(Clone, Copy, PartialEq)]
-enum Role {
-    Contactor,
-    Target,
 }
 
 /// How high (m) the axis of a barrel lies above those of the tubes that bear it.

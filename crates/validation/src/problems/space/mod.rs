@@ -24,6 +24,13 @@ const STEP: f64 = 2e-5;
 /// Stiffness (N/m) of a contact, along the normal and of the stick.
 const STIFFNESS: f64 = 1e8;
 
+/// Which part of a pair a body is: sticks live on the target.
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    Contactor,
+    Target,
+}
+
 /// The problems of these theories.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [

@@ -6,7 +6,7 @@ use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::space::Linear;
 use barrelstack_dynamics::{Body, FrictionLaw, Nodes, NormalLaw, Spatial, Still, Vec3};
 
-use super::{G, STEP, STIFFNESS, firm, rough, scene};
+use super::{G, Role, STEP, STIFFNESS, firm, rough, scene};
 use crate::problem::{absolute, relative, setting};
 use crate::scene::{Scene, coulomb};
 use crate::spatial::{ball, floor, gravity_on_slope, ground_of};
@@ -70,13 +70,6 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
                 Ok(spin.dot(across))
             }),
     ]
-}
-
-/// Which part of the pair the ball is: sticks live on the target.
-#[derive(Clone, Copy)]
-enum Role {
-    Contactor,
-    Target,
 }
 
 /// Radius (m) of the ball that stands for the floor where the ball is the target.
