@@ -1,5 +1,7 @@
 //! Errors of the library as the exceptions of the package, with the place where they are about.
 
+use std::path::Path;
+
 use barrelstack::RunFailure;
 use barrelstack::ground::GroundError;
 use barrelstack::scenario::{Place, Scenario, ScenarioError};
@@ -19,6 +21,10 @@ struct Spot {
 }
 
 impl Spot {
+    fn at(path: &Path) -> Self {
+        Self { path: Some(path.display().to_string()), ..Self::default() }
+    }
+
     fn of(place: &Place) -> Self {
         match place {
             Place::File { file, line, column, .. } => Self {
@@ -72,8 +78,7 @@ pub(crate) fn ground(error: &GroundError) -> PyErr {
     match error {
         GroundError::Read(error) => read(error),
         GroundError::Unreadable { path, .. } => {
-            let path = Some(path.display().to_string());
-            raise("RecordError", error.to_string(), Spot { path, ..Spot::default() })
+            raise("RecordError", error.to_string(), Spot::at(path))
         }
         GroundError::Motion(_)
         | GroundError::Vertical { .. }
@@ -98,23 +103,20 @@ pub(crate) fn study(error: StudyError) -> PyErr {
     match &error {
         StudyError::File(error) => scenario(error),
         StudyError::Motion { error: motion, .. } => {
-            let path = match &**motion {
-                GroundError::Unreadable { path, .. } => Some(path.display().to_string()),
-                GroundError::Read(error) => Some(error.file.clone()),
+            let spot = match &**motion {
+                GroundError::Unreadable { path, .. } => Spot::at(path),
+                GroundError::Read(error) => Spot::at(Path::new(&error.file)),
                 GroundError::Motion(_)
                 | GroundError::Vertical { .. }
                 | GroundError::UnknownBundled { .. }
-                | GroundError::Unit { .. } => None,
+                | GroundError::Unit { .. } => Spot::default(),
             };
-            raise("RecordError", error.to_string(), Spot { path, ..Spot::default() })
+            raise("RecordError", error.to_string(), spot)
         }
-        StudyError::System { path, .. } | StudyError::Shard { path, .. } => {
-            let path = Some(path.display().to_string());
-            raise("StudyError", error.to_string(), Spot { path, ..Spot::default() })
-        }
-        StudyError::Folder { folder, .. } => {
-            let path = Some(folder.display().to_string());
-            raise("StudyError", error.to_string(), Spot { path, ..Spot::default() })
+        StudyError::System { path, .. }
+        | StudyError::Shard { path, .. }
+        | StudyError::Folder { folder: path, .. } => {
+            raise("StudyError", error.to_string(), Spot::at(path))
         }
         // Only a signal stops it; the one that was heard is raised where it was.
         StudyError::Stopped => PyKeyboardInterrupt::new_err(()),

@@ -8,14 +8,14 @@ use barrelstack_motion::{
     MatchMethod, Matching, MeanRemoval, MotionError, Pads, Processing, ReadOptions,
     ResponseSpectrum, Stage, TargetSpectrum, Utc, bundled, read, rotated_spectrum, write,
 };
-use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::errors;
 use crate::scenario::bytes;
-use crate::view::view;
+use crate::view::{Numbers, view};
 
 /// A record of the library.
 #[pyclass(frozen, module = "barrelstack._native")]
@@ -29,14 +29,8 @@ impl From<barrelstack_motion::Record> for Record {
     }
 }
 
-/// Name, azimuth (degrees), whether it is vertical, step (s), start, velocity at the first sample (m/s).
-type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>, f64);
-
-/// Numbers of one component.
-type Numbers<'py> = Bound<'py, PyArray1<f64>>;
-
-/// What a person may say of the place of a record: network, station and sensor are in the station.
-type Place = (String, String, Option<f64>, Option<f64>);
+/// Name, azimuth (degrees), whether it is vertical, step (s), start.
+type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>);
 
 #[pymethods]
 impl Record {
@@ -137,20 +131,12 @@ impl Record {
             let start = channel.start.map(|start| start.to_string());
             let azimuth = channel.direction.azimuth;
             let (name, step) = (channel.name.clone(), channel.time_step);
-            (name, azimuth, channel.is_vertical(), step, start, channel.initial_velocity)
+            (name, azimuth, channel.is_vertical(), step, start)
         };
         self.inner.channels.iter().map(facts).collect()
     }
 
-    fn site(&self, channel: usize) -> PyResult<Place> {
-        let site = &self.channel(channel)?.site;
-        Ok((site.station.clone(), site.sensor.clone(), site.latitude, site.longitude))
-    }
-
-    fn acceleration<'py>(
-        slf: &Bound<'py, Self>,
-        channel: usize,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn acceleration<'py>(slf: &Bound<'py, Self>, channel: usize) -> PyResult<Numbers<'py>> {
         let record = slf.get();
         view(slf.as_any(), &record.channel(channel)?.acceleration)
     }
@@ -311,7 +297,7 @@ impl Record {
         periods: PyReadonlyArray1<'py, f64>,
         damping: f64,
         of: &str,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Numbers<'py>> {
         let periods = periods.as_array().to_vec();
         let values = py.detach(|| self.pseudo_acceleration(&periods, damping, of));
         Ok(values.map_err(errors::motion)?.into_pyarray(py))
@@ -396,7 +382,7 @@ pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
 
 /// Periods (s) from 0.01 to 10 s, so many to a decade.
 #[pyfunction]
-pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Bound<'_, PyArray1<f64>> {
+pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_> {
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)
 }
 

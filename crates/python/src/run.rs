@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use barrelstack::assemble::PartKind;
 use barrelstack::ensemble;
 use barrelstack::export::Folder;
 use barrelstack::render::{Part, RenderFolder, Rendering};
@@ -22,7 +21,7 @@ use crate::errors;
 use crate::page::paper_of;
 use crate::scenario::bytes;
 use crate::table::Table;
-use crate::view::{rows, view};
+use crate::view::{Numbers, Rows, rows, view};
 
 /// What became of a scenario, in the plane that decides or in the other one.
 #[pyclass(frozen, module = "barrelstack._native")]
@@ -35,8 +34,6 @@ pub(crate) struct Run {
 
 /// Two bodies and their forces: name, at rest (N), largest vertical (N) and when (s), largest horizontal and when.
 type JointFacts = (String, f64, (f64, f64), (f64, f64));
-
-type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 impl Run {
     pub(crate) fn of(answer: Answer, repeated: Option<Verification>) -> Self {
@@ -117,7 +114,7 @@ impl Run {
     }
 
     /// Times (s) of the samples of all histories.
-    fn times<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py>> {
+    fn times<'py>(slf: &Bound<'py, Self>) -> PyResult<Numbers<'py>> {
         view(slf.as_any(), &slf.get().run().recording.times)
     }
 
@@ -127,7 +124,7 @@ impl Run {
         channels.map(|channel| (channel.name.clone(), channel.unit)).collect()
     }
 
-    fn channel<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<Array<'py>> {
+    fn channel<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<Numbers<'py>> {
         let channels = &slf.get().run().recording.channels;
         view(slf.as_any(), &channels.get(at).ok_or_else(|| missing("history"))?.values)
     }
@@ -141,7 +138,7 @@ impl Run {
     }
 
     /// Vertical and horizontal forces (N) on the upper body.
-    fn joint<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<(Array<'py>, Array<'py>)> {
+    fn joint<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
         let joint = slf.get().run().recording.joints.get(at).ok_or_else(|| missing("joint"))?;
         Ok((view(slf.as_any(), &joint.vertical)?, view(slf.as_any(), &joint.horizontal)?))
     }
@@ -152,20 +149,7 @@ impl Run {
         parts.map(|part| (part.name.clone(), part.kind.name())).collect()
     }
 
-    /// Outlines of a body (m, from its center of mass), each with whether it closes on itself.
-    fn outlines<'py>(
-        &self,
-        py: Python<'py>,
-        body: usize,
-    ) -> PyResult<Vec<(Bound<'py, PyArray2<f64>>, bool)>> {
-        let part = self.run().assembly.parts.get(body).ok_or_else(|| missing("body"))?;
-        let drawn = part.outlines.iter().filter(|_| part.kind != PartKind::Ground);
-        drawn
-            .map(|line| Ok((rows(py, line.points.iter().map(|p| [p.x, p.z]))?, line.closed)))
-            .collect()
-    }
-
-    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Array<'py>> {
+    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Numbers<'py>> {
         view(slf.as_any(), &slf.get().run().recording.frames.times)
     }
 
@@ -178,7 +162,7 @@ impl Run {
     }
 
     /// For every frame and body the largest stress (N/m) at a node that presses on it.
-    fn frame_stresses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn frame_stresses<'py>(&self, py: Python<'py>) -> PyResult<Rows<'py>> {
         let stresses = &self.run().recording.frames.stresses;
         let bodies = self.run().assembly.parts.len();
         PyArray1::from_iter(py, stresses.iter().flatten().copied())
@@ -186,11 +170,7 @@ impl Run {
     }
 
     /// The contact forces of a frame: `x` (m), `z` (m), and the force (N) on the contactor.
-    fn frame_forces<'py>(
-        &self,
-        py: Python<'py>,
-        frame: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn frame_forces<'py>(&self, py: Python<'py>, frame: usize) -> PyResult<Rows<'py>> {
         let forces =
             self.run().recording.frames.forces.get(frame).ok_or_else(|| missing("frame"))?;
         rows(py, forces.iter().copied())
@@ -203,11 +183,7 @@ impl Run {
     }
 
     /// Points of an envelope: `x` (m), `z` (m), coordinate (rad or m), length (m).
-    fn envelope_points<'py>(
-        &self,
-        py: Python<'py>,
-        at: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    fn envelope_points<'py>(&self, py: Python<'py>, at: usize) -> PyResult<Rows<'py>> {
         let envelope = self.envelope(at)?;
         let points = envelope.points.iter().zip(&envelope.lengths);
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
@@ -217,7 +193,7 @@ impl Run {
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,
-    ) -> PyResult<(Array<'py>, Array<'py>)> {
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
         let envelope = slf.get().envelope(at)?;
         Ok((view(slf.as_any(), &envelope.at_rest)?, view(slf.as_any(), &envelope.peak)?))
     }
@@ -305,12 +281,12 @@ impl Glance {
 #[pymethods]
 impl Glance {
     #[getter]
-    fn poses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn poses<'py>(&self, py: Python<'py>) -> Rows<'py> {
         self.poses.bind(py).clone()
     }
 
     #[getter]
-    fn twists<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+    fn twists<'py>(&self, py: Python<'py>) -> Rows<'py> {
         self.twists.bind(py).clone()
     }
 }

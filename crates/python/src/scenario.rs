@@ -77,11 +77,6 @@ impl Scenario {
         format!("{:016x}", self.inner.fingerprint())
     }
 
-    #[getter]
-    fn is_free(&self) -> bool {
-        matches!(self.inner.scene, Scene::Free(_) | Scene::Spatial(_))
-    }
-
     fn to_toml(&self) -> String {
         self.inner.to_resolved_toml()
     }

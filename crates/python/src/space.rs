@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use crate::errors;
 use crate::table::Table;
-use crate::view::view;
+use crate::view::{Numbers, view};
 
 /// What became of a scenario in space.
 #[pyclass(frozen, module = "barrelstack._native")]
@@ -70,7 +70,7 @@ impl SpatialRun {
         parts.map(|part| (part.name.clone(), part.kind.name())).collect()
     }
 
-    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn frame_times<'py>(slf: &Bound<'py, Self>) -> PyResult<Numbers<'py>> {
         view(slf.as_any(), &slf.get().frames().times)
     }
 

@@ -65,11 +65,6 @@ impl Study {
     }
 
     #[getter]
-    fn seed(&self) -> u64 {
-        self.inner.seed
-    }
-
-    #[getter]
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.inner.hash())
     }
@@ -82,11 +77,6 @@ impl Study {
     #[getter]
     fn motions(&self) -> usize {
         self.inner.motions()
-    }
-
-    #[getter]
-    fn is_adaptive(&self) -> bool {
-        self.inner.is_adaptive()
     }
 
     fn chunks(&self) -> Vec<ChunkFacts> {

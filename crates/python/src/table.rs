@@ -23,7 +23,7 @@ use barrelstack::pool;
 use barrelstack::scenario::{FileRef, ScenarioError, fnv1a};
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
 use barrelstack_report::shortest;
-use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAnyMethods, PyBool, PyBytes, PyCapsule, PyFloat, PyInt, PyString};
@@ -32,6 +32,7 @@ use crate::errors;
 use crate::listen::listening;
 use crate::record::Record;
 use crate::scenario::{Scenario, bytes};
+use crate::view::Numbers;
 
 /// Columns of one length.
 #[pyclass(frozen, module = "barrelstack._native")]
@@ -127,7 +128,7 @@ impl Table {
     }
 
     /// The numbers of a column, with NaN where there is none.
-    fn numbers<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn numbers<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Numbers<'py>> {
         let column = self.column(name)?;
         let number = |row| match column.values.get(row) {
             Some(Value::Number(value)) => value,

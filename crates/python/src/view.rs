@@ -5,12 +5,15 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// Numbers in a row.
+pub(crate) type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+
+/// Rows of numbers.
+pub(crate) type Rows<'py> = Bound<'py, PyArray2<f64>>;
+
 /// Numbers that a frozen object owns, as an array that cannot be written and keeps the owner alive.
 #[expect(unsafe_code, reason = "an array over memory that another object owns")]
-pub(crate) fn view<'py>(
-    owner: &Bound<'py, PyAny>,
-    values: &[f64],
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+pub(crate) fn view<'py>(owner: &Bound<'py, PyAny>, values: &[f64]) -> PyResult<Numbers<'py>> {
     // SAFETY: all callers pass numbers that a `#[pyclass(frozen)]` owns behind an `Arc` and never changes, so they
     // stay where they are as long as `owner` lives, which the array holds; and the array cannot be written.
     let array = unsafe { PyArray1::borrow_from_array(&ArrayView1::from(values), owner.clone()) };
@@ -24,7 +27,7 @@ pub(crate) fn view<'py>(
 pub(crate) fn rows<const N: usize>(
     py: Python<'_>,
     rows: impl ExactSizeIterator<Item = [f64; N]>,
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
+) -> PyResult<Rows<'_>> {
     let count = rows.len();
     PyArray1::from_iter(py, rows.flatten()).reshape([count, N])
 }

@@ -351,8 +351,7 @@ class Record:
         """The components, in the order of the file; accelerations are views without a copy."""
         facts = self._native.channels()
         return [
-            Channel(name, azimuth, vertical, step, start, self._native.acceleration(at))
-            for at, (name, azimuth, vertical, step, start, _) in enumerate(facts)
+            Channel(*told, self._native.acceleration(at)) for at, told in enumerate(facts)
         ]
 
     def __getitem__(self, component: str) -> Channel:
