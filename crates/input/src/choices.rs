@@ -6,7 +6,7 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// One of several, each with its own fields in the table that chooses it; made by [`choices!`](crate::choices).
+/// One of several, each with its own fields in the table that chooses it; made by [`choices!`](crate::choices!).
 pub trait Chosen: Sized {
     /// All of them.
     fn variants() -> &'static [Variant];

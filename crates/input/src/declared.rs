@@ -173,7 +173,7 @@ impl<T: Named> Held for T {
 /// absent one means, and its help, which is its doc comment; `as` its key in files, where that is another name.
 ///
 /// A table whose further fields are chosen `by` one of these says so, and the type of that one is made by
-/// [`choices!`](crate::choices).
+/// [`choices!`](crate::choices!).
 ///
 /// ```
 /// use barrelstack_input::declared::Declared;
