@@ -1,6 +1,6 @@
 //! The ground motion: where it comes from and how it is scaled.
 
-use barrelstack_input::FileRef;
+use barrelstack_input::{FileRef, named};
 use barrelstack_motion::IntensityMeasure;
 
 mod fields;
@@ -29,13 +29,14 @@ pub enum Vertical {
     File(FileRef),
 }
 
-/// Signal processing of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Processing {
-    /// Samples as they are.
-    None,
-    /// The default processing of the motion library.
-    Default,
+named! {
+    /// Signal processing of a record.
+    pub enum Processing {
+        /// The default processing of the motion library.
+        Default = "default",
+        /// Samples as they are.
+        None = "none",
+    }
 }
 
 /// A recorded motion.
@@ -87,13 +88,14 @@ pub enum Amplitude {
     Acceleration(f64),
 }
 
-/// Direction of an analytic motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// Along `x`.
-    Horizontal,
-    /// Along `z`.
-    Vertical,
+named! {
+    /// Direction of an analytic motion.
+    pub enum Direction {
+        /// Along `x`.
+        Horizontal = "horizontal",
+        /// Along `z`.
+        Vertical = "vertical",
+    }
 }
 
 /// A harmonic motion.
@@ -197,17 +199,18 @@ pub enum Scale {
     },
 }
 
-/// What the measure of a scaling is taken of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MeasuredOn {
-    /// The horizontal component that drives the stack.
-    Component,
-    /// Both horizontals of the record: median over all directions.
-    RotD50,
-    /// Both horizontals of the record: largest over all directions.
-    RotD100,
-    /// Both horizontals of the record: their geometric mean.
-    GeometricMean,
+named! {
+    /// What the measure of a scaling is taken of.
+    pub enum MeasuredOn {
+        /// The horizontal component that drives the stack.
+        Component = "component",
+        /// Both horizontals of the record: median over all directions.
+        RotD50 = "rotd50",
+        /// Both horizontals of the record: largest over all directions.
+        RotD100 = "rotd100",
+        /// Both horizontals of the record: their geometric mean.
+        GeometricMean = "geomean",
+    }
 }
 
 /// The ground motion of a scenario.
