@@ -3,10 +3,10 @@
 use barrelstack_dynamics::solid::Barrel;
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::field::{Default, Kind, Range, Section, Variant, Variants};
+use barrelstack_input::field::{Default, Kind, Range, Variant};
 use barrelstack_input::reader::Reader;
 use barrelstack_input::writer::Writer;
-use barrelstack_input::{Dimension, InputError, choices, fields, section};
+use barrelstack_input::{Dimension, InputError, choices, section, table};
 
 choices! {
     /// A solid about its reference point.
@@ -67,28 +67,21 @@ fn part_names() -> Vec<&'static str> {
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 
-/// A solid.
-pub static SOLID: Section = Section {
-    name: "solid",
-    help: "Solid of a body in space, about its reference point.",
-    fields: &fields! {
-        /// Form of the solid.
-        type = Kind::Choice(Solid::names), Default::Required;
-    },
-    variants: Some(Variants { tag: "type", list: &SOLIDS }),
-    exclusive: &[],
-};
+table! {
+    /// Solid of a body in space, about its reference point.
+    pub static SOLID = "solid";
+    /// Form of the solid.
+    type = Kind::Choice(Solid::names), Default::Required;
+    of SOLIDS, by type;
+}
 
-static PART_SOLID: Section = Section {
-    name: "part-solid",
-    help: "Solid of a part, about its reference point.",
-    fields: &fields! {
-        /// Form of the solid, bounded and no compound itself.
-        type = Kind::Choice(part_names), Default::Required;
-    },
-    variants: Some(Variants { tag: "type", list: OF_PARTS }),
-    exclusive: &[],
-};
+table! {
+    /// Solid of a part, about its reference point.
+    static PART_SOLID = "part-solid";
+    /// Form of the solid, bounded and no compound itself.
+    type = Kind::Choice(part_names), Default::Required;
+    of *OF_PARTS, by type;
+}
 
 /// The solid of a part; the same type, read from another table.
 impl Held for Solid {

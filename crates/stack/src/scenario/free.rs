@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::{self, Declared as _};
-use barrelstack_input::{fields, section};
+use barrelstack_input::{section, table};
 
 use super::dimension::Dimension;
 use super::element::{self, FreeElement};
 use super::error::ScenarioError;
-use super::field::{Default, Kind, Range, Section, names};
+use super::field::{Default, Kind, Range, names};
 use super::interface::{self, Interface};
 use super::nodes::{self, NodeRule};
 use super::reader::Reader;
@@ -129,22 +129,17 @@ impl FreeBody {
 /// Most bodies of a free scene.
 const MOST_BODIES: usize = 5000;
 
-/// A further boundary.
-pub static BOUNDARY: Section = Section {
-    name: "boundary",
-    help: "A boundary of a body beside that of its own shape; it weighs nothing.",
-    fields: &fields! {
-        /// Label used by interfaces.
-        kind = Kind::Text, Default::Required;
-        /// Outline that others touch, from the reference point of the body's shape; without it the boundary is its
-        /// nodes.
-        shape = Kind::Table(&SHAPE), Default::Nothing;
-        /// Contact nodes.
-        nodes = NODES_KIND, NODES_DEFAULT;
-    },
-    variants: None,
-    exclusive: &[],
-};
+table! {
+    /// A boundary of a body beside that of its own shape; it weighs nothing.
+    pub static BOUNDARY = "boundary";
+    /// Label used by interfaces.
+    kind = Kind::Text, Default::Required;
+    /// Outline that others touch, from the reference point of the body's shape; without it the boundary is its
+    /// nodes.
+    shape = Kind::Table(&SHAPE), Default::Nothing;
+    /// Contact nodes.
+    nodes = NODES_KIND, NODES_DEFAULT;
+}
 
 /// The nodes of a boundary.
 const NODES_KIND: Kind = Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES);
@@ -152,46 +147,41 @@ const NODES_DEFAULT: Default = Default::Derived(
     "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
 );
 
-/// A body.
-pub static BODY: Section = Section {
-    name: "body",
-    help: "A rigid body of a free scene.",
-    fields: &fields! {
-        /// Unique name.
-        name = Kind::Text, Default::Required;
-        /// Label used by interfaces.
-        kind = Kind::Text, Default::Derived("the name");
-        /// Outline.
-        shape = Kind::Table(&SHAPE), Default::Required;
-        /// Mass.
-        mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
-        /// Moment of inertia about the center of mass.
-        inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
-            Default::Derived("that of a uniform plate of this outline");
-        /// Center of mass, from the reference point of the shape.
-        center_of_mass = Kind::Point(Dimension::LENGTH), Default::Derived("the centroid of the outline");
-        /// Place of the reference point of the shape at the start.
-        position = Kind::Point(Dimension::LENGTH), Default::Required;
-        /// Inclination at the start, counterclockwise.
-        angle = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
-        /// Velocity of the center of mass at the start.
-        velocity = Kind::Point(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\"]");
-        /// Spin at the start, counterclockwise.
-        spin = Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)), Default::Value("\"0 rad/s\"");
-        /// Contact nodes.
-        nodes = NODES_KIND, NODES_DEFAULT;
-        /// Further boundaries, each of a kind of its own.
-        boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
-        /// Bodies of one group do not meet by an interface that says `within_groups = false`.
-        group = Kind::Text, Default::Nothing;
-        /// Whether the body moves with the ground.
-        fixed_to_ground = Kind::Flag, Default::Value("false");
-        /// Viscous drag.
-        viscous = Kind::Table(&VISCOUS), Default::Nothing;
-    },
-    variants: None,
-    exclusive: &[],
-};
+table! {
+    /// A rigid body of a free scene.
+    pub static BODY = "body";
+    /// Unique name.
+    name = Kind::Text, Default::Required;
+    /// Label used by interfaces.
+    kind = Kind::Text, Default::Derived("the name");
+    /// Outline.
+    shape = Kind::Table(&SHAPE), Default::Required;
+    /// Mass.
+    mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
+    /// Moment of inertia about the center of mass.
+    inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
+        Default::Derived("that of a uniform plate of this outline");
+    /// Center of mass, from the reference point of the shape.
+    center_of_mass = Kind::Point(Dimension::LENGTH), Default::Derived("the centroid of the outline");
+    /// Place of the reference point of the shape at the start.
+    position = Kind::Point(Dimension::LENGTH), Default::Required;
+    /// Inclination at the start, counterclockwise.
+    angle = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
+    /// Velocity of the center of mass at the start.
+    velocity = Kind::Point(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\"]");
+    /// Spin at the start, counterclockwise.
+    spin = Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)), Default::Value("\"0 rad/s\"");
+    /// Contact nodes.
+    nodes = NODES_KIND, NODES_DEFAULT;
+    /// Further boundaries, each of a kind of its own.
+    boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
+    /// Bodies of one group do not meet by an interface that says `within_groups = false`.
+    group = Kind::Text, Default::Nothing;
+    /// Whether the body moves with the ground.
+    fixed_to_ground = Kind::Flag, Default::Value("false");
+    /// Viscous drag.
+    viscous = Kind::Table(&VISCOUS), Default::Nothing;
+}
 
 /// Reads the fields of a free scene from the top of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {

@@ -1,11 +1,11 @@
 //! Where the boundary of a body of a free scene carries contact nodes.
 
 use barrelstack_input::declared::Held;
-use barrelstack_input::{fields, named, section};
+use barrelstack_input::{named, section, table};
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Kind, Range, Section, names};
+use super::field::{Default, Kind, Range, names};
 use super::reader::Reader;
 use super::shape::Shape;
 use super::tree::Table;
@@ -52,25 +52,21 @@ named! {
 /// Most contact nodes of one body.
 const MOST_NODES: f64 = 20_000.0;
 
-/// Contact nodes.
-pub static NODES: Section = Section {
-    name: "nodes",
-    help: "Where the boundary carries contact nodes: one of the fields.",
-    fields: &fields! {
-        /// At the corners; at the one deepest point of a circle; or exact, where convex outlines touch each other
-        /// with their deepest points and both bodies say so.
-        rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
-        /// Greatest distance between nodes along the boundary.
-        spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
-            Default::Nothing;
-        /// Nodes on each side, or around a curved shape.
-        count = Kind::Integer(1, 2000), Default::Nothing;
-        /// Nodes at chosen places.
-        list = Kind::Tables(&NODE), Default::Nothing;
-    },
-    variants: None,
-    exclusive: &[&["rule", "spacing", "count", "list"]],
-};
+table! {
+    /// Where the boundary carries contact nodes: one of the fields.
+    pub static NODES = "nodes";
+    /// At the corners; at the one deepest point of a circle; or exact, where convex outlines touch each other
+    /// with their deepest points and both bodies say so.
+    rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
+    /// Greatest distance between nodes along the boundary.
+    spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
+        Default::Nothing;
+    /// Nodes on each side, or around a curved shape.
+    count = Kind::Integer(1, 2000), Default::Nothing;
+    /// Nodes at chosen places.
+    list = Kind::Tables(&NODE), Default::Nothing;
+    at most one of &["rule", "spacing", "count", "list"];
+}
 
 /// Reads the nodes of a boundary of this shape; without one they are at chosen places.
 pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, ScenarioError> {

@@ -2,7 +2,7 @@
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::{choices, fields, named};
+use barrelstack_input::{choices, named, table};
 
 use super::catalog;
 use super::dimension::Dimension;
@@ -146,17 +146,13 @@ const fn size(least: f64, greatest: f64) -> Kind {
 
 const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5));
 
-/// A cradle.
-pub static CRADLE: Section = Section {
-    name: "cradle",
-    help: "How a rack holds a barrel in the transverse view.",
-    fields: &fields! {
-        /// Two supports, or a circular trough.
-        type = Kind::Choice(Cradle::names), Default::Value("\"supports\"");
-    },
-    variants: Some(Variants { tag: "type", list: &CRADLES }),
-    exclusive: &[],
-};
+table! {
+    /// How a rack holds a barrel in the transverse view.
+    pub static CRADLE = "cradle";
+    /// Two supports, or a circular trough.
+    type = Kind::Choice(Cradle::names), Default::Value("\"supports\"");
+    of CRADLES, by type;
+}
 
 /// A rack.
 pub static RACK: Section = Section {

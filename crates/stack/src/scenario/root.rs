@@ -1,10 +1,10 @@
 //! The top of a scenario file.
 
 use barrelstack_input::declared::Declared as _;
-use barrelstack_input::{fields, named};
+use barrelstack_input::{named, table};
 
 use super::error::ScenarioError;
-use super::field::{Default, Kind, Section, Variant, Variants, names};
+use super::field::{Default, Kind, names};
 use super::reader::Reader;
 use super::run::Until;
 use super::tree::Table;
@@ -25,73 +25,60 @@ named! {
     }
 }
 
-/// The top of a scenario file.
-pub static ROOT: Section = Section {
-    name: "scenario",
-    help: "What stands where, what shakes it, and how it is run.",
-    fields: &fields! {
-        /// Version of the scenario language.
-        schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
-        /// One line for people.
-        title = Kind::Text, Default::Derived("name of the file");
-        /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
-        extends = Kind::Text, Default::Nothing;
-        /// What stands.
-        kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
-        /// The ground motion.
-        motion = Kind::Table(&motion::MOTION), Default::Nothing;
-        /// How it is run.
-        run = Kind::Table(&run::RUN), Default::Nothing;
-        /// What is kept.
-        record = Kind::Table(&run::RECORD), Default::Nothing;
-    },
-    variants: Some(Variants {
-        tag: "kind",
-        list: &[
-            Variant {
-                name: "stack",
-                help: "A stack of barrels on racks.",
-                fields: &fields! {
-                    /// The stack.
-                    stack = Kind::Table(&stack::STACK), Default::Required;
-                    /// Laws of contact by pair.
-                    interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
-                    /// Thresholds that tell a collapse.
-                    outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
-                    /// How the variants of the stack differ from what is stated here.
-                    imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
-                },
-            },
-            Variant {
-                name: "free",
-                help: "Any planar bodies on a ground.",
-                fields: &fields! {
-                    /// The ground.
-                    ground = Kind::Table(&free::GROUND), Default::Nothing;
-                    /// The bodies.
-                    body = Kind::Tables(&free::BODY), Default::Required;
-                    /// Laws of contact between kinds of body.
-                    interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
-                    /// Force elements between bodies.
-                    element = Kind::Tables(&element::ELEMENT), Default::Nothing;
-                },
-            },
-            Variant {
-                name: "free-spatial",
-                help: "Any bodies in space on a ground.",
-                fields: &fields! {
-                    /// The ground.
-                    ground = Kind::Table(&spatial::GROUND), Default::Nothing;
-                    /// The bodies.
-                    body = Kind::Tables(&barrelstack_bodies::BODY), Default::Required;
-                    /// Laws of contact between kinds of body.
-                    interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
-                },
-            },
-        ],
-    }),
-    exclusive: &[],
-};
+table! {
+    /// What stands where, what shakes it, and how it is run.
+    pub static ROOT = "scenario";
+    /// Version of the scenario language.
+    schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
+    /// One line for people.
+    title = Kind::Text, Default::Derived("name of the file");
+    /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
+    extends = Kind::Text, Default::Nothing;
+    /// What stands.
+    kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
+    /// The ground motion.
+    motion = Kind::Table(&motion::MOTION), Default::Nothing;
+    /// How it is run.
+    run = Kind::Table(&run::RUN), Default::Nothing;
+    /// What is kept.
+    record = Kind::Table(&run::RECORD), Default::Nothing;
+    by kind {
+        /// A stack of barrels on racks.
+        "stack" {
+            /// The stack.
+            stack = Kind::Table(&stack::STACK), Default::Required;
+            /// Laws of contact by pair.
+            interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
+            /// Thresholds that tell a collapse.
+            outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
+            /// How the variants of the stack differ from what is stated here.
+            imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
+
+        }
+        /// Any planar bodies on a ground.
+        "free" {
+            /// The ground.
+            ground = Kind::Table(&free::GROUND), Default::Nothing;
+            /// The bodies.
+            body = Kind::Tables(&free::BODY), Default::Required;
+            /// Laws of contact between kinds of body.
+            interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
+            /// Force elements between bodies.
+            element = Kind::Tables(&element::ELEMENT), Default::Nothing;
+
+        }
+        /// Any bodies in space on a ground.
+        "free-spatial" {
+            /// The ground.
+            ground = Kind::Table(&spatial::GROUND), Default::Nothing;
+            /// The bodies.
+            body = Kind::Tables(&barrelstack_bodies::BODY), Default::Required;
+            /// Laws of contact between kinds of body.
+            interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
+
+        }
+    }
+}
 
 /// Reads the whole scenario; `fallback_title` is used when the file has none.
 pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario, ScenarioError> {

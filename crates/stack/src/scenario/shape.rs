@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
-use barrelstack_input::{choices, fields, section};
+use barrelstack_input::{choices, section, table};
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
-use super::field::{Default, Kind, Range, Section, Variant, Variants};
+use super::field::{Default, Kind, Range, Variant};
 use super::reader::Reader;
 use super::uniform::{area, cross, sides};
 use super::writer::Writer;
@@ -79,17 +79,13 @@ const SIZE: Kind =
 /// Most corners of a polygon.
 const MOST_CORNERS: usize = 200;
 
-/// An outline.
-pub static SHAPE: Section = Section {
-    name: "shape",
-    help: "Outline of a body, about its reference point.",
-    fields: &fields! {
-        /// Form of the outline.
-        type = Kind::Choice(Shape::names), Default::Required;
-    },
-    variants: Some(Variants { tag: "type", list: &SHAPES }),
-    exclusive: &[],
-};
+table! {
+    /// Outline of a body, about its reference point.
+    pub static SHAPE = "shape";
+    /// Form of the outline.
+    type = Kind::Choice(Shape::names), Default::Required;
+    of SHAPES, by type;
+}
 
 section! {
     /// One outline of several that are one body.
@@ -106,16 +102,13 @@ section! {
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
 }
 
-static PART_SHAPE: Section = Section {
-    name: "part-shape",
-    help: "Outline of a part, about its reference point.",
-    fields: &fields! {
-        /// Form of the outline, no compound itself.
-        type = Kind::Choice(part_names), Default::Required;
-    },
-    variants: Some(Variants { tag: "type", list: OF_PARTS }),
-    exclusive: &[],
-};
+table! {
+    /// Outline of a part, about its reference point.
+    static PART_SHAPE = "part-shape";
+    /// Form of the outline, no compound itself.
+    type = Kind::Choice(part_names), Default::Required;
+    of *OF_PARTS, by type;
+}
 
 /// An outline in a table of its own.
 impl Held for Shape {

@@ -1,6 +1,6 @@
 //! The fields of `[interface]`.
 
-use barrelstack_input::{fields, named};
+use barrelstack_input::{fields, named, table};
 
 use crate::scenario::dimension::Dimension;
 use crate::scenario::field::{Default, Field, Kind, Range, Section, Variant, Variants, names};
@@ -211,57 +211,28 @@ const COEFFICIENT_FIELD: Field = Field::new(
     "Kinetic coefficient of friction.",
 );
 
-/// Friction.
-pub static FRICTION: Section = Section {
-    name: "friction",
-    help: "Tangential force of a contact.",
-    fields: &fields! {
-        /// Tangential force as a function of slip.
-        law = Kind::Choice(names::<FrictionKind>), Default::Value("\"coulomb\"");
-    },
-    variants: Some(Variants {
-        tag: "law",
-        list: &[
-            Variant {
-                name: "coulomb",
-                help: "Elastic, damped stick up to the static limit, then sliding.",
-                fields: &[
-                    COEFFICIENT_FIELD,
-                    Field::new(
-                        "static_coefficient",
-                        Kind::Number(COEFFICIENT),
-                        Default::Derived("`coefficient`"),
-                        "Static coefficient of friction, not below the kinetic one.",
-                    ),
-                    Field::new(
-                        "tangential_stiffness_ratio",
-                        Kind::Number(Range::up_to(100.0)),
-                        Default::Value("1.0"),
-                        "Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner, at a smaller step.",
-                    ),
-                    Field::new(
-                        "tangential_damping_ratio",
-                        Kind::Number(Range::between(0.0, 100.0)),
-                        Default::Value("1.0"),
-                        "Tangential damping of the stick over the normal damping.",
-                    ),
-                ],
-            },
-            Variant {
-                name: "regularized",
-                help: "Sliding friction smoothed around zero slip rate; it creeps and never sticks.",
-                fields: &[
-                    COEFFICIENT_FIELD,
-                    Field::new(
-                        "velocity",
-                        Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
-                        Default::Required,
-                        "Slip rate at which the friction is fully developed.",
-                    ),
-                ],
-            },
-            Variant { name: "none", help: "No tangential force.", fields: &[] },
-        ],
-    }),
-    exclusive: &[],
-};
+table! {
+    /// Tangential force of a contact.
+    pub static FRICTION = "friction";
+    /// Tangential force as a function of slip.
+    law = Kind::Choice(names::<FrictionKind>), Default::Value("\"coulomb\"");
+    by law {
+        /// Elastic, damped stick up to the static limit, then sliding.
+        "coulomb" with [COEFFICIENT_FIELD] {
+            /// Static coefficient of friction, not below the kinetic one.
+            static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
+            /// Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner,
+            /// at a smaller step.
+            tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)), Default::Value("1.0");
+            /// Tangential damping of the stick over the normal damping.
+            tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
+        }
+        /// Sliding friction smoothed around zero slip rate; it creeps and never sticks.
+        "regularized" with [COEFFICIENT_FIELD] {
+            /// Slip rate at which the friction is fully developed.
+            velocity = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Required;
+        }
+        /// No tangential force.
+        "none" {}
+    }
+}
