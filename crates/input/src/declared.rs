@@ -279,7 +279,7 @@ macro_rules! section {
 
 /// Declares a table that is read by hand: each field once, with what it holds, what an absent one means, and its help,
 /// which is its doc comment; then the fields that depend on one of them, listed here or
-/// by [`choices!`](crate::choices), and those of which at most one may be given.
+/// by [`choices!`](crate::choices!), and those of which at most one may be given.
 ///
 /// ```
 /// use barrelstack_input::field::{Default, Field, Kind, Range};
