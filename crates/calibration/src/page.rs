@@ -7,7 +7,7 @@ use super::{Calibration, Estimate};
 impl Calibration {
     /// The result as a page.
     pub fn document(&self) -> Document {
-        let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+        let heading = |text: &str| Block::heading(2, text);
         let mut blocks = Vec::new();
         if !self.figures.is_empty() {
             blocks.push(heading("What was measured, and the fit"));

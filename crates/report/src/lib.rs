@@ -80,7 +80,7 @@ pub use animation::Animation;
 pub use diagram::{Arrow, Diagram};
 pub use document::{Block, Document, Tone, Verdict, Word};
 pub use envelope::{BoundarySample, Envelope};
-pub use escape::{capital, csv as csv_field};
+pub use escape::{capital, csv as csv_field, listed};
 pub use figure::{Attachment, Figure, FigureKind, Format, attachments, figures};
 pub use film::Film;
 pub use html::{Fragment, badge, fragment, html, html_with};

@@ -4,7 +4,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend};
 use barrelstack::variants::Range;
 use barrelstack_report::{
-    Block, Cell, Document, Figure, FigureKind, Pane, Players, Strip, Table, Verdict, capital,
+    Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
 };
 
 use crate::drawing::{Sight, ground_histories, scene};
@@ -42,22 +42,22 @@ pub fn document(answer: &Answer) -> Document {
         overlay: None,
         ground: ground_histories(run),
     })];
-    let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+    let heading = |text: &str| Block::heading(2, text);
     if let Some(table) = variants(summary) {
         blocks.extend([heading("In all variants"), Block::Table(table)]);
     }
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
     for (sight, scene) in &scenes {
-        blocks.push(Block::Figure(Figure {
-            id: format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
-            caption: format!(
+        blocks.push(Block::Figure(Figure::new(
+            format!("sequence-{}", sight.words(&run.stack).replace(' ', "-")),
+            format!(
                 "The {} {} at the moments that matter.",
                 if free { "scene" } else { "stack" },
                 sight.words(&run.stack)
             ),
-            kind: FigureKind::Strip(Strip::of_run(std::sync::Arc::clone(scene), 6)),
-        }));
+            Strip::of_run(std::sync::Arc::clone(scene), 6),
+        )));
     }
     blocks.push(heading("In numbers"));
     let mut numbers = Table::new("The run that is shown.", &[("", ""), ("", "")]);
@@ -159,67 +159,45 @@ fn variants(summary: &Summary) -> Option<Table> {
 }
 
 fn fates(run: &Run) -> Table {
-    let columns = [
-        ("body", ""),
-        ("leaves its seat", "s"),
-        ("toward", ""),
-        ("falls", "s"),
-        ("moved across", "cm"),
-        ("along", "cm"),
-        ("up", "cm"),
-        ("largest slip across", "cm"),
-        ("along", "cm"),
-    ];
-    let mut table = Table::new(
-        "Slips are those against what a body stands on, while the stack stood; ways are those at the end.",
-        &columns,
-    );
-    let time = |at: Option<f64>| at.map_or(Cell::Missing, |at| Cell::Measured(at, 2));
+    let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
-    for (part, fate) in run.stack.parts.iter().zip(&run.fates).skip(1) {
-        let toward = fate.left_seat.map(|(.., heading): (_, _, Heading)| heading.name());
-        table.rows.push(vec![
-            Cell::text(&part.name),
-            time(fate.left_seat.map(|(at, ..)| at)),
-            toward.map_or(Cell::Missing, Cell::text),
-            time(fate.fell_at),
-            length(fate.moved.x),
-            length(fate.moved.y),
-            length(fate.moved.z),
-            length(fate.peak_slip[0]),
-            length(fate.peak_slip[1]),
-        ]);
-    }
-    table
+    Table::of(
+        "Slips are those against what a body stands on, while the stack stood; ways are those at the end.",
+        run.stack.parts.iter().zip(&run.fates).skip(1),
+        &[
+            ("body", "", &|(part, _)| Cell::text(&part.name)),
+            ("leaves its seat", "s", &|(_, fate)| time(fate.left_seat.map(|(at, ..)| at))),
+            ("toward", "", &|(_, fate)| {
+                Cell::maybe(fate.left_seat.map(|(.., heading): (_, _, Heading)| heading.name()))
+            }),
+            ("falls", "s", &|(_, fate)| time(fate.fell_at)),
+            ("moved across", "cm", &|(_, fate)| length(fate.moved.x)),
+            ("along", "cm", &|(_, fate)| length(fate.moved.y)),
+            ("up", "cm", &|(_, fate)| length(fate.moved.z)),
+            ("largest slip across", "cm", &|(_, fate)| length(fate.peak_slip[0])),
+            ("along", "cm", &|(_, fate)| length(fate.peak_slip[1])),
+        ],
+    )
 }
 
 /// What became of the bodies of a free scene.
 fn ends(summary: &Summary) -> Table {
-    let columns = [
-        ("body", ""),
-        ("moved along x", "m"),
-        ("y", "m"),
-        ("z", "m"),
-        ("largest way over the ground", "m"),
-        ("largest rise", "m"),
-        ("speed at the end", "m/s"),
-        ("spin at the end", "rad/s"),
-    ];
-    let mut table =
-        Table::new("Ways are those from where a body was at rest, over the ground.", &columns);
-    let length = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
-    for body in &summary.bodies {
-        let mut row = vec![Cell::text(&body.name)];
-        row.extend(body.moved.map(|way| Cell::Measured(way, 4)));
-        row.extend([
-            Cell::Measured(body.peak_displacement, 4),
-            Cell::Measured(body.peak_uplift, 4),
-            Cell::Measured(length(body.velocity), 4),
-            Cell::Measured(length(body.spin), 4),
-        ]);
-        table.rows.push(row);
-    }
-    table
+    let measured = |value: f64| Cell::Measured(value, 4);
+    let length = |[x, y, z]: [f64; 3]| measured((x * x + y * y + z * z).sqrt());
+    Table::of(
+        "Ways are those from where a body was at rest, over the ground.",
+        &summary.bodies,
+        &[
+            ("body", "", &|body| Cell::text(&body.name)),
+            ("moved along x", "m", &|body| measured(body.moved[0])),
+            ("y", "m", &|body| measured(body.moved[1])),
+            ("z", "m", &|body| measured(body.moved[2])),
+            ("largest way over the ground", "m", &|body| measured(body.peak_displacement)),
+            ("largest rise", "m", &|body| measured(body.peak_uplift)),
+            ("speed at the end", "m/s", &|body| length(body.velocity)),
+            ("spin at the end", "rad/s", &|body| length(body.spin)),
+        ],
+    )
 }
 
 fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {

@@ -101,9 +101,9 @@ fn tolerance(tolerance: Tolerance) -> String {
 pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64) -> Document {
     let failed = rows.iter().filter(|row| !row.passed).count();
     let passed = rows.len() - failed;
-    let mut blocks = vec![Block::Heading { level: 2, text: "What is not claimed".into() }];
+    let mut blocks = vec![Block::heading(2, "What is not claimed")];
     blocks.push(Block::List(LIMITS.iter().map(|text| (*text).to_owned()).collect()));
-    blocks.push(Block::Heading { level: 2, text: "What is not answered, and why".into() });
+    blocks.push(Block::heading(2, "What is not answered, and why"));
     blocks.push(Block::List(ABSENT.iter().map(|(what, why)| format!("{what}: {why}")).collect()));
     let mut theories: Vec<&str> = vec![];
     for problem in problems {
@@ -112,13 +112,13 @@ pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64
         }
     }
     for theory in theories {
-        blocks.push(Block::Heading { level: 2, text: heading(theory).into() });
+        blocks.push(Block::heading(2, heading(theory)));
         let of_theory = || problems.iter().zip(rows).filter(|(p, _)| p.theory() == theory);
         blocks.push(Block::Table(table(theory, of_theory())));
-        blocks.push(Block::Details {
-            summary: "Scenes, sources and notes".into(),
-            blocks: vec![Block::List(of_theory().map(|(p, row)| note(p, row)).collect())],
-        });
+        blocks.push(Block::details(
+            "Scenes, sources and notes",
+            vec![Block::List(of_theory().map(|(p, row)| note(p, row)).collect())],
+        ));
     }
     let headline = if failed == 0 {
         format!("All {passed} problems are answered within their tolerances.")

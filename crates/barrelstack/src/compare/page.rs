@@ -3,7 +3,7 @@
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Document, Figure, History, Mark, Pane, Players, Plot, Series, SeriesStyle,
-    Verdict, capital, significant,
+    Verdict, capital, listed, significant,
 };
 
 use super::{Difference, Side, differences, letter, tables};
@@ -42,16 +42,6 @@ pub fn document(sides: &[Side]) -> Document {
                 side.summary.warnings.iter().map(move |text| format!("{}: {text}", letter(at)))
             })
             .collect(),
-    }
-}
-
-/// "a, b and c".
-fn listed(words: impl Iterator<Item = String>) -> String {
-    let mut words: Vec<String> = words.collect();
-    match (words.pop(), words.len()) {
-        (None, _) => String::new(),
-        (Some(last), 0) => last,
-        (Some(last), _) => format!("{} and {last}", words.join(", ")),
     }
 }
 

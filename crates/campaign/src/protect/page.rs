@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, listed, significant,
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
@@ -53,15 +53,6 @@ fn per(all: &Ranking) -> String {
                 .collect();
             format!("in shaking of {} cm/s", listed(&shown))
         }
-    }
-}
-
-/// "a, b and c".
-fn listed(words: &[String]) -> String {
-    match words {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 

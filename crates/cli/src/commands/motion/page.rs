@@ -5,6 +5,7 @@ use std::path::Path;
 use barrelstack_motion::Record;
 use barrelstack_report::{
     Block, Cell, Document, Figure, FigureKind, Panels, Plot, Table, Tone, Verdict, capital, html,
+    listed,
 };
 
 use super::output::vacant;
@@ -48,7 +49,7 @@ pub(super) fn write(
 }
 
 fn document(panels: &Panels, after: &Record, told: Told) -> Document {
-    let heading = |text: &str| Block::Heading { level: 2, text: text.to_owned() };
+    let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
     // The spectra, which are the last row, tell most.
     if let Some((spectra, components)) = panels.rows.split_last() {
@@ -85,15 +86,12 @@ fn live(id: &str, at: usize, plot: &Plot) -> Block {
         Some((channel, quantity)) => format!("{quantity} of {channel}"),
         None => plot.y.label.clone(),
     };
-    let mut lines: Vec<&str> = plot.series.iter().map(|series| series.label.as_str()).collect();
-    let last = lines.pop().unwrap_or_default();
-    let lines =
-        if lines.is_empty() { last.into() } else { format!("{} and {last}", lines.join(", ")) };
-    Block::Figure(Figure {
-        id: format!("{id}-{}", at + 1),
-        caption: format!("{}: {lines}.", capital(&what)),
-        kind: FigureKind::Plot(Plot { interactive: true, ..plot.clone() }),
-    })
+    let lines = listed(plot.series.iter().map(|series| series.label.as_str()));
+    Block::Figure(Figure::new(
+        format!("{id}-{}", at + 1),
+        format!("{}: {lines}.", capital(&what)),
+        Plot { interactive: true, ..plot.clone() },
+    ))
 }
 
 /// A table of the terminal as one of a page.

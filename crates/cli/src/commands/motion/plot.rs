@@ -7,7 +7,7 @@ use anyhow::bail;
 use barrelstack_motion::{
     Channel, Record, ResponseSpectrum, STANDARD_GRAVITY, arias, husid, standard_periods,
 };
-use barrelstack_report::{Axis, Band, Figure, FigureKind, Format, Plot, Series};
+use barrelstack_report::{Axis, Band, Figure, Format, Plot, Series};
 use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Source, Worked};
@@ -216,7 +216,7 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
         plot.bands.extend(strong_part(first));
     }
     let caption = format!("{}, {}", title(record), plot.y.label);
-    Ok(Figure { id: kind.file(), caption, kind: FigureKind::Plot(plot) })
+    Ok(Figure::new(kind.file(), caption, plot))
 }
 
 /// What the record is called in a caption.

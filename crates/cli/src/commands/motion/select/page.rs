@@ -2,7 +2,7 @@
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, FigureKind, Plot, Series, SeriesStyle, Table, Verdict,
+    Axis, Block, Cell, Document, Figure, Plot, Series, SeriesStyle, Table, Verdict,
 };
 use barrelstack_selection::{Candidate, SelectionTarget};
 
@@ -34,14 +34,12 @@ fn document(
         )
     });
     let sentences = [Some(format!("{}.", set.fit(target))), given, Some(format!("{told}."))];
-    let mut blocks = vec![
-        Block::Heading { level: 2, text: "Spectra".to_owned() },
-        Block::Figure(spectra(set, target, candidates)),
-    ];
+    let mut blocks =
+        vec![Block::heading(2, "Spectra"), Block::Figure(spectra(set, target, candidates))];
     if target.deviation().iter().any(|s| *s > 0.0) {
         blocks.push(Block::Figure(spread(set, target)));
     }
-    blocks.push(Block::Heading { level: 2, text: "Records".to_owned() });
+    blocks.push(Block::heading(2, "Records"));
     blocks.push(Block::Table(records(set)));
     let limit = |range: Option<super::Range>| {
         range.map_or("none".to_owned(), |range| {
@@ -125,7 +123,7 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
         set.selection.chosen.len(),
         set.args.spectrum.name()
     );
-    Figure { id: "spectra".to_owned(), caption, kind: FigureKind::Plot(plot) }
+    Figure::new("spectra", caption, plot)
 }
 
 /// Standard deviations of ln Sa.
@@ -141,7 +139,7 @@ fn spread(set: &Set<'_>, target: &SelectionTarget) -> Figure {
         ..Plot::default()
     };
     let caption = "Spread of the set against the target's, period by period.".to_owned();
-    Figure { id: "spread".to_owned(), caption, kind: FigureKind::Plot(plot) }
+    Figure::new("spread", caption, plot)
 }
 
 fn records(set: &Set<'_>) -> Table {
