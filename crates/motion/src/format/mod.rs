@@ -18,6 +18,7 @@ mod number;
 mod packed;
 mod peer;
 mod place;
+mod quoted;
 mod refused;
 mod sac;
 mod seed;

@@ -1,6 +1,6 @@
 //! Numbers as files print them.
 
-use super::source::latin1;
+use super::quoted::latin1;
 
 /// A number with one unit of its last printed digit.
 #[derive(Clone, Copy, Debug)]

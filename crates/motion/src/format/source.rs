@@ -5,6 +5,7 @@ pub(crate) use super::number::{
     Printed, leading_number, leading_printed, leading_text, parse_number, resolution,
 };
 pub(crate) use super::place::{Columns, Place};
+pub(crate) use super::quoted::{latin1, quoted, shorten};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::units::AccelerationUnit;
@@ -476,25 +477,6 @@ impl<'a> Source<'a> {
         }
         Ok(())
     }
-}
-
-/// Bytes as text, one character each.
-pub(crate) fn latin1(bytes: &[u8]) -> String {
-    bytes.iter().map(|&byte| char::from(byte)).collect()
-}
-
-/// At most 40 characters of a text, for messages.
-pub(crate) fn shorten(text: &str) -> String {
-    if text.chars().count() <= 40 {
-        text.to_owned()
-    } else {
-        text.chars().take(37).chain("...".chars()).collect()
-    }
-}
-
-/// As [`shorten`], between quotation marks.
-pub(crate) fn quoted(text: &str) -> String {
-    format!("\"{}\"", shorten(text))
 }
 
 fn is_separator(byte: u8) -> bool {
