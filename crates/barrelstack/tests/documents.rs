@@ -48,18 +48,45 @@ fn the_words_that_pages_explain_are_those_of_the_glossary() {
     assert_eq!(rows.collect::<Vec<_>>(), own.collect::<Vec<_>>());
 }
 
-/// Lines of code of a crate, with the file they stand in; comments are left out.
-fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
+/// Every Rust file of a folder and of those in it, with its text.
+fn texts_of(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            code_of(&path, lines);
+            texts_of(&path, texts);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             let text = std::fs::read_to_string(&path).unwrap();
-            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-            lines.extend(code.map(|line| (path.clone(), line.to_owned())));
+            texts.push((path, text));
         }
     }
+}
+
+/// Lines of code of a crate, with the file they stand in; comments are left out.
+fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
+    let mut texts = Vec::new();
+    texts_of(folder, &mut texts);
+    for (path, text) in texts {
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        lines.extend(code.map(|line| (path.clone(), line.to_owned())));
+    }
+}
+
+#[test]
+fn no_file_and_no_crate_outgrows_who_reads_it() {
+    let mut all = 0;
+    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
+        let (path, mut texts) = (entry.unwrap().path(), Vec::new());
+        texts_of(&path.join("src"), &mut texts);
+        let mut lines = 0;
+        for (file, text) in &texts {
+            let count = text.lines().count();
+            assert!(count <= 500, "{} has {count} lines: more than one idea?", file.display());
+            lines += count;
+        }
+        assert!(lines <= 15_000, "{} has {lines} lines: more than one room?", path.display());
+        all += lines;
+    }
+    assert!(all > 50_000, "only {all} lines found");
 }
 
 #[test]
