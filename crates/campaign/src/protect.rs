@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use barrelstack::compare;
-use barrelstack::variants::{Asked, Told, answer};
+use barrelstack::variants::{Advance, Asked, answer};
 use barrelstack_report::{Block, Document};
 
 use crate::decision::{DecisionError, SiteHazard};
@@ -168,7 +168,7 @@ impl Ranking {
     /// When one of them cannot be run.
     pub fn show_before_and_after(
         &mut self,
-        tell: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+        tell: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<bool, ProtectError> {
         let Some(best) = self.best() else { return Ok(true) };
         let own = &self.request.scenario;

@@ -72,10 +72,10 @@ impl Progress {
     }
 
     /// A run and its variants have come this far.
-    pub(crate) fn told_of(&self, told: variants::Told) -> ControlFlow<()> {
+    pub(crate) fn told_of(&self, told: variants::Advance) -> ControlFlow<()> {
         match told {
-            variants::Told::Run(reached) => self.at(reached),
-            variants::Told::Variants { done, of } => {
+            variants::Advance::Run(reached) => self.at(reached),
+            variants::Advance::Variants { done, of } => {
                 self.counted(done as u64, of as u64, "variants")
             }
         }
@@ -115,11 +115,11 @@ impl Progress {
 /// Lines where there is no terminal: how long all of it takes, then every few seconds how far it is.
 pub(crate) struct Lines {
     /// None where no lines are wanted.
-    told: Option<Mutex<Told>>,
+    told: Option<Mutex<LastLine>>,
 }
 
 /// What was told of some work.
-struct Told {
+struct LastLine {
     /// When a line was last printed.
     last: Instant,
     /// Whether it was told how long all of it takes, or nobody knows.
@@ -135,7 +135,7 @@ struct Told {
 impl Lines {
     /// Starts; prints something only when asked to, and only where there is no terminal.
     pub(crate) fn new(show: bool) -> Self {
-        let told = Told { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
+        let told = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
         Self { told: wanted.then(|| Mutex::new(told)) }
     }

@@ -181,8 +181,8 @@ impl<S: Space> ContactElements<S> {
             let velocity = twists[i].linear - carrier;
             let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
             let spin = S::spin_magnitude(twists[i].angular);
-            let way = S::at_most(moved)
-                + S::at_most(velocity) * ahead
+            let way = S::length_bound(moved)
+                + S::length_bound(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
             self.ways[i] = way;
             stale = stale | !way.lt(S::Real::splat(self.allowances[i] - LOOKAHEAD_SLACK));
@@ -466,7 +466,7 @@ fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
         let speed = S::Real::scope(
             #[inline(always)]
             || {
-                S::at_most(twists[i].linear - carrier)
+                S::length_bound(twists[i].linear - carrier)
                     + S::spin_magnitude(twists[i].angular) * S::Real::splat(model.reach[i])
             },
         );

@@ -15,12 +15,12 @@ const LISTEN: Duration = Duration::from_millis(50);
 #[derive(Default)]
 pub(crate) struct Hear {
     stop: AtomicBool,
-    told: Mutex<Option<Told>>,
+    told: Mutex<Option<Latest>>,
 }
 
 /// How far work is: so much of so much, of what.
 #[derive(Clone, Copy, PartialEq)]
-struct Told {
+struct Latest {
     done: f64,
     of: f64,
     what: &'static str,
@@ -29,7 +29,7 @@ struct Told {
 impl Hear {
     /// Tells how far the work is.
     pub(crate) fn tell(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
-        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = Some(Told { done, of, what });
+        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = Some(Latest { done, of, what });
         if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
@@ -38,9 +38,9 @@ impl Hear {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn pass_on(&self, last: &mut Option<Told>, progress: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn pass_on(&self, last: &mut Option<Latest>, progress: &Bound<'_, PyAny>) -> PyResult<()> {
         let told = *self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(Told { done, of, what }) = told.filter(|_| told != *last) {
+        if let Some(Latest { done, of, what }) = told.filter(|_| told != *last) {
             *last = told;
             progress.call1((done, of, what))?;
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
-use barrelstack::variants::{self, Answer, Asked, Shown, Told};
+use barrelstack::variants::{self, Advance, Answer, Asked, Shown};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::watch::Pace;
 use barrelstack::{RunFailure, Summary};
@@ -236,10 +236,10 @@ pub(crate) fn with_variants(
 }
 
 /// A run and its variants have come this far.
-pub(crate) fn told(hear: &Hear, now: Told) -> ControlFlow<()> {
+pub(crate) fn told(hear: &Hear, now: Advance) -> ControlFlow<()> {
     match now {
-        Told::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
-        Told::Run(now) => hear.tell(now.time, now.end_time, "s"),
+        Advance::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
+        Advance::Run(now) => hear.tell(now.time, now.end_time, "s"),
     }
 }
 

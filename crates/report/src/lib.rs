@@ -97,7 +97,7 @@ pub use scene::{
     Scene, SceneBody, Tie, Tint, Trace,
 };
 pub use strip::{Panel, Strip};
-pub use table::{Cell, Column, Rating, Table, Told};
+pub use table::{Cell, Column, ColumnOf, Rating, Table};
 pub use terminal::{Characters, sparkline, terminal_picture};
 pub use ticks::{Ticks, linear_ticks, log_ticks};
 pub use trial::Trial;

@@ -102,7 +102,7 @@ impl Cell {
 }
 
 /// A column of a table of things: its name, its unit, and its cell of a thing.
-pub type Told<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
+pub type ColumnOf<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
 
 impl Table {
     /// An empty table with these columns, given as pairs of name and unit.
@@ -116,7 +116,7 @@ impl Table {
     pub fn of<T>(
         caption: impl Into<String>,
         things: impl IntoIterator<Item = T>,
-        columns: &[Told<'_, T>],
+        columns: &[ColumnOf<'_, T>],
     ) -> Self {
         let heads: Vec<_> = columns.iter().map(|(name, unit, _)| (*name, *unit)).collect();
         let row = |thing: T| columns.iter().map(|(.., cell)| cell(&thing)).collect();

@@ -9,7 +9,7 @@ use barrelstack::demand::Demands;
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
-use barrelstack::variants::{Asked, Plane, Spread, Told, planes};
+use barrelstack::variants::{Advance, Asked, Plane, Spread, planes};
 use barrelstack::watch::{Ending, Joint};
 use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
@@ -181,19 +181,19 @@ fn plane(scenario: &Scenario) -> Result<Plane, RunFailure> {
 pub fn answer(
     scenario: &Scenario,
     asked: Asked,
-    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
     let scenario = &scenario.with_event()?;
     let plane = plane(scenario)?;
     let observer = Mutex::new(observer);
-    let told = |told: Told| match observer.lock() {
-        Ok(mut observer) => observer(told),
+    let tell = |reached: Advance| match observer.lock() {
+        Ok(mut observer) => observer(reached),
         // Another thread has panicked; this work is of no use any more.
         Err(_) => ControlFlow::Break(()),
     };
     let varied = !matches!(asked, Asked::Alone(_)) && plane.count() > 0;
     let cases = if varied {
-        run_all(&plane.scenario, &|done, of| told(Told::Variants { done, of }))?
+        run_all(&plane.scenario, &|done, of| tell(Advance::Variants { done, of }))?
     } else {
         None
     };
@@ -213,7 +213,7 @@ pub fn answer(
     };
     let variant = plane.variant(number);
     let ground = Ground::of(&plane.scenario)?;
-    let mut run = run_on(&variant, ground, &mut |now| told(Told::Run(now)))?;
+    let mut run = run_on(&variant, ground, &mut |now| tell(Advance::Run(now)))?;
     if stopped {
         run.warnings.push(
             "the variants were stopped before all were done, so nothing is said of the share that collapses"

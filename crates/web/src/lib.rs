@@ -43,7 +43,7 @@ use std::fmt::Display;
 use std::ops::ControlFlow;
 
 use barrelstack::scenario::builtin;
-use barrelstack::variants::{Answer, Asked, Plane, Told, answer, answer_of, planes, run_some};
+use barrelstack::variants::{Advance, Answer, Asked, Plane, answer, answer_of, planes, run_some};
 use barrelstack::{RunFailure, Scenario, export, report};
 use barrelstack_report::{Fragment, fragment};
 use serde::{Deserialize, Serialize};
@@ -179,8 +179,8 @@ pub fn answered(
     let scenario = &with_records.map_err(|error| placed(error.into()))?;
     let planes = || planes(scenario).map_err(|error| placed(error.into()));
     let mut told = |told| match told {
-        Told::Variants { done, of } => observer(done as f64, of as f64),
-        Told::Run(progress) => observer(progress.time, progress.end_time),
+        Advance::Variants { done, of } => observer(done as f64, of as f64),
+        Advance::Run(progress) => observer(progress.time, progress.end_time),
     };
     match request.ask {
         Ask::Devices => json(&devices::Devices::of(scenario)),

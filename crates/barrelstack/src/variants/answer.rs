@@ -14,7 +14,7 @@ use crate::summary::Summary;
 
 /// How far the work is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Told {
+pub enum Advance {
     /// So many of so many variants are done.
     Variants {
         /// Done.
@@ -74,7 +74,7 @@ pub struct Shown {
 pub fn answer(
     scenario: &Scenario,
     asked: Asked,
-    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
     answered(scenario, asked, None, observer)
 }
@@ -87,7 +87,7 @@ pub fn answer(
 pub fn answer_of(
     scenario: &Scenario,
     results: Vec<Vec<CaseResult>>,
-    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
     answered(scenario, Asked::Typical, Some(results), observer)
 }
@@ -96,13 +96,13 @@ fn answered(
     scenario: &Scenario,
     asked: Asked,
     known: Option<Vec<Vec<CaseResult>>>,
-    observer: &mut (dyn FnMut(Told) -> ControlFlow<()> + Send),
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
     let scenario = &scenario.with_event()?;
     let planes = planes(scenario)?;
     let observer = Mutex::new(observer);
-    let told = |told: Told| match observer.lock() {
-        Ok(mut observer) => observer(told),
+    let tell = |reached: Advance| match observer.lock() {
+        Ok(mut observer) => observer(reached),
         // Another thread has panicked; this work is of no use any more.
         Err(_) => ControlFlow::Break(()),
     };
@@ -115,7 +115,7 @@ fn answered(
     let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
     let found = match known {
         Some(results) if varied => Some(together(&planes, &numbers(), results)),
-        _ if varied => run(&planes, &|done, of| told(Told::Variants { done, of }))?,
+        _ if varied => run(&planes, &|done, of| tell(Advance::Variants { done, of }))?,
         _ => None,
     };
     let stopped = varied && found.is_none();
@@ -129,7 +129,7 @@ fn answered(
         .map(|(plane, variants)| (plane, number(asked, variants.as_ref())))
         .collect();
     let mut shown = Vec::new();
-    for (((plane, number), run), variants) in tasks.iter().zip(seen(&tasks, &told)?).zip(variants) {
+    for (((plane, number), run), variants) in tasks.iter().zip(seen(&tasks, &tell)?).zip(variants) {
         let mut run = run;
         run.warnings.extend(plane.warning(planes.len()));
         if stopped {
@@ -169,12 +169,12 @@ fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
 /// Runs what is shown, each on a core of its own.
 fn seen(
     tasks: &[(&Plane, u32)],
-    told: &(dyn Fn(Told) -> ControlFlow<()> + Sync),
+    tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Run>, RunFailure> {
     let scenarios: Vec<Scenario> =
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
     let stated = |at: usize, run| Run { stated: Box::new(tasks[at].0.variant(0)), ..run };
-    run_together(&scenarios, 0.0, &mut |now| told(Told::Run(now)), &stated)
+    run_together(&scenarios, 0.0, &mut |now| tell(Advance::Run(now)), &stated)
 }
 
 /// Runs scenarios on all cores and gives what `seen` makes of each, by its place; the observer hears how far they are

@@ -36,7 +36,7 @@ use crate::ground::{Ground, GroundError, from_disk, other_component};
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub(crate) use answer::run_together;
-pub use answer::{Answer, Asked, Shown, Told, answer, answer_of};
+pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
 pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Tried, remedy};
 pub use spread::{LEVEL, Range, Spread};
 

@@ -10,7 +10,7 @@ use super::error::StudyError;
 use super::ida::{Hunt, Seen};
 use super::motions::{Motion, MotionCache, Shaken, Shaking, Synthetic};
 use super::setting::Setting;
-use super::space::Told;
+use super::space::FinishedCase;
 use super::table::StudyTable;
 use super::{Study, Value};
 use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
@@ -113,7 +113,7 @@ impl Study {
         &self,
         cases: &[Case],
         resources: &mut Resources<'_>,
-    ) -> Option<Vec<(Option<Shaken>, Told)>> {
+    ) -> Option<Vec<(Option<Shaken>, FinishedCase)>> {
         let built = self.build(cases, resources.cache);
         let ready = built.iter().filter_map(|built| built.prepared.as_ref().ok());
         let ready: Vec<Prepared> =

@@ -3,7 +3,7 @@
 use super::Study;
 use super::design::Case;
 use super::motions::{MEASURES, Shaken};
-use super::space::{self, Told};
+use super::space::{self, FinishedCase};
 use crate::ensemble::{CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_space::columns;
@@ -66,7 +66,7 @@ impl Study {
         case: &Case,
         chunk: usize,
         shaken: Option<&Shaken>,
-        told: &Told,
+        told: &FinishedCase,
     ) -> Vec<Option<Value>> {
         let mut row = vec![
             Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),

@@ -16,7 +16,7 @@ use crate::scenario::Scenario;
 use crate::watch::Ending;
 
 /// What became of a case.
-pub(super) struct Told {
+pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
     /// Where the first body left its seat to, and each fallen barrel came to lie from where it stood; none of a case
     /// in a plane, or without a verdict.
@@ -24,13 +24,13 @@ pub(super) struct Told {
 }
 
 /// Of a case in a plane, or one that could not run.
-impl From<CaseResult> for Told {
+impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
         Self { result, ways: None }
     }
 }
 
-impl From<InSpace> for Told {
+impl From<InSpace> for FinishedCase {
     fn from(case: InSpace) -> Self {
         let ways = case.ways().map(|(first, debris)| (first, debris.to_vec()));
         Self { ways, result: case.result }
@@ -45,19 +45,19 @@ impl Study {
         scenario: &Scenario,
         factor: f64,
         resources: &mut Resources<'_>,
-    ) -> Option<Told> {
+    ) -> Option<FinishedCase> {
         let motion = &self.motions[case.motion];
         let ground = resources.cache.in_space(motion, &scenario.motion, scenario.run.similitude);
-        let told = match ground {
+        let finished = match ground {
             Ok(ground) => run(scenario, ground.scaled(factor).under(scenario), resources.stop)?,
             Err(error) => CaseResult::failed(error.to_string()).into(),
         };
-        (resources.tell)(&told.result);
-        Some(told)
+        (resources.tell)(&finished.result);
+        Some(finished)
     }
 }
 
-fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<Told> {
+fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<FinishedCase> {
     let mut going = |_| if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     match run_on(scenario, ground, &mut going) {
         Ok(run) if run.ending == Ending::Interrupted => None,
@@ -67,6 +67,6 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<T
 }
 
 /// The values of a case in the columns of space.
-pub(super) fn values(told: &Told) -> impl Iterator<Item = Option<Value>> {
-    columns::values(told.ways.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
+pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
+    columns::values(finished.ways.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

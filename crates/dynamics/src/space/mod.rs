@@ -84,7 +84,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
     /// A bound that no vector of these components is longer than, and few are much shorter: cheaper
     /// than the length.
-    fn at_most(vector: Self::Vector) -> Self::Real;
+    fn length_bound(vector: Self::Vector) -> Self::Real;
     /// The first coordinate of a vector, along which bodies are swept for neighbors.
     fn first_coordinate(vector: Self::Vector) -> Self::Real;
     /// The magnitude of a spin.

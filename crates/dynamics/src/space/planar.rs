@@ -191,7 +191,7 @@ impl<R: Real> Space for Planar<R> {
     }
     /// The longer component and √2 − 1 times the shorter one: at most 8 % above the length.
     #[inline(always)]
-    fn at_most(vector: Vec2<R>) -> R {
+    fn length_bound(vector: Vec2<R>) -> R {
         let (x, z) = (vector.x.abs(), vector.z.abs());
         x.max(z) + x.min(z) * R::splat(std::f64::consts::SQRT_2 - 1.0)
     }

@@ -64,7 +64,7 @@ impl<R: Real> Space for Spatial<R> {
     }
     /// The length itself, and a hair for its rounding.
     #[inline(always)]
-    fn at_most(vector: Vec3<R>) -> R {
+    fn length_bound(vector: Vec3<R>) -> R {
         vector.length() * R::splat(1.0 + 1e-15)
     }
     #[inline(always)]

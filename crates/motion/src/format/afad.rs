@@ -5,7 +5,7 @@
 use super::source::{
     GAL, LARGEST_ACCELERATION, Source, latin1, leading_number, leading_printed, shorten,
 };
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -29,7 +29,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     })
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let number = |key: &str| {
         let (line, text) = field(source, key).unzip();
         let value = text.as_ref().and_then(|text| leading_number(text.as_bytes()));

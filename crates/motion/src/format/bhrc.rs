@@ -4,7 +4,7 @@
 //! Center); the layout descends from CDMG volume 1 with equally spaced values.
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -21,7 +21,7 @@ fn sniff(source: &Source<'_>) -> bool {
     source.find(0, "VOL1DS FILE").is_some_and(|at| at < 6)
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     source.each_block(|line| read_component(source, &mut record, line))?;
     Ok(record)

@@ -3,7 +3,7 @@
 
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::math::STANDARD_GRAVITY;
@@ -21,7 +21,7 @@ pub(crate) const CSMIP: Format = Format {
     name: "csmip-v1",
     title: "CSMIP/CDMG/CGS volume 1 (uncorrected)",
     sniff: |source| source.find(0, "UNCORRECTED ACCELEROGRAM DATA").is_some_and(|at| at < 4),
-    read: |source, told| read_blocks(source, told, CSMIP.name, 0),
+    read: |source, hints| read_blocks(source, hints, CSMIP.name, 0),
 };
 
 /// RENADIC, Universidad de Chile: pairs in g/10 and often a clock channel.
@@ -48,14 +48,14 @@ pub(crate) const USC: Format = Format {
         source.text(0).to_ascii_uppercase().starts_with("FILE")
             && source.has(0, "UNCORRECTED ACCELEROGRAM")
     },
-    read: |source, told| read_blocks(source, told, USC.name, 1),
+    read: |source, hints| read_blocks(source, hints, USC.name, 1),
 };
 
 /// Text lines and the 7 + 7 lines of integers and reals.
 const HEADER_LINES: usize = 27;
 
-fn read_renadic(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
-    let mut record = read_blocks(source, told, RENADIC.name, 0)?;
+fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
+    let mut record = read_blocks(source, hints, RENADIC.name, 0)?;
     // Times and coordinates of these headers are those of the software's first day, or zero.
     record.place(None, &Site::default());
     if source.name.to_ascii_lowercase().contains("parte") {
@@ -70,19 +70,19 @@ fn read_renadic(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadErro
 /// Reads every block of a volume 1 file, whose pairs of time and value stand behind `indent` blanks.
 fn read_blocks(
     source: &Source<'_>,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     format: &'static str,
     indent: usize,
 ) -> Result<Record, ReadError> {
     let mut record = Record::new(format, source.name, Stage::Raw);
     let pairs = Columns { indent, per_line: 10, width: 7 };
-    source.each_block(|line| read_block(source, told, &mut record, pairs, line))?;
+    source.each_block(|line| read_block(source, hints, &mut record, pairs, line))?;
     Ok(record)
 }
 
 fn read_block(
     source: &Source<'_>,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     record: &mut Record,
     pairs: Columns,
     first: usize,
@@ -100,7 +100,7 @@ fn read_block(
     let direction = Direction::of_name_or_code(&name, code);
     let data = first + HEADER_LINES;
     let equal = source.has(data, "points");
-    let unit = unit(source, if equal { data } else { first + 11 }, told)?;
+    let unit = unit(source, if equal { data } else { first + 11 }, hints)?;
     let limit = LARGEST_ACCELERATION / unit.factor();
     let (time_step, mut values, next) = if equal {
         read_equal(source, record, data, limit)?
@@ -195,9 +195,13 @@ pub(crate) fn channel_name(source: &Source<'_>, line: usize) -> String {
     name.split("  ").next().unwrap_or("").trim().to_owned()
 }
 
-fn unit(source: &Source<'_>, line: usize, told: &Told<'_>) -> Result<AccelerationUnit, ReadError> {
+fn unit(
+    source: &Source<'_>,
+    line: usize,
+    hints: &Hints<'_>,
+) -> Result<AccelerationUnit, ReadError> {
     let keys = ["SEC AND ", "SECONDS AND ", "units of ", "UNITS: ", "in "];
-    source.unit_after(line, &keys).or_else(|| told.unit()).ok_or_else(|| {
+    source.unit_after(line, &keys).or_else(|| hints.unit()).ok_or_else(|| {
         source.error(
             line,
             Refusal::Missing(Given::Unit),

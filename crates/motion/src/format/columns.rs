@@ -4,7 +4,7 @@
 
 use super::even::{Timed, even_steps};
 use super::source::{Source, latin1, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::math;
@@ -40,7 +40,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || first == 0
 }
 
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     source.require_text()?;
     let first = first_row(source).unwrap_or(0);
     let mut record = Record::new(FORMAT.name, source.name, Stage::Unknown);
@@ -74,7 +74,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
         }
         (step, columns)
     } else {
-        let step = stated.map(|(_, step)| step).or_else(|| told.time_step()).ok_or_else(|| {
+        let step = stated.map(|(_, step)| step).or_else(|| hints.time_step()).ok_or_else(|| {
             source.error(
                 first,
                 Refusal::Missing(Given::Step),
@@ -94,7 +94,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
             column.truncate(used);
         }
     }
-    let unit = unit(source, first, told, &columns)?;
+    let unit = unit(source, first, hints, &columns)?;
     let names = if timed { names.get(1..).unwrap_or(&[]).to_vec() } else { names };
     let stem = super::file_stem(source.name);
     let several = columns.len() > 1;
@@ -311,10 +311,10 @@ fn unit_of_every_column(header: &str) -> Option<AccelerationUnit> {
 fn unit(
     source: &Source<'_>,
     first: usize,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     columns: &[Vec<f64>],
 ) -> Result<AccelerationUnit, ReadError> {
-    stated_unit(source, first).or_else(|| told.unit()).ok_or_else(|| {
+    stated_unit(source, first).or_else(|| hints.unit()).ok_or_else(|| {
         let peak = columns.iter().map(|column| math::peak(column)).fold(0.0, f64::max);
         source.error(
             first,

@@ -6,7 +6,7 @@
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,
 };
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::math::{self, STANDARD_GRAVITY};
@@ -48,7 +48,7 @@ impl Header {
     }
 }
 
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let stage = if source.text(0).to_ascii_lowercase().starts_with("corrected") {
         Stage::Corrected
     } else {
@@ -58,7 +58,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     let mut refused = None;
     source.each_block(|line| {
         let header = header(source, line)?;
-        let (channel, next) = read_channel(source, told, &mut record, line, &header)?;
+        let (channel, next) = read_channel(source, hints, &mut record, line, &header)?;
         match channel {
             Ok(channel) => record.channels.push(channel),
             Err(error) => {
@@ -135,7 +135,7 @@ type ChannelOrRefusal = Result<Channel, ReadError>;
 
 fn read_channel(
     source: &Source<'_>,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     record: &mut Record,
     first: usize,
     header: &Header,
@@ -175,7 +175,7 @@ fn read_channel(
     let factor = match unit {
         Some(UNIT_G) => STANDARD_GRAVITY,
         Some(UNIT_CM_S2 | UNIT_GAL) => GAL,
-        Some(UNIT_COUNTS) => counts_to_si(source, told, header, line)?,
+        Some(UNIT_COUNTS) => counts_to_si(source, hints, header, line)?,
         other => {
             let code = other.map_or("none".to_owned(), |code| code.to_string());
             return Ok((Err(refuse(format!("unit code {code} (\"{}\")", shorten(&text)))), next));
@@ -236,11 +236,11 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
 /// `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².
 fn counts_to_si(
     source: &Source<'_>,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     header: &Header,
     line: usize,
 ) -> Result<f64, ReadError> {
-    if let Some(sensitivity) = told.sensitivity() {
+    if let Some(sensitivity) = hints.sensitivity() {
         return Ok(1.0 / sensitivity);
     }
     let needed = [(22, "LSB in microvolt"), (42, "sensor V/g"), (47, "gain")];

@@ -5,7 +5,7 @@
 
 use super::cdmg::{channel_name, format_in, start, station_name};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::math;
@@ -26,7 +26,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "RESPONSE AND FOURIER AMPLITUDE SPECTRA")
 }
 
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     if source.has(0, "SPECTRA") {
         return Err(source.not_acceleration(
             0,
@@ -36,13 +36,13 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
         ));
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
-    source.each_block(|line| read_channel(source, told, &mut record, line))?;
+    source.each_block(|line| read_channel(source, hints, &mut record, line))?;
     Ok(record)
 }
 
 fn read_channel(
     source: &Source<'_>,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     record: &mut Record,
     first: usize,
 ) -> Result<usize, ReadError> {
@@ -73,7 +73,7 @@ fn read_channel(
                     "give the file that holds the accelerations",
                 )
             })?;
-    let unit = unit(source, first + HEADER_LINES, told)?;
+    let unit = unit(source, first + HEADER_LINES, hints)?;
     let step = time_step(source, first, first + HEADER_LINES)?;
     let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
     let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
@@ -120,12 +120,16 @@ fn read_block(
     source.counted(record, line + 1, count, columns, limit).map(Some)
 }
 
-fn unit(source: &Source<'_>, line: usize, told: &Told<'_>) -> Result<AccelerationUnit, ReadError> {
+fn unit(
+    source: &Source<'_>,
+    line: usize,
+    hints: &Hints<'_>,
+) -> Result<AccelerationUnit, ReadError> {
     if source.has(line, "cm/s") {
         return Ok(AccelerationUnit::Gal);
     }
     let stated = source.unit_after(line, &["in ", "units: ", "units of "]);
-    stated.or_else(|| told.unit()).ok_or_else(|| {
+    stated.or_else(|| hints.unit()).ok_or_else(|| {
         source.error(
             line,
             Refusal::Missing(Given::Unit),

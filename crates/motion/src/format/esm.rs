@@ -5,7 +5,7 @@
 use super::source::{
     GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, parse_number, quoted,
 };
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -46,7 +46,7 @@ fn start(text: &str) -> Option<Utc> {
     )
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let end = (0..source.lines.len().min(MOST_HEADER_LINES))
         .find(|&line| parse_number(source.raw(line)).is_some())
         .ok_or_else(|| source.cut("values after the header", "none"))?;

@@ -5,7 +5,7 @@
 //! Spec: GeoNet, "Strong motion data, file formats" (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::math;
@@ -26,7 +26,7 @@ fn sniff(source: &Source<'_>) -> bool {
         || source.has(0, "GNS Science")
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let raw = source.has(0, "uncorrected");
     let stage = if raw { Stage::Raw } else { Stage::Corrected };
     let mut record = Record::new(FORMAT.name, source.name, stage);

@@ -7,7 +7,7 @@
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
 };
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::math;
@@ -35,7 +35,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     })
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let need = |key: &str| source.needed(field(source, key), key);
     let bad =

@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::source::{Source, latin1};
-use super::{Format, Told, seed};
+use super::{Format, Hints, seed};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::SeedName;
@@ -50,7 +50,7 @@ struct Trace {
     values: Vec<f64>,
 }
 
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let bytes = source.bytes;
     let mut traces: BTreeMap<SeedName, Trace> = BTreeMap::new();
     let mut at = 0;
@@ -83,8 +83,8 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     stations.dedup();
     record.station = stations.join(", ");
     for (id, trace) in traces {
-        let known = told.instrument(&id, Some(trace.start));
-        let sensitivity = known.map(|known| known.sensitivity).or_else(|| told.sensitivity());
+        let known = hints.instrument(&id, Some(trace.start));
+        let sensitivity = known.map(|known| known.sensitivity).or_else(|| hints.sensitivity());
         let sensitivity = sensitivity.ok_or_else(|| {
             source.error(
                 (),
@@ -97,8 +97,8 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
         let step = 1.0 / trace.rate;
         let values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
         let mut values =
-            seed::as_acceleration(source, &mut record, told, &id, known, step, values)?;
-        if !seed::differentiates(told) {
+            seed::as_acceleration(source, &mut record, hints, &id, known, step, values)?;
+        if !seed::differentiates(hints) {
             super::remove_offset(&mut record, &id.channel, &mut values);
         }
         record.notes.push(format!(

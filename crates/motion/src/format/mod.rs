@@ -10,6 +10,7 @@ mod cwa;
 mod esm;
 mod even;
 mod geonet;
+mod hints;
 mod knet;
 mod miniseed;
 mod native;
@@ -24,7 +25,6 @@ mod sac;
 mod seed;
 mod smc;
 mod source;
-mod told;
 mod unam;
 mod zip;
 
@@ -33,9 +33,9 @@ use crate::instrument::Instrument;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Quantity, Record};
 use crate::units::AccelerationUnit;
+use hints::Hints;
 use source::{LARGEST_ACCELERATION, Place, parse_number};
 pub(crate) use source::{Printed, Source, quoted, shorten};
-use told::Told;
 
 /// What the caller knows and a file may not say.
 ///
@@ -65,7 +65,7 @@ pub struct Format {
     /// Full name with its publisher.
     pub title: &'static str,
     sniff: fn(&Source<'_>) -> bool,
-    read: fn(&Source<'_>, &Told<'_>) -> Result<Record, ReadError>,
+    read: fn(&Source<'_>, &Hints<'_>) -> Result<Record, ReadError>,
 }
 
 impl Format {
@@ -90,10 +90,10 @@ impl Format {
     }
 
     fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
-        let told = Told::new(options);
-        let mut record = (self.read)(source, &told)?;
+        let hints = Hints::new(options);
+        let mut record = (self.read)(source, &hints)?;
         record.format = self.name;
-        for what in told.ignored() {
+        for what in hints.ignored() {
             record.warn(None, format!("{what} given was ignored, as this file does not need it"));
         }
         finish(source, &mut record)?;

@@ -3,7 +3,7 @@
 //! Spec: [`crate::write::text`], which writes it; its module says what each key means.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -33,7 +33,7 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     })
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let end = (0..source.lines.len())
         .find(|&line| !written(source, line).starts_with('#'))
         .ok_or_else(|| source.cut("rows of numbers after the header", "none"))?;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::source::{Source, latin1, shorten};
-use super::{Format, Told, native, zip};
+use super::{Format, Hints, native, zip};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::write::{TITLE, array_name};
@@ -33,7 +33,7 @@ pub(super) fn is_numpy(source: &Source<'_>) -> bool {
     source.bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let damaged = |expected: &str, found: String| {
         source.damaged((), expected, found, "write the archive again")
     };

@@ -7,7 +7,7 @@
 //! files.
 
 use super::source::{LARGEST_ACCELERATION, Source, leading_number, leading_text, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
@@ -29,9 +29,9 @@ fn sniff(source: &Source<'_>) -> bool {
     (0..HEADER_LINES.min(source.lines.len())).any(|line| source.has(line, "NPTS"))
 }
 
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let counts = find_counts(source)?;
-    let unit = find_unit(source, counts.line, told)?;
+    let unit = find_unit(source, counts.line, hints)?;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Corrected);
     let (event, station, component) = names(source, counts.line);
     record.event = event;
@@ -145,7 +145,7 @@ fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
 fn find_unit(
     source: &Source<'_>,
     last: usize,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
 ) -> Result<AccelerationUnit, ReadError> {
     for line in 0..last {
         let stated = |quantity: &str| {
@@ -173,7 +173,7 @@ fn find_unit(
             });
         }
     }
-    told.unit().ok_or_else(|| {
+    hints.unit().ok_or_else(|| {
         source.error(
             (),
             Refusal::Missing(Given::Unit),

@@ -1,7 +1,7 @@
 //! Files that are known and hold no acceleration history that can be read here.
 
 use super::source::{Source, parse_number};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::{Quantity, Record};
@@ -73,7 +73,7 @@ pub(crate) const SLAMMER: Format = Format {
     },
 };
 
-fn xml(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let mut found = station_xml(&String::from_utf8_lossy(source.bytes)).unwrap_or_default();
     found.retain(|known| known.quantity == Some(Quantity::Acceleration));
     let remedy = if found.is_empty() {

@@ -3,7 +3,7 @@
 //! Spec: SAC users manual, "SAC data file format", header version 6.
 
 use super::source::{Source, latin1};
-use super::{Format, Told, seed};
+use super::{Format, Hints, seed};
 use crate::direction::{Direction, Orientation};
 use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::SeedName;
@@ -58,7 +58,7 @@ fn sniff(source: &Source<'_>) -> bool {
 }
 
 #[expect(clippy::too_many_lines, reason = "one header, read from top to bottom")]
-fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let bytes = source.bytes;
     let big = byte_order(bytes).ok_or_else(|| {
         source.error(
@@ -91,7 +91,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     }
     // IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
     let dependent = integer(bytes, DEPENDENT, big);
-    if matches!(dependent, 6 | 7) && told.recorded().is_none() {
+    if matches!(dependent, 6 | 7) && hints.recorded().is_none() {
         return Err(source.not_acceleration(
             (),
             "acceleration as dependent variable",
@@ -128,19 +128,20 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
         channel: text(600, 8),
     };
     let start = start(bytes, big);
-    let known = told.instrument(&codes, start);
-    let sensitivity = known.map(|known| known.sensitivity).or_else(|| told.sensitivity());
+    let known = hints.instrument(&codes, start);
+    let sensitivity = known.map(|known| known.sensitivity).or_else(|| hints.sensitivity());
     let factor = sensitivity.map(|sensitivity| 1.0 / sensitivity);
-    let factor = factor.or_else(|| told.unit().map(AccelerationUnit::factor)).ok_or_else(|| {
-        source.error(
-            (),
-            Refusal::Missing(Given::UnitOrSensitivity),
-            "a unit or a sensitivity (SAC files hold neither)",
-            "none",
-            "state the unit of the values, or the sensitivity in counts per m/s2 from the \
+    let factor =
+        factor.or_else(|| hints.unit().map(AccelerationUnit::factor)).ok_or_else(|| {
+            source.error(
+                (),
+                Refusal::Missing(Given::UnitOrSensitivity),
+                "a unit or a sensitivity (SAC files hold neither)",
+                "none",
+                "state the unit of the values, or the sensitivity in counts per m/s2 from the \
              station's metadata",
-        )
-    })?;
+            )
+        })?;
     let mut values = Vec::with_capacity(count);
     for (k, four) in data.chunks_exact(4).enumerate() {
         let value = word(four, 0, big).map_or(f64::NAN, |four| f64::from(f32::from_le_bytes(four)));
@@ -158,7 +159,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
     let name = codes.channel.clone();
     let mut values =
-        seed::as_acceleration(source, &mut record, told, &codes, known, time_step, values)?;
+        seed::as_acceleration(source, &mut record, hints, &codes, known, time_step, values)?;
     let stated = match (real(bytes, 57, big), real(bytes, 58, big)) {
         (_, Some(0.0)) => Direction::up(),
         (_, Some(180.0)) => Direction { downward: true, ..Direction::up() },
@@ -174,7 +175,7 @@ fn read(source: &Source<'_>, told: &Told<'_>) -> Result<Record, ReadError> {
     } else {
         name
     };
-    if !seed::differentiates(told) {
+    if !seed::differentiates(hints) {
         super::remove_offset(&mut record, &name, &mut values);
     }
     let mut channel = Channel::new(name, direction, time_step, values);

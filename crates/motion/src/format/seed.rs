@@ -1,14 +1,14 @@
 //! Channels with SEED codes, which tell what the instrument measures.
 
-use super::Told;
+use super::Hints;
 use super::source::Source;
 use crate::error::{ReadError, Refusal};
 use crate::instrument::{Instrument, SeedName, differentiated};
 use crate::record::{Quantity, Record};
 
 /// Whether accelerations come from other quantities, whose offsets differentiation takes off.
-pub(super) fn differentiates(told: &Told<'_>) -> bool {
-    matches!(told.recorded(), Some(Quantity::Velocity | Quantity::Displacement))
+pub(super) fn differentiates(hints: &Hints<'_>) -> bool {
+    matches!(hints.recorded(), Some(Quantity::Velocity | Quantity::Displacement))
 }
 
 /// What a channel with SEED codes recorded, differentiated to accelerations; refused where its code or
@@ -16,14 +16,14 @@ pub(super) fn differentiates(told: &Told<'_>) -> bool {
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,
-    told: &Told<'_>,
+    hints: &Hints<'_>,
     seed: &SeedName,
     instrument: Option<&Instrument>,
     time_step: f64,
     values: Vec<f64>,
 ) -> Result<Vec<f64>, ReadError> {
     let name = &seed.channel;
-    let (quantity, why) = match (told.recorded(), instrument.and_then(|known| known.quantity)) {
+    let (quantity, why) = match (hints.recorded(), instrument.and_then(|known| known.quantity)) {
         (Some(asked), _) => (asked, "as asked"),
         (None, Some(Quantity::Acceleration)) => return Ok(values),
         (None, Some(other)) => (other, "its metadata say"),
@@ -34,7 +34,7 @@ pub(super) fn as_acceleration(
         Quantity::Velocity => 1,
         Quantity::Displacement => 2,
     };
-    if told.recorded().is_none() {
+    if hints.recorded().is_none() {
         return Err(source.error(
             (),
             Refusal::OtherInstrument,

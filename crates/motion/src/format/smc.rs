@@ -6,7 +6,7 @@
 
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -33,7 +33,7 @@ fn sniff(source: &Source<'_>) -> bool {
         })
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let title = source.text(0).to_ascii_uppercase();
     if !title.contains("ACCELEROGRAM") {
         return Err(source.not_acceleration(

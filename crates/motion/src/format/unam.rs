@@ -7,7 +7,7 @@
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
 };
-use super::{Format, Told};
+use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
@@ -43,7 +43,7 @@ fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
 
-fn read(source: &Source<'_>, _: &Told<'_>) -> Result<Record, ReadError> {
+fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let need = |key: &str| source.needed(field(source, key), key);
     let numbers = |key: &str| -> Result<(usize, Vec<f64>), ReadError> {
         let (line, text) = need(key)?;

@@ -12,7 +12,7 @@ use barrelstack_motion::{
 use super::input::{self, Chain, Choice, Input, quantity};
 use super::measures;
 use super::output::Output;
-use super::page::{self, Told};
+use super::page::{self, PageText};
 use super::panels;
 use super::process::share;
 use super::table::{Table, number, percent};
@@ -110,7 +110,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             compared.on_page("The spectrum that was asked for, and those before and after."),
             measured.on_page("Measures of the motion, before and after."),
         ];
-        page::write(figure, &drawn, &after, Told { headline, tables })?;
+        page::write(figure, &drawn, &after, PageText { headline, tables })?;
     }
     match missed {
         None => Ok(ExitCode::SUCCESS),

@@ -14,7 +14,7 @@ use crate::printer;
 use crate::store::store;
 
 /// What a page tells beside its figures.
-pub(super) struct Told {
+pub(super) struct PageText {
     /// The answer in one sentence.
     pub(super) headline: String,
     /// What it was and what it is, in numbers.
@@ -38,7 +38,7 @@ pub(super) fn write(
     path: &Path,
     figure: &Figure,
     after: &Record,
-    told: Told,
+    told: PageText,
 ) -> anyhow::Result<()> {
     if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
         store(path, html(&document(panels, after, told)).as_bytes())?;
@@ -48,7 +48,7 @@ pub(super) fn write(
     printer::lines([format!("written: {}", path.display())])
 }
 
-fn document(panels: &Panels, after: &Record, told: Told) -> Document {
+fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
     // The spectra, which are the last row, tell most.

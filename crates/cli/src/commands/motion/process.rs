@@ -13,7 +13,7 @@ use super::folder::{self, Batch, FolderArgs, Source, Worked};
 use super::input::{self, Chain, Input, number_or, quantity};
 use super::measures;
 use super::output::{Form, Output};
-use super::page::{self, Told};
+use super::page::{self, PageText};
 use super::panels;
 use crate::typed::{typed, word};
 
@@ -244,7 +244,7 @@ pub(super) fn process(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         let drawn = panels::before_after(&before, &after)?;
         let headline = "The record before and after processing.".to_owned();
         let tables = vec![table.on_page("Measures of the motion, before and after.")];
-        page::write(figure, &drawn, &after, Told { headline, tables })?;
+        page::write(figure, &drawn, &after, PageText { headline, tables })?;
     }
     Ok(ExitCode::SUCCESS)
 }

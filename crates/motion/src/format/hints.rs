@@ -12,7 +12,7 @@ use crate::utc::Utc;
 ///
 /// A reader asks only for what the file does not state; so what nobody asked for is ignored, and
 /// reported.
-pub(super) struct Told<'a> {
+pub(super) struct Hints<'a> {
     options: &'a ReadOptions,
     unit: Cell<bool>,
     time_step: Cell<bool>,
@@ -20,7 +20,7 @@ pub(super) struct Told<'a> {
     recorded: Cell<bool>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> Hints<'a> {
     pub(super) fn new(options: &'a ReadOptions) -> Self {
         let no = || Cell::new(false);
         Self { options, unit: no(), time_step: no(), sensitivity: no(), recorded: no() }
