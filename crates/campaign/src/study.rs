@@ -192,7 +192,16 @@ impl Study {
 
     /// Whether the number of cases depends on what becomes of them.
     pub fn is_adaptive(&self) -> bool {
-        matches!(self.design, Design::Ida(_) | Design::MonteCarlo { half_width: Some(_), .. })
+        match &self.design {
+            Design::Ida(_) => true,
+            Design::MonteCarlo { half_width, .. } => half_width.is_some(),
+            Design::FullFactorial
+            | Design::OneAtATime { .. }
+            | Design::LatinHypercube { .. }
+            | Design::Sobol { .. }
+            | Design::Saltelli { .. }
+            | Design::Stripes => false,
+        }
     }
 
     /// What a chunk has: "cases", or "hunts" of an incremental dynamic analysis.

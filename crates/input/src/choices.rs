@@ -122,6 +122,7 @@ macro_rules! choices {
                 $variant $({
                     $(
                         $(#[doc = $text])+
+                        #[doc = concat!("\n\nIn files: `", stringify!($kind), "`, `", stringify!($default), "`.")]
                         $field: $held,
                     )+
                 })?,

@@ -205,12 +205,28 @@ impl Field {
 impl Kind {
     /// The table inside a field, or that each item of its list is.
     pub fn section(&self) -> Option<&'static Section> {
-        let (Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section)) =
-            self
-        else {
-            return None;
-        };
-        Some(section)
+        match self {
+            Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section) => {
+                Some(section)
+            }
+            Self::Text
+            | Self::Label
+            | Self::Flag
+            | Self::Integer(..)
+            | Self::Number(_)
+            | Self::Quantity(..)
+            | Self::WordOr(..)
+            | Self::Unit(_)
+            | Self::Point(_)
+            | Self::Triple(_)
+            | Self::Points(_)
+            | Self::Pair
+            | Self::TextOrFalse
+            | Self::Texts
+            | Self::Value
+            | Self::Values
+            | Self::Choice(_) => None,
+        }
     }
 
     /// A good value as TOML.

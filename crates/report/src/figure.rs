@@ -152,15 +152,20 @@ impl Format {
 pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     let mut found = Vec::new();
     let mut names = Names::default();
-    walk(&document.blocks, &mut |block| {
-        if let Block::Figure(figure) = block {
-            found.push((names.take(&figure.id), figure.clone()));
-        } else if let Block::Player(player) = block {
+    walk(&document.blocks, &mut |block| match block {
+        Block::Figure(figure) => found.push((names.take(&figure.id), figure.clone())),
+        Block::Player(player) => {
             found.push((names.take(&player.id), player.paper_figure(&document.blocks)));
-        } else if let Block::Players(players) = block {
+        }
+        Block::Players(players) => {
             let drawn = players.paper_figures();
             found.extend(drawn.into_iter().map(|figure| (names.take(&figure.id), figure)));
         }
+        Block::Heading { .. }
+        | Block::Paragraph(_)
+        | Block::List(_)
+        | Block::Table(_)
+        | Block::Details { .. } => {}
     });
     found
 }

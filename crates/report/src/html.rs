@@ -295,9 +295,14 @@ impl<'a> Writer<'a> {
 
     fn figure(&mut self, figure: &Figure) {
         let id = self.names.take(&figure.id);
-        let plot = if let FigureKind::Plot(plot) = &figure.kind { Some(plot) } else { None };
-        let live = plot.filter(|plot| plot.is_live());
-        let live = live.map(|plot| self.payload.add_plot(&id, plot));
+        let live = match &figure.kind {
+            FigureKind::Plot(plot) if plot.is_live() => Some(self.payload.add_plot(&id, plot)),
+            FigureKind::Plot(_)
+            | FigureKind::Panels(_)
+            | FigureKind::Strip(_)
+            | FigureKind::Envelope(_)
+            | FigureKind::Diagram(_) => None,
+        };
         let kind = match &figure.kind {
             FigureKind::Plot(_) | FigureKind::Panels(_) => "plot",
             FigureKind::Strip(_) => "strip",

@@ -228,16 +228,21 @@ pub struct MotionSpec {
 impl MotionSpec {
     /// The files that it is read from: the record, then a vertical component of its own.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
-        let (mut source, mut vertical) = (None, None);
-        if let MotionSource::Record(record) = &mut self.source {
-            if let RecordSource::File(file) = &mut record.source {
-                source = Some(file);
-            }
-            if let Vertical::File(file) = &mut record.vertical {
-                vertical = Some(file);
-            }
-        }
-        source.into_iter().chain(vertical)
+        let record = match &mut self.source {
+            MotionSource::Record(record) => Some(record),
+            MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_) => None,
+        };
+        record.into_iter().flat_map(|RecordMotion { source, vertical, .. }| {
+            let source = match source {
+                RecordSource::File(file) => Some(file),
+                RecordSource::Bundled(_) => None,
+            };
+            let vertical = match vertical {
+                Vertical::File(file) => Some(file),
+                Vertical::None | Vertical::Component(_) => None,
+            };
+            source.into_iter().chain(vertical)
+        })
     }
 
     /// The same motion, whose files are called by what is in them, where that is at hand.

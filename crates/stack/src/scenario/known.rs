@@ -18,7 +18,11 @@ macro_rules! known {
         $(#[$about])*
         pub struct $type {
             $($(#[$kept])* pub $own: $given,)*
-            $($(#[doc = $help])+ pub $field: $held,)+
+            $(
+                $(#[doc = $help])+
+                #[doc = concat!("\n\nIn files: `", stringify!($kind), "`, `", stringify!($default), "`.")]
+                pub $field: $held,
+            )+
         }
 
         $(#[doc = $list])+
