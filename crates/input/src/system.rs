@@ -29,12 +29,40 @@ pub fn words(error: &io::Error) -> String {
 /// In words, when the file cannot be read or is larger.
 pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(|error| words(&error))?;
+    let file = open(path)?;
     file.take(limit as u64 + 1).read_to_end(&mut bytes).map_err(|error| words(&error))?;
     if bytes.len() > limit {
         return Err(format!("it has more than {} MB, more than any such file", limit >> 20));
     }
     Ok(bytes)
+}
+
+/// Opens a file for reading; a named pipe is refused, because one that nobody writes to would block for ever.
+///
+/// Pipes that the shell opened (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
+///
+/// # Errors
+/// In words, when the file cannot be opened or is a named pipe.
+pub fn open(path: &Path) -> Result<std::fs::File, String> {
+    if is_named_pipe(path) {
+        return Err(
+            "it is a named pipe, not a file; write what it carries into a file and name that"
+                .to_owned(),
+        );
+    }
+    std::fs::File::open(path).map_err(|error| words(&error))
+}
+
+#[cfg(unix)]
+fn is_named_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt as _;
+    let of_the_shell = path.starts_with("/dev") || path.starts_with("/proc");
+    !of_the_shell && std::fs::metadata(path).is_ok_and(|file| file.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_named_pipe(_: &Path) -> bool {
+    false
 }
 
 /// The name under which a file is written until it is whole: of this process alone.

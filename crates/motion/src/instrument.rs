@@ -4,6 +4,7 @@ use crate::direction::Direction;
 use crate::error::MotionError;
 use crate::record::Quantity;
 use crate::site::Site;
+use crate::units::MotionUnit;
 use crate::utc::Utc;
 
 /// Metadata of one channel of a station; an empty code stands for any.
@@ -19,10 +20,13 @@ pub struct Instrument {
     pub channel: String,
     /// From when and until when this holds.
     pub epoch: (Option<Utc>, Option<Utc>),
-    /// Counts to one m/s², or to one m/s or m as the quantity says.
+    /// Counts to one m/s², or to one m/s or m as the quantity says; below zero where positive counts
+    /// mean motion against [`Instrument::direction`].
     pub sensitivity: f64,
-    /// What the instrument measures, where that is known.
+    /// Quantity that the instrument measures, where that is known.
     pub quantity: Option<Quantity>,
+    /// Input unit of an instrument that measures no motion, such as `Pa`; such a channel is refused.
+    pub other_unit: Option<String>,
     /// Where it points, where that is known.
     pub direction: Option<Direction>,
     /// Latitude, longitude (degrees) and elevation (m), where known.
@@ -75,7 +79,14 @@ impl SeedName {
     }
 }
 
-/// The channels of a `StationXML` file that have a sensitivity, in file order.
+/// Largest deviation of a dip from level or plumb (degrees) that counts as either.
+const LARGEST_TILT: f64 = 5.0;
+
+/// Reads the channels of a `StationXML` file that have a sensitivity, in file order.
+///
+/// Sensitivities in g, gal, cm/s², mm/s², nm/s² and the like are converted to counts to one m/s² (those of
+/// velocity and displacement to one m/s or m); a channel with another input unit, such as Pa, keeps it in
+/// [`Instrument::other_unit`].
 ///
 /// # Errors
 /// If the text is no XML.
@@ -83,56 +94,56 @@ pub fn station_xml(text: &str) -> Result<Vec<Instrument>, MotionError> {
     let document = roxmltree::Document::parse(text).map_err(|error| {
         MotionError::parameter("StationXML", "an XML document", error.to_string())
     })?;
-    let mut found = Vec::new();
+    Ok(document
+        .descendants()
+        .filter(|node| node.tag_name().name() == "Channel")
+        .filter_map(channel_of_station_xml)
+        .collect())
+}
+
+/// Reads one channel, if it has a sensitivity.
+fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument> {
     let any =
         |name: &'static str| move |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == name;
-    for channel in document.descendants().filter(any("Channel")) {
-        let code = |level: &'static str, key: &str| {
-            let node = channel.ancestors().find(|node| node.tag_name().name() == level)?;
-            node.attribute(key).map(str::trim)
-        };
-        let text = |node: roxmltree::Node<'_, '_>, name: &'static str| {
-            node.children().find(any(name)).and_then(|n| n.text()).map(|t| t.trim().to_owned())
-        };
-        let number = |name: &'static str| text(channel, name)?.parse::<f64>().ok();
-        let Some(block) = channel.descendants().find(any("InstrumentSensitivity")) else {
-            continue;
-        };
-        let Some(sensitivity) = text(block, "Value")
-            .and_then(|value| value.parse::<f64>().ok())
-            .filter(|value| value.is_finite() && *value > 0.0)
-        else {
-            continue;
-        };
-        let unit = block.children().find(any("InputUnits")).and_then(|node| text(node, "Name"));
-        let quantity = unit.and_then(|unit| {
-            match unit.to_ascii_uppercase().replace(['*', '^', ' '], "").as_str() {
-                "M/S2" | "M/S/S" | "M/SEC2" => Some(Quantity::Acceleration),
-                "M/S" | "M/SEC" => Some(Quantity::Velocity),
-                "M" => Some(Quantity::Displacement),
-                _ => None,
-            }
-        });
-        let direction = number("Dip").and_then(|dip| match dip {
-            -90.0 => Some(Direction::up()),
-            90.0 => Some(Direction { downward: true, ..Direction::up() }),
-            0.0 => number("Azimuth").map(Direction::horizontal),
-            _ => None,
-        });
-        let date = |key: &str| code("Channel", key).and_then(|text| text.parse().ok());
-        found.push(Instrument {
-            network: code("Network", "code").unwrap_or_default().to_owned(),
-            station: code("Station", "code").unwrap_or_default().to_owned(),
-            location: Some(code("Channel", "locationCode").unwrap_or_default().replace('-', "")),
-            channel: code("Channel", "code").unwrap_or_default().to_owned(),
-            epoch: (date("startDate"), date("endDate")),
-            sensitivity,
-            quantity,
-            direction,
-            place: [number("Latitude"), number("Longitude"), number("Elevation")],
-        });
+    let code = |level: &'static str, key: &str| {
+        let node = channel.ancestors().find(|node| node.tag_name().name() == level)?;
+        node.attribute(key).map(str::trim)
+    };
+    let text = |node: roxmltree::Node<'_, '_>, name: &'static str| {
+        node.children().find(any(name)).and_then(|n| n.text()).map(|t| t.trim().to_owned())
+    };
+    let number = |name: &'static str| text(channel, name)?.parse::<f64>().ok();
+    let block = channel.descendants().find(any("InstrumentSensitivity"))?;
+    let stated = text(block, "Value")?.parse::<f64>().ok()?;
+    let name = block.children().find(any("InputUnits")).and_then(|node| text(node, "Name"));
+    let name = name.unwrap_or_default();
+    let unit = MotionUnit::parse(&name);
+    let sensitivity = stated / unit.map_or(1.0, |unit| unit.factor);
+    if !(sensitivity.is_finite() && sensitivity != 0.0) {
+        return None;
     }
-    Ok(found)
+    let direction = number("Dip").map(|dip| match dip {
+        _ if (dip + 90.0).abs() <= LARGEST_TILT => Direction::up(),
+        _ if (dip - 90.0).abs() <= LARGEST_TILT => Direction { downward: true, ..Direction::up() },
+        _ if dip.abs() <= LARGEST_TILT => {
+            number("Azimuth").map_or_else(Direction::some_horizontal, Direction::horizontal)
+        }
+        // An inclined sensor is neither.
+        _ => Direction::default(),
+    });
+    let date = |key: &str| code("Channel", key).and_then(|text| text.parse().ok());
+    Some(Instrument {
+        network: code("Network", "code").unwrap_or_default().to_owned(),
+        station: code("Station", "code").unwrap_or_default().to_owned(),
+        location: Some(code("Channel", "locationCode").unwrap_or_default().replace('-', "")),
+        channel: code("Channel", "code").unwrap_or_default().to_owned(),
+        epoch: (date("startDate"), date("endDate")),
+        sensitivity,
+        quantity: unit.map(|unit| unit.quantity),
+        other_unit: unit.is_none().then_some(name),
+        direction,
+        place: [number("Latitude"), number("Longitude"), number("Elevation")],
+    })
 }
 
 /// Rates of a series by central differences of fourth order, of first order next to the ends.

@@ -68,10 +68,9 @@ impl Record {
         if !rest.is_empty() {
             let known = gathered.channels.iter().filter(|channel| channel.start.is_some()).count();
             if known < gathered.channels.len() {
-                let whose =
-                    if known == 0 { "these files do not state" } else { "not all files state" };
+                let whose = if known == 0 { "no file states" } else { "not all files state" };
                 gathered.notes.push(format!(
-                    "{whose} when their first samples were taken: they are taken for simultaneous"
+                    "{whose} a readable time of its first sample: the files are taken for simultaneous"
                 ));
             }
             gathered.align()?;
@@ -104,14 +103,12 @@ impl Record {
                 return Some(format!("{files} are of {what}"));
             }
         }
-        let differ =
-            |a: &str, b: &str| !a.is_empty() && !b.is_empty() && !a.eq_ignore_ascii_case(b);
         // Files of the user's own making may stand beside those of a publisher.
         let own = |record: &Self| ["barrelstack", "columns"].contains(&record.format);
-        if differ(one.format, other.format) && !own(one) && !own(other) {
+        if names_differ(one.format, other.format) && !own(one) && !own(other) {
             return Some(format!("{files} have the formats {} and {}", one.format, other.format));
         }
-        if differ(&one.event, &other.event) {
+        if names_differ(&one.event, &other.event) {
             return Some(format!("{files} are of \"{}\" and \"{}\"", one.event, other.event));
         }
         let stages = (one.stage, other.stage);
@@ -139,6 +136,22 @@ impl Record {
         joined.warnings.retain(|warning| !warning.message.contains("one part of a longer record"));
         Ok(joined)
     }
+}
+
+/// Whether two texts name different things; an empty one names nothing.
+///
+/// Case, blanks and punctuation are ignored, and characters outside ASCII where a letter or digit within it is left:
+/// formats replace commas, parentheses and accents.
+pub(crate) fn names_differ(one: &str, other: &str) -> bool {
+    let letters = |name: &str| {
+        let kept = name.chars().filter(char::is_ascii_alphanumeric);
+        kept.map(|c| c.to_ascii_lowercase()).collect::<String>()
+    };
+    if one.is_empty() || other.is_empty() || one.eq_ignore_ascii_case(other) {
+        return false;
+    }
+    let (a, b) = (letters(one), letters(other));
+    if a.is_empty() && b.is_empty() { !one.contains('?') && !other.contains('?') } else { a != b }
 }
 
 const ONE_STEP: &str = "give files of one step";

@@ -296,6 +296,15 @@ impl Record {
         }
     }
 
+    /// Warns of a stated start (on a 0-based line) that could not be read, without which channels are
+    /// taken for simultaneous.
+    pub(crate) fn warn_of_start(&mut self, line: usize, stated: &str, start: Option<Utc>) {
+        if start.is_none() && !stated.trim().is_empty() {
+            let stated = format::quoted(stated);
+            self.warn(line + 1, format!("{stated} is no date and time of a first sample"));
+        }
+    }
+
     pub(crate) fn warn(&mut self, line: impl Into<Option<usize>>, message: impl Into<String>) {
         self.warnings.push(Warning { line: line.into(), message: message.into() });
     }

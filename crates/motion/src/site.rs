@@ -1,5 +1,7 @@
 //! Where a channel was recorded, and by which of a station's sensors.
 
+use crate::join::names_differ;
+
 /// The place of one channel, as far as its file tells; what it does not tell is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Site {
@@ -36,8 +38,7 @@ impl Site {
         let words =
             [("station", &self.station, &other.station), ("sensor", &self.sensor, &other.sensor)];
         for (what, one, two) in words {
-            let differ = !one.is_empty() && !two.is_empty() && !one.eq_ignore_ascii_case(two);
-            if differ {
+            if names_differ(one, two) {
                 return Some(format!("{what} \"{one}\" and {what} \"{two}\""));
             }
         }

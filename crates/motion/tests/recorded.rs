@@ -7,8 +7,8 @@ mod shared;
 use std::path::Path;
 
 use barrelstack_motion::{
-    AccelerationUnit, Channel, Direction, Processing, Quantity, ReadOptions, Record, Site, Stage,
-    Utc, read, station_xml, write,
+    AccelerationUnit, Channel, Direction, Instrument, Processing, Quantity, ReadOptions, Record,
+    Refusal, Site, Stage, Utc, read, station_xml, write,
 };
 
 fn options() -> ReadOptions {
@@ -268,6 +268,19 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     assert!(
         mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
     );
+    // As AT2 it cannot have commas and parentheses; it is the same event.
+    let named = Record {
+        event: "Somewhere, Valley (M 6.1), \u{d1}u\u{f1}oa".to_owned(),
+        ..wave("N", 0.0, 10)
+    };
+    let mut east = named.clone();
+    east.channels[0].name = "E".to_owned();
+    let copy = read(write::at2(&east).unwrap().as_bytes(), "e.at2", &options()).unwrap();
+    let copy = Record { stage: named.stage, ..copy };
+    assert!(Record::gather(&[named, copy]).is_ok());
+    let unnamed = Record { event: String::new(), station: String::new(), ..wave("N", 0.0, 10) };
+    let again = read(write::at2(&unnamed).unwrap().as_bytes(), "n.at2", &options()).unwrap();
+    assert_eq!((again.event.as_str(), again.station.as_str()), ("", ""));
     let kin = Record::gather(&[one, sample("peer/cut-header.AT2")]).unwrap();
     assert!(kin.notes.join("\n").contains("taken for simultaneous"));
 }
@@ -322,8 +335,13 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     assert!(error.contains("HHE, which records velocity (a high-gain seismometer)"), "{error}");
     let known =
         ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
-    let error = read(&bytes, "a.mseed", &known).unwrap_err().to_string();
-    assert!(error.contains("its metadata say"), "{error}");
+    // Metadata that state m/s are enough.
+    let stated = read(&bytes, "a.mseed", &known).unwrap();
+    assert!(stated.warnings.iter().any(|w| w.message.contains("a sensor of velocity")));
+    let both = [bytes.clone(), seed(b'E', 0, *b"00")].concat();
+    let record = read(&both, "both.mseed", &known).unwrap();
+    assert_eq!(record.channels.len(), 1);
+    assert!(record.warnings.iter().any(|w| w.message.ends_with("accelerometer: HHE")));
     let asked = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
     let velocity = read(&bytes, "a.mseed", &asked(Quantity::Velocity)).unwrap();
     assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
@@ -341,4 +359,144 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let shift = |k: usize| f64::midpoint(recorded[k], recorded[k + 1]) - again[k];
     let spread = (1..recorded.len() - 2).map(|k| (shift(k) - shift(1)).abs()).fold(0.0, f64::max);
     assert!(spread < 2e-3 * plain.channels[0].pga(), "{spread}"); // measured 9.7e-4
+}
+
+/// One channel of metadata with a sensitivity in an input unit, and lines more.
+fn metadata(value: &str, unit: &str, more: &str) -> Vec<Instrument> {
+    let text = format!(
+        "<?xml version=\"1.0\"?><FDSNStationXML><Network code=\"ZZ\"><Station code=\"XXXX\">\
+         <Channel code=\"HNE\" locationCode=\"00\">{more}<Response><InstrumentSensitivity>\
+         <Value>{value}</Value><InputUnits><Name>{unit}</Name></InputUnits>\
+         </InstrumentSensitivity></Response></Channel></Station></Network></FDSNStationXML>"
+    );
+    station_xml(&text).unwrap()
+}
+
+#[test]
+fn sensitivities_are_taken_in_the_unit_that_the_metadata_state() {
+    let bytes = seed(b'E', 0, *b"00");
+    let with = |instruments| {
+        read(&bytes, "a.mseed", &ReadOptions { instruments, ..ReadOptions::default() })
+    };
+    let right = with(metadata("427819", "M/S**2", "")).unwrap().channels[0].pga();
+    for (value, unit) in [
+        ("4278.19", "CM/S**2"),
+        ("4278.19", "gal"),
+        ("427.819", "mm/s^2"),
+        ("0.000427819", "nm/s**2"),
+        ("4195471.19635", "g"),
+        ("427819", "m/s/s"),
+    ] {
+        let pga = with(metadata(value, unit, "")).unwrap().channels[0].pga();
+        assert!((pga / right - 1.0).abs() < 1e-9, "{unit}: {pga} {right}");
+    }
+    for unit in ["PA", "V", "rad/s", ""] {
+        let error = with(metadata("427819", unit, "")).unwrap_err();
+        assert_eq!(error.refusal, Refusal::NotAcceleration, "{unit}: {error}");
+        assert!(error.to_string().contains("input unit"), "{error}");
+    }
+}
+
+#[test]
+fn polarity_and_dip_of_metadata_are_kept() {
+    let bytes = seed(b'E', 0, *b"00");
+    let with = |value, more| {
+        let instruments = metadata(value, "m/s**2", more);
+        read(&bytes, "a.mseed", &ReadOptions { instruments, ..ReadOptions::default() }).unwrap()
+    };
+    let plain = with("1000", "<Azimuth>90</Azimuth><Dip>0.5</Dip>");
+    assert_eq!(plain.channels[0].direction.azimuth, Some(90.0));
+    let turned: Vec<f64> = plain.channels[0].acceleration.iter().map(|a| -a).collect();
+    assert_eq!(with("-1000", "").channels[0].acceleration, turned);
+    // Positive counts of a dip of 90 degrees point down, and are turned upward.
+    let down = with("1000", "<Azimuth>0</Azimuth><Dip>90</Dip>");
+    assert!(down.channels[0].is_vertical());
+    assert_eq!(down.channels[0].acceleration, turned);
+    let inclined = with("1000", "<Azimuth>0</Azimuth><Dip>-35.3</Dip>");
+    assert_eq!(inclined.channels[0].direction, Direction::default());
+}
+
+#[test]
+fn metadata_of_another_time_are_named_where_a_sensitivity_is_missing() {
+    let mut instruments = metadata("1000", "m/s**2", "");
+    instruments[0].epoch.0 = "2020-01-01T00:00:00".parse().ok();
+    let known = ReadOptions { instruments, ..ReadOptions::default() };
+    let error = read(&seed(b'E', 0, *b"00"), "a.mseed", &known).unwrap_err().to_string();
+    assert!(error.contains("ZZ.XXXX.00.HNE at 2003-01-02T01:02:00.000Z among 1"), "{error}");
+}
+
+/// A hundred data records of ten samples at 100 Hz, each `late` seconds (1e-4 s) more than it should be.
+fn records_late(late: u32) -> Vec<u8> {
+    let one = seed(b'E', 0, *b"00");
+    let mut record = one[..1 << one[54]].to_vec();
+    record[30..32].copy_from_slice(&10_u16.to_be_bytes());
+    (0..100)
+        .flat_map(|k| {
+            let mut next = record.clone();
+            let fractions = k * (1000 + late);
+            next[26] = u8::try_from(fractions / 10_000).unwrap();
+            let rest = u16::try_from(fractions % 10_000).unwrap();
+            next[28..30].copy_from_slice(&rest.to_be_bytes());
+            next
+        })
+        .collect()
+}
+
+#[test]
+fn gaps_shorter_than_a_sample_do_not_add_up_unnoticed() {
+    let whole = read(&records_late(0), "g0.mseed", &options()).unwrap();
+    assert_eq!(whole.channels[0].acceleration.len(), 1000);
+    for late in [5, 55, 70] {
+        let error = read(&records_late(late), "gaps.mseed", &options()).unwrap_err();
+        assert!(error.to_string().contains("gaps of 0.0"), "{late}: {error}");
+    }
+    // Records in another order, and one of them twice.
+    let bytes = records_late(0);
+    let length = bytes.len() / 100;
+    let turned = [&bytes[50 * length..], &bytes[..51 * length]].concat();
+    let record = read(&turned, "turned.mseed", &options()).unwrap();
+    assert_eq!(record.channels[0].acceleration, whole.channels[0].acceleration);
+    assert!(record.warnings.iter().any(|w| w.message.contains("1 data records that repeat")));
+}
+
+#[test]
+fn steps_of_sac_files_are_the_shortest_decimal_of_what_is_stored() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/sac/little.sac");
+    let mut bytes = std::fs::read(path).unwrap();
+    for (stored, step) in [
+        (1.0_f32 / 1024.0, 1.0 / 1024.0),
+        (1.0 / 256.0, 1.0 / 256.0),
+        (1.0 / 300.0, 0.003_333_333_4),
+        (0.02, 0.02),
+        (0.01, 0.01),
+        (0.005, 0.005),
+    ] {
+        bytes[..4].copy_from_slice(&stored.to_le_bytes());
+        let record = read(&bytes, "a.sac", &options()).unwrap();
+        assert_eq!(record.channels[0].time_step, step, "{stored}");
+    }
+}
+
+#[test]
+fn dates_of_first_samples_are_read_as_esm_and_tadas_write_them() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/esm/example.ACC.ASC");
+    let text = std::fs::read_to_string(path).unwrap();
+    let key = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS";
+    let line = "EVENT_DATE_YYYYMMDD: 19030102";
+    let with = |date: &str| {
+        let file = text.replace(line, &format!("{line}\n{key}: {date}"));
+        read(file.as_bytes(), "a.ASC", &options()).unwrap()
+    };
+    for date in [
+        "20201030_115124.500",
+        "2020/10/30 11:51:24.500000",
+        "2020-10-30T11:51:24.5",
+        "30/10/2020 11:51:24.500",
+        "2020/10/30_11:51:24.500",
+    ] {
+        assert_eq!(start(&with(date)), "2020-10-30T11:51:24.500Z", "{date}");
+    }
+    let unread = with("on a Friday");
+    assert_eq!(start(&unread), "none");
+    assert!(unread.warnings.iter().any(|w| w.message.contains("no date and time")));
 }

@@ -73,7 +73,9 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         vs30: stated("VS30").filter(|speed| *speed > 0.0),
         ..Site::default()
     };
-    let start = Utc::in_header(&text("RECORD TIME"), DateOrder::DayFirst);
+    let (line, stated) = field(source, "RECORD TIME").unwrap_or_default();
+    let start = Utc::in_header(&stated, DateOrder::DayFirst);
+    record.warn_of_start(line, &stated, start);
     record.place(start, &site.at(position(&text("STATION COORDINATES"))));
     if !latin1(source.bytes.get(..4000).unwrap_or(source.bytes)).contains("(gal)") {
         record.warn(

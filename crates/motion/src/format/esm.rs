@@ -11,7 +11,7 @@ use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
 use crate::units::AccelerationUnit;
-use crate::utc::Utc;
+use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format = Format { name: "esm", title: "ESM and ITACA ASCII", sniff, read };
 
@@ -32,18 +32,21 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     found.filter(|(_, value)| !value.is_empty())
 }
 
-/// `20190728_160905.700`.
+/// Reads `20190728_160905.700`, or `2020/10/30 11:51:24.000000` as AFAD's TADAS writes it.
 fn start(text: &str) -> Option<Utc> {
-    let (date, clock) = text.split_once('_')?;
-    let whole = |part: Option<&str>| part?.parse::<i64>().ok();
-    Utc::new(
-        whole(date.get(..4))?,
-        whole(date.get(4..6))?,
-        whole(date.get(6..8))?,
-        whole(clock.get(..2))?,
-        whole(clock.get(2..4))?,
-        clock.get(4..)?.parse().ok()?,
-    )
+    let compact = || {
+        let (date, clock) = text.split_once('_')?;
+        let whole = |part: Option<&str>| part?.parse::<i64>().ok();
+        Utc::new(
+            whole(date.get(..4))?,
+            whole(date.get(4..6))?,
+            whole(date.get(6..8))?,
+            whole(clock.get(..2))?,
+            whole(clock.get(2..4))?,
+            clock.get(4..)?.parse().ok()?,
+        )
+    };
+    compact().or_else(|| Utc::in_header(text, DateOrder::DayFirst))
 }
 
 fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
@@ -100,7 +103,10 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     values.truncate(used);
     let name = text("STREAM");
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
-    channel.start = start(&text("DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"));
+    if let Some((line, text)) = field(source, end, "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS") {
+        channel.start = start(&text);
+        record.warn_of_start(line, &text, channel.start);
+    }
     let number = |key: &str| leading_number(text(key).as_bytes());
     channel.site = Site {
         sensor: text("LOCATION"),

@@ -47,6 +47,19 @@ impl<'a> Hints<'a> {
         self.options.instruments.iter().find(|known| known.describes(seed, start))
     }
 
+    /// States that no metadata describe a channel, for the error that a sensitivity is missing.
+    pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
+        let count = self.options.instruments.len();
+        if count == 0 {
+            return "none".to_owned();
+        }
+        let SeedName { network, station, location, channel } = seed;
+        let at = start.map_or_else(String::new, |start| format!(" at {start}"));
+        format!(
+            "none for {network}.{station}.{location}.{channel}{at} among {count} that are given"
+        )
+    }
+
     pub(super) fn recorded(&self) -> Option<Quantity> {
         self.recorded.set(true);
         self.options.recorded

@@ -13,7 +13,7 @@ use super::{Format, Hints, seed};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::SeedName;
-use crate::record::{Channel, Record, Stage};
+use crate::record::{Channel, Quantity, Record, Stage};
 use crate::site::Site;
 use crate::utc::Utc;
 
@@ -42,17 +42,28 @@ struct Header {
     big: bool,
 }
 
-/// One channel's samples so far.
-struct Trace {
+/// Samples of one data record.
+struct Piece {
     rate: f64,
     start: Utc,
-    end: Utc,
     values: Vec<f64>,
 }
 
+/// Samples of one channel.
+struct Trace {
+    rate: f64,
+    start: Utc,
+    values: Vec<f64>,
+}
+
+/// Largest difference between times and samples that is no gap (samples).
+const LARGEST_OFFSET: f64 = 0.6;
+/// Largest relative deviation of a sample rate from its nominal value that a recorder's clock has.
+const LARGEST_CLOCK_ERROR: f64 = 2e-4;
+
 fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let bytes = source.bytes;
-    let mut traces: BTreeMap<SeedName, Trace> = BTreeMap::new();
+    let mut pieces: BTreeMap<SeedName, Vec<Piece>> = BTreeMap::new();
     let mut at = 0;
     while at + FIXED_HEADER <= bytes.len() {
         let header = header(source, at)?;
@@ -66,7 +77,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         }
         if header.samples > 0 {
             let values = decode(source, &header, &bytes[at + header.data..end], at)?;
-            append(source, &mut traces, &header, values)?;
+            let piece = Piece { rate: header.rate, start: header.start, values };
+            pieces.entry(header.id).or_default().push(piece);
         }
         at = end;
     }
@@ -79,10 +91,12 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     let mut stations: Vec<String> =
-        traces.keys().map(|id| format!("{}.{}", id.network, id.station)).collect();
+        pieces.keys().map(|id| format!("{}.{}", id.network, id.station)).collect();
     stations.dedup();
     record.station = stations.join(", ");
-    for (id, trace) in traces {
+    keep_accelerometers(hints, &mut record, &mut pieces);
+    for (id, pieces) in pieces {
+        let trace = joined(source, &mut record, &id, pieces)?;
         let known = hints.instrument(&id, Some(trace.start));
         let sensitivity = known.map(|known| known.sensitivity).or_else(|| hints.sensitivity());
         let sensitivity = sensitivity.ok_or_else(|| {
@@ -90,19 +104,20 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
                 (),
                 Refusal::Missing(Given::Sensitivity),
                 format!("a sensitivity for channel {} (miniSEED holds counts)", id.channel),
-                "none",
+                hints.no_instrument(&id, Some(trace.start)),
                 "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
             )
         })?;
         let step = 1.0 / trace.rate;
         let values: Vec<f64> = trace.values.iter().map(|count| count / sensitivity).collect();
-        let mut values =
-            seed::as_acceleration(source, &mut record, hints, &id, known, step, values)?;
-        if !seed::differentiates(hints) {
-            super::remove_offset(&mut record, &id.channel, &mut values);
-        }
+        let per = match hints.recorded().or(known.and_then(|known| known.quantity)) {
+            Some(Quantity::Velocity) => "m/s",
+            Some(Quantity::Displacement) => "m",
+            Some(Quantity::Acceleration) | None => "m/s2",
+        };
+        let values = seed::as_acceleration(source, &mut record, hints, &id, known, step, values)?;
         record.notes.push(format!(
-            "channel {}: counts divided by {sensitivity} counts per m/s2, as given",
+            "channel {}: counts divided by {sensitivity} counts per {per}, as given",
             id.channel
         ));
         let direction = known
@@ -118,6 +133,33 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         record.channels.push(channel);
     }
     Ok(record)
+}
+
+/// Leaves out the channels of other sensors where the file holds some of accelerometers.
+fn keep_accelerometers(
+    hints: &Hints<'_>,
+    record: &mut Record,
+    pieces: &mut BTreeMap<SeedName, Vec<Piece>>,
+) {
+    let is_accelerometer = |id: &SeedName, pieces: &[Piece]| {
+        let known = hints.instrument(id, pieces.first().map(|piece| piece.start));
+        seed::quantity(hints, id, known) == Some(Quantity::Acceleration)
+    };
+    if !pieces.iter().any(|(id, pieces)| is_accelerometer(id, pieces)) {
+        return;
+    }
+    let mut names = Vec::new();
+    pieces.retain(|id, pieces| {
+        let kept = is_accelerometer(id, pieces);
+        if !kept {
+            names.push(id.channel.clone());
+        }
+        kept
+    });
+    if !names.is_empty() {
+        let names = names.join(", ");
+        record.warn(None, format!("left out, as no channels of an accelerometer: {names}"));
+    }
 }
 
 fn damaged(source: &Source<'_>, expected: &str, found: String) -> ReadError {
@@ -202,30 +244,72 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     Ok(Header { id, samples, rate, start, data, length, encoding, big })
 }
 
-/// Joins records of one channel; a gap or overlap is an error, because nothing may be made up.
-fn append(
+/// Joins the data records of one channel in the order of their times; repeated ones are left out, and a gap
+/// or an overlap is an error, because nothing may be made up.
+///
+/// The times are compared with the number of samples since the first record, so that gaps shorter than a sample
+/// cannot add up unnoticed; a recorder's clock may run fast or slow by [`LARGEST_CLOCK_ERROR`].
+fn joined(
     source: &Source<'_>,
-    traces: &mut BTreeMap<SeedName, Trace>,
-    header: &Header,
-    mut values: Vec<f64>,
-) -> Result<(), ReadError> {
-    let end = header.start.later(values.len() as f64 / header.rate);
-    let Some(trace) = traces.get_mut(&header.id) else {
-        let trace = Trace { rate: header.rate, start: header.start, end, values };
-        traces.insert(header.id.clone(), trace);
-        return Ok(());
-    };
-    let off = header.start.since(trace.end);
-    if trace.rate != header.rate || off.abs() > 0.6 / header.rate {
-        return Err(damaged(
-            source,
-            &format!("{} without gaps at one rate", header.id.channel),
-            format!("{off:.4} s between records at {} and {} Hz", trace.rate, header.rate),
-        ));
+    record: &mut Record,
+    id: &SeedName,
+    mut pieces: Vec<Piece>,
+) -> Result<Trace, ReadError> {
+    pieces.sort_by_key(|piece| piece.start);
+    let found = pieces.len();
+    pieces.dedup_by(|a, b| a.start == b.start && a.rate == b.rate && a.values == b.values);
+    let channel = &id.channel;
+    if pieces.len() < found {
+        let repeated = found - pieces.len();
+        record.warn(
+            None,
+            format!("channel {channel}: {repeated} data records that repeat another were left out"),
+        );
     }
-    trace.end = end;
-    trace.values.append(&mut values);
-    Ok(())
+    let mut pieces = pieces.into_iter();
+    let Some(Piece { rate, start, mut values }) = pieces.next() else {
+        return Err(damaged(source, "a data record", "none".to_owned()));
+    };
+    let mut drift = 0.0_f64;
+    for piece in pieces {
+        if piece.rate != rate {
+            return Err(source.damaged(
+                (),
+                format!("one sample rate in channel {channel}"),
+                format!("{rate} and {} Hz", piece.rate),
+                "give the data records of one rate in a file of their own",
+            ));
+        }
+        let (counted, stated) = (values.len() as f64 / rate, piece.start.since(start));
+        let off = stated - counted;
+        if off.abs() > (LARGEST_OFFSET / rate).max(LARGEST_CLOCK_ERROR * stated) {
+            let what = if off > 0.0 { "gap" } else { "overlap" };
+            return Err(source.damaged(
+                (),
+                format!("channel {channel} without gaps and overlaps"),
+                format!(
+                    "{what}s of {:.4} s in sum up to {}: {} samples at {rate} Hz last {counted:.4} s, \
+                     and the times of their data records span {stated:.4} s",
+                    off.abs(),
+                    piece.start,
+                    values.len(),
+                ),
+                "get the record again without gaps, or cut the file into parts without them",
+            ));
+        }
+        drift = if off.abs() > drift.abs() { off } else { drift };
+        values.extend(piece.values);
+    }
+    if drift.abs() > LARGEST_OFFSET / rate {
+        record.warn(
+            None,
+            format!(
+                "channel {channel}: the times of its data records differ by up to {drift:.4} s from its \
+                 samples at {rate} Hz, as a clock that is not exact has it; the stated rate is used"
+            ),
+        );
+    }
+    Ok(Trace { rate, start, values })
 }
 
 fn decode(

@@ -12,6 +12,7 @@ use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
 use crate::record::{Channel, Record, Stage};
 use crate::units::AccelerationUnit;
+use crate::write::{NO_EVENT, NO_STATION};
 
 pub(crate) const FORMAT: Format =
     Format { name: "peer", title: "PEER AT2 (NGA, NGA-West2, PEER 2000)", sniff, read };
@@ -195,7 +196,12 @@ fn names(source: &Source<'_>, last: usize) -> (String, String, String) {
             && !component.is_empty()
             && component.len() <= 12
         {
-            return (event.join(", "), (*station).to_owned(), (*component).to_owned());
+            let stated = |text: String, none: &str| if text == none { String::new() } else { text };
+            return (
+                stated(event.join(", "), NO_EVENT),
+                stated((*station).to_owned(), NO_STATION),
+                (*component).to_owned(),
+            );
         }
     }
     let title = source.text(0);

@@ -111,9 +111,8 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             format!("{} bytes", data.len()),
         ));
     }
-    let time_step = real(bytes, 0, big)
-        .filter(|step| *step > 0.0)
-        .ok_or_else(|| damaged("a step above 0 in word 1", "none".to_owned()))?;
+    let time_step =
+        step(bytes, big).ok_or_else(|| damaged("a step above 0 in word 1", "none".to_owned()))?;
     let text = |from: usize, length: usize| {
         let raw = bytes.get(from..from + length).unwrap_or(&[]);
         let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
@@ -137,7 +136,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
                 (),
                 Refusal::Missing(Given::UnitOrSensitivity),
                 "a unit or a sensitivity (SAC files hold neither)",
-                "none",
+                hints.no_instrument(&codes, start),
                 "state the unit of the values, or the sensitivity in counts per m/s2 from the \
              station's metadata",
             )
@@ -153,12 +152,10 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         }
         values.push(value * factor);
     }
-    // Single precision: 0.02 is stored as 0.0199999996; the nearest short decimal is meant.
-    let time_step = (time_step * 1e7).round() / 1e7;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
     let name = codes.channel.clone();
-    let mut values =
+    let values =
         seed::as_acceleration(source, &mut record, hints, &codes, known, time_step, values)?;
     let stated = match (real(bytes, 57, big), real(bytes, 58, big)) {
         (_, Some(0.0)) => Direction::up(),
@@ -175,9 +172,6 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     } else {
         name
     };
-    if !seed::differentiates(hints) {
-        super::remove_offset(&mut record, &name, &mut values);
-    }
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start;
     // Five decimals of a degree are more than single precision holds.
@@ -190,6 +184,13 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
     record.channels.push(channel);
     Ok(record)
+}
+
+/// Word 1, the step (s), as the shortest decimal that has the stored single precision: 0.02 for
+/// 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
+fn step(bytes: &[u8], big: bool) -> Option<f64> {
+    let stored = f32::from_le_bytes(word(bytes, 0, big)?);
+    stored.to_string().parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0)
 }
 
 /// Words 70 to 75, the reference instant, and word 5, the time of the first sample after it.

@@ -1,18 +1,31 @@
-//! Channels with SEED codes, which tell what the instrument measures.
+//! Channels with SEED codes and metadata, which state the quantity that was recorded.
 
 use super::Hints;
-use super::source::Source;
+use super::source::{Source, quoted};
 use crate::error::{ReadError, Refusal};
 use crate::instrument::{Instrument, SeedName, differentiated};
 use crate::record::{Quantity, Record};
 
-/// Whether accelerations come from other quantities, whose offsets differentiation takes off.
-pub(super) fn differentiates(hints: &Hints<'_>) -> bool {
-    matches!(hints.recorded(), Some(Quantity::Velocity | Quantity::Displacement))
+/// Quantity that a channel recorded, as the caller, the metadata or the channel code state it; `None` for metadata
+/// that state none of motion.
+pub(super) fn quantity(
+    hints: &Hints<'_>,
+    seed: &SeedName,
+    instrument: Option<&Instrument>,
+) -> Option<Quantity> {
+    if instrument.is_some_and(|known| known.other_unit.is_some()) {
+        return None;
+    }
+    let by_code = || seed.other_quantity().map_or(Quantity::Acceleration, |(quantity, _)| quantity);
+    let metadata = instrument.and_then(|known| known.quantity);
+    Some(hints.recorded().or(metadata).unwrap_or_else(by_code))
 }
 
-/// What a channel with SEED codes recorded, differentiated to accelerations; refused where its code or
-/// its metadata say that it is no acceleration and the caller did not ask for it.
+/// Counts or values of a channel as accelerations, with the mean of a raw accelerometer removed.
+///
+/// `scaled` holds SI values of whatever was recorded. What that is comes from the caller, else from the
+/// metadata, else from the channel code; velocities and displacements are differentiated where the caller or
+/// the metadata say that they are, and refused where the channel code alone does.
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,
@@ -20,21 +33,25 @@ pub(super) fn as_acceleration(
     seed: &SeedName,
     instrument: Option<&Instrument>,
     time_step: f64,
-    values: Vec<f64>,
+    mut scaled: Vec<f64>,
 ) -> Result<Vec<f64>, ReadError> {
     let name = &seed.channel;
-    let (quantity, why) = match (hints.recorded(), instrument.and_then(|known| known.quantity)) {
-        (Some(asked), _) => (asked, "as asked"),
-        (None, Some(Quantity::Acceleration)) => return Ok(values),
-        (None, Some(other)) => (other, "its metadata say"),
-        (None, None) => seed.other_quantity().unwrap_or((Quantity::Acceleration, "")),
+    let label = if name.is_empty() { "1" } else { name };
+    let Some(quantity) = quantity(hints, seed, instrument) else {
+        let unit = instrument.and_then(|known| known.other_unit.as_deref());
+        return Err(other_unit(source, seed, unit.unwrap_or_default()));
     };
+    let metadata = instrument.and_then(|known| known.quantity);
     let order = match quantity {
-        Quantity::Acceleration => return Ok(values),
+        Quantity::Acceleration => {
+            super::remove_offset(record, label, &mut scaled);
+            return Ok(scaled);
+        }
         Quantity::Velocity => 1,
         Quantity::Displacement => 2,
     };
-    if hints.recorded().is_none() {
+    if hints.recorded().is_none() && metadata.is_none() {
+        let why = seed.other_quantity().map_or("", |(_, why)| why);
         return Err(source.error(
             (),
             Refusal::OtherInstrument,
@@ -46,7 +63,30 @@ pub(super) fn as_acceleration(
     }
     let times = if order == 1 { "once" } else { "twice" };
     record.notes.push(format!(
-        "channel {name}: {quantity} differentiated {times} by central differences of fourth order"
+        "channel {label}: {quantity} differentiated {times} by central differences of fourth order"
     ));
-    Ok((0..order).fold(values, |values, _| differentiated(&values, time_step)))
+    if hints.recorded().is_none() {
+        record.warn(
+            None,
+            format!(
+                "channel {label} is of a sensor of {quantity}, as its metadata say: accelerations are its \
+                 derivatives; strong shaking may have driven such a sensor beyond its range"
+            ),
+        );
+    }
+    Ok((0..order).fold(scaled, |values, _| differentiated(&values, time_step)))
+}
+
+/// Refuses a channel whose metadata state an input unit that is none of motion.
+fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
+    let found = match unit {
+        "" => "metadata without an input unit".to_owned(),
+        _ => format!("metadata with the input unit {}", quoted(unit)),
+    };
+    source.not_acceleration(
+        (),
+        format!("an accelerometer behind channel {}", seed.channel),
+        found,
+        "give the channel of an accelerometer, or correct InputUnits in its StationXML",
+    )
 }

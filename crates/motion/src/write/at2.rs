@@ -9,6 +9,11 @@ use crate::error::MotionError;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Record};
 
+/// Stands for an event that the record does not name.
+pub(crate) const NO_EVENT: &str = "EVENT NOT STATED";
+/// Stands for a station that the record does not name.
+pub(crate) const NO_STATION: &str = "STATION NOT STATED";
+
 /// Longest component name that readers tell from a part of the event.
 const LONGEST_NAME: usize = 12;
 
@@ -55,8 +60,8 @@ pub fn at2(record: &Record) -> Result<String, MotionError> {
     let mut text = format!(
         "{}\n{}, {}, {}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= {}, DT= {} SEC\n",
         harmless(&title),
-        or(&record.event, "EVENT NOT STATED"),
-        or(&record.station, "STATION NOT STATED"),
+        or(&record.event, NO_EVENT),
+        or(&record.station, NO_STATION),
         component(channel),
         a.len(),
         channel.time_step,

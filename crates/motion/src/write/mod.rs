@@ -11,6 +11,7 @@ mod npz;
 mod text;
 
 pub use at2::at2;
+pub(crate) use at2::{NO_EVENT, NO_STATION};
 pub(crate) use csv::INITIAL_VELOCITY;
 pub use csv::csv;
 pub(crate) use npz::array_name;

@@ -42,9 +42,9 @@ pub(super) struct Input {
     /// for each.
     #[arg(long, value_name = "[CHANNEL=]NUMBER")]
     sensitivity: Vec<String>,
-    /// `StationXML` with the sensitivity and the direction of each channel; without it files that end
-    /// with .xml beside a file of counts are looked into.
-    #[arg(long, value_name = "FILE")]
+    /// `StationXML` with the sensitivity and the direction of each channel, or a folder of such files;
+    /// without it files that end with .xml beside a file of counts are looked into.
+    #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
     /// What SEED and SAC files of other instruments than accelerometers hold; it is differentiated.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
@@ -182,17 +182,23 @@ impl Input {
         if !lacking || self.station_xml.is_some() {
             return first.map_err(with_option);
         }
-        for path in beside(Path::new(file)) {
-            // A file beside that is no StationXML is none of this file's business.
-            let Ok(found) = instruments(&path) else { continue };
-            let mut more = options.clone();
+        let beside = beside(Path::new(file));
+        let mut more = options.clone();
+        let mut used = Vec::new();
+        for path in &beside {
+            // A file beside that is no StationXML does not concern this record.
+            let Ok(found) = instruments_of_file(path) else { continue };
             more.instruments.extend(found);
-            if let Ok(mut record) = read_file(file, &more) {
-                record
-                    .notes
-                    .push(format!("sensitivities from {}, which lies beside", path.display()));
-                return Ok(record);
-            }
+            used.push(path.display().to_string());
+        }
+        if more.instruments.len() > options.instruments.len() {
+            let mut record = read_file(file, &more).map_err(with_option)?;
+            let (of, lie) = match used.as_slice() {
+                [one] => (one.clone(), "which lies"),
+                several => (format!("{} StationXML files", several.len()), "which lie"),
+            };
+            record.notes.push(format!("sensitivities from {of}, {lie} beside"));
+            return Ok(record);
         }
         first.map_err(with_option)
     }
@@ -327,7 +333,9 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     let option = match cause.refusal {
         Refusal::OtherInstrument => "add --as velocity, with the sensitivity in counts to one m/s",
         Refusal::Missing(Given::Unit) => "add --unit g, or the unit it is",
-        Refusal::Missing(Given::Step) => "add --time-step \"0.01 s\", or the step it is",
+        Refusal::Missing(Given::Step) => {
+            "add --time-step with the time between two samples, as the publisher of the file states it"
+        }
         Refusal::Missing(Given::Sensitivity) => {
             "add --sensitivity with the counts to one m/s2, or --station-xml with the station's file"
         }
@@ -341,8 +349,24 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     anyhow!("{error}: {option}")
 }
 
-/// The channels of a `StationXML` file.
+/// The channels of a `StationXML` file, or of all those in a folder.
 fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
+    if !path.is_dir() {
+        return instruments_of_file(path);
+    }
+    let files = xml_files(path);
+    let mut found = Vec::new();
+    for file in &files {
+        found.extend(instruments_of_file(file)?);
+    }
+    if found.is_empty() {
+        bail!("{}: expected files that end with .xml, found none", path.display());
+    }
+    Ok(found)
+}
+
+/// The channels of a `StationXML` file.
+fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     let found =
         station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())?;
@@ -355,9 +379,12 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
 /// Files beside one whose ending is that of `StationXML`, in the order of their names.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else {
-        return Vec::new();
-    };
+    xml_files(folder.unwrap_or(Path::new(".")))
+}
+
+/// Files of a folder that end with .xml, in the order of their names.
+fn xml_files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut found: Vec<PathBuf> = entries
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
         .filter(|path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("xml")))
@@ -373,7 +400,9 @@ pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
         bail!("{}: it is a folder, not a file; name one of its files", refused());
     }
     let plain = |error| anyhow!("{:#}; correct the path", plain(error));
-    let file = std::fs::File::open(path).map_err(plain).with_context(refused)?;
+    let file = barrelstack_input::system::open(path)
+        .map_err(|reason| anyhow!("{reason}; correct the path"))
+        .with_context(refused)?;
     let mut bytes = Vec::new();
     file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(plain).with_context(refused)?;
     if bytes.len() as u64 > LIMIT {
