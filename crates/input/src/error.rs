@@ -243,13 +243,17 @@ impl Problem {
                 units.join(" ")
             ));
         }
-        if let QuantityError::WrongDimension { text, found, .. } = reason
-            && found.starts_with("an acceleration")
-            && text.ends_with('g')
-        {
-            return Some("`g` is the acceleration of gravity; grams are written `gram`".to_owned());
+        let QuantityError::WrongDimension { text, found, expected } = reason else { return None };
+        let note = |kind: &str, wanted: &str, note: &str| {
+            (found.starts_with(kind) && expected.starts_with(wanted)).then(|| note.to_owned())
+        };
+        if text.ends_with('g') {
+            let grams = "`g` is the acceleration of gravity; grams are written `gram`";
+            return note("an acceleration", "a mass", grams);
         }
-        None
+        let weights =
+            "a mass is written in `kg`, `lb` or `t`, its weight in `kgf`, `lbf` or `tonf`";
+        note("a mass", "a force", weights).or_else(|| note("a force", "a mass", weights))
     }
 }
 

@@ -202,7 +202,9 @@ impl Table {
     pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let (at, unit) = self.place(name, dimension)?;
         let column = &self.columns[at].name;
-        let value = |(line, row): &(usize, Vec<String>)| self.value(*line, column, &row[at], unit);
+        let value = |(line, row): &(usize, Vec<String>)| {
+            self.value(*line, column, &row[at], (unit, dimension))
+        };
         self.rows.iter().map(value).collect()
     }
 
@@ -222,7 +224,7 @@ impl Table {
         let entry = |(line, row): &(usize, Vec<String>)| match row[at].as_str() {
             "" => Ok(Entry::Empty),
             cell if cell == word => Ok(Entry::Word),
-            cell => self.value(*line, column, cell, unit).map(Entry::Number),
+            cell => self.value(*line, column, cell, (unit, dimension)).map(Entry::Number),
         };
         self.rows.iter().map(entry).collect()
     }
@@ -252,19 +254,29 @@ impl Table {
             let expected = format!("a unit in parentheses, as in {}", example());
             return Err(at_header(named, &expected, "none", "add it to the header"));
         };
-        // The notation of the program's own histories.
-        let unit = if unit == "m/s2" { "m/s^2" } else { unit };
         if let Err(error) = Quantity::parse_as(&format!("1 {unit}"), &[dimension]) {
             let expected = format!("a unit of {dimension}");
             let found = format!("\"{unit}\" ({error})");
-            return Err(at_header(named, &expected, &found, "correct the unit in the header"));
+            let better = Quantity::suggestion(&format!("1 {unit}"), &[dimension]);
+            let remedy = match better.strip_prefix("1 ") {
+                Some(better) => format!("write \"{} ({better})\" in the header", column.name),
+                None => format!("write {} in the header", example()),
+            };
+            return Err(at_header(named, &expected, &found, &remedy));
         }
         Ok((at, unit))
     }
 
-    fn value(&self, line: usize, column: &str, cell: &str, unit: &str) -> Result<f64, TableError> {
+    fn value(
+        &self,
+        line: usize,
+        column: &str,
+        cell: &str,
+        (unit, dimension): (&str, Dimension),
+    ) -> Result<f64, TableError> {
         let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
-        let quantity = number.and_then(|_| Quantity::parse(&format!("{cell} {unit}")).ok());
+        let quantity =
+            number.and_then(|_| Quantity::parse_as(&format!("{cell} {unit}"), &[dimension]).ok());
         quantity.map(|quantity| quantity.value).ok_or_else(|| {
             let shown: String = cell.chars().filter(|c| !c.is_control()).take(40).collect();
             let found = if cell.is_empty() { "nothing".to_owned() } else { format!("\"{shown}\"") };

@@ -54,6 +54,12 @@ pub enum QuantityError {
         /// What is wrong.
         reason: &'static str,
     },
+    /// A unit of two meanings where neither is expected rather than the other.
+    #[error("the `gal` of `{text}` is a US gallon or a cm/s^2; write `gallon` or `Gal`")]
+    Ambiguous {
+        /// The text.
+        text: String,
+    },
     /// A quantity of another kind.
     #[error("`{text}` is {found}, expected {expected}")]
     WrongDimension {
@@ -86,38 +92,84 @@ impl Quantity {
     /// When the number is missing, too large or not finite, or when the unit is missing, unknown or
     /// malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
+        match Self::readings(text, &[])?.as_slice() {
+            [one] => Ok(*one),
+            _ => Err(QuantityError::Ambiguous { text: shorten(text.trim()) }),
+        }
+    }
+
+    /// All that a text may mean; a number alone is one where a plain number is wanted.
+    fn readings(text: &str, wanted: &[Dimension]) -> Result<Vec<Self>, QuantityError> {
         let trimmed = text.trim();
         let shown = || shorten(trimmed);
         let (number, rest) =
             Decimal::take(trimmed).ok_or_else(|| QuantityError::NoNumber { text: shown() })?;
-        let unit_text = rest.trim();
-        if unit_text.is_empty() {
-            return Err(QuantityError::NoUnit { text: shown() });
-        }
-        let unit = unit::parse(unit_text).map_err(|e| e.within(&shown()))?;
-        let value = number.times(&unit.scale);
-        if !value.is_finite() {
-            return Err(QuantityError::Overflow { text: shown() });
-        }
-        Ok(Self { value, dimension: unit.dimension })
+        let unit_text = match rest.trim() {
+            "" if wanted.contains(&Dimension::NONE) => "1",
+            "" => return Err(QuantityError::NoUnit { text: shown() }),
+            unit => unit,
+        };
+        let units = unit::readings(unit_text).map_err(|e| e.within(&shown()))?;
+        let reading = |unit: &unit::Unit| {
+            let value = number.times(&unit.scale);
+            let quantity = Self { value, dimension: unit.dimension };
+            let overflow = || QuantityError::Overflow { text: shown() };
+            value.is_finite().then_some(quantity).ok_or_else(overflow)
+        };
+        units.iter().map(reading).collect()
     }
 
-    /// Reads a quantity that must measure one of `wanted`.
+    /// Reads a quantity that must measure one of `wanted`; `gal` is a US gallon where that fits, and a
+    /// cm/s² where that does.
+    ///
+    /// ```
+    /// use barrelstack_input::{Dimension, Quantity};
+    ///
+    /// assert_eq!(Quantity::parse_as("60 gal", &[Dimension::VOLUME])?.value, 0.22712470704);
+    /// assert_eq!(Quantity::parse_as("981 gal", &[Dimension::ACCELERATION])?.value, 9.81);
+    /// # Ok::<(), barrelstack_input::quantity::QuantityError>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// As [`Quantity::parse`], and when the dimension is none of `wanted`.
     pub fn parse_as(text: &str, wanted: &[Dimension]) -> Result<Self, QuantityError> {
-        let quantity = Self::parse(text)?;
-        if wanted.contains(&quantity.dimension) {
-            return Ok(quantity);
+        let readings = Self::readings(text, wanted)?;
+        if let Some(quantity) = readings.iter().find(|q| wanted.contains(&q.dimension)) {
+            return Ok(*quantity);
         }
-        let names: Vec<String> = wanted.iter().map(ToString::to_string).collect();
+        let listed = |dimensions: &mut dyn Iterator<Item = Dimension>| {
+            dimensions.map(|dimension| dimension.to_string()).collect::<Vec<_>>().join(" or ")
+        };
         Err(QuantityError::WrongDimension {
             text: shorten(text.trim()),
-            found: quantity.dimension.to_string(),
-            expected: names.join(" or "),
+            found: listed(&mut readings.iter().map(|quantity| quantity.dimension)),
+            expected: listed(&mut wanted.iter().copied()),
         })
+    }
+
+    /// A text to write in place of one that is no quantity of `wanted`: with the unit that it lacks or
+    /// that was probably meant, or else an example. It always reads as one of `wanted`.
+    pub fn suggestion(text: &str, wanted: &[Dimension]) -> String {
+        let trimmed = text.trim();
+        let reads = |text: &String| text.len() <= 60 && Self::parse_as(text, wanted).is_ok();
+        let with_unit = |number: &str, unit: &str| {
+            let tries = std::iter::once(unit.to_owned()).chain(unit::alternatives(unit));
+            tries.map(|unit| format!("{number} {unit}")).find(reads)
+        };
+        let repaired = Decimal::take(trimmed).and_then(|(number, rest)| {
+            let (number, rest) = (number.text, rest.trim());
+            if rest.is_empty() {
+                return wanted.iter().map(|d| format!("{number} {}", d.si_unit())).find(reads);
+            }
+            let Some(fraction) = rest.strip_prefix(',') else { return with_unit(number, rest) };
+            // Three digits behind a comma may be thousands.
+            let (digits, unit) = split_digits(fraction);
+            let decimals = !number.contains('.') && !matches!(digits.len(), 0 | 3);
+            decimals.then(|| with_unit(&format!("{number}.{digits}"), unit.trim()))?
+        });
+        let example = || wanted.first().map_or_else(String::new, |wanted| wanted.example());
+        repaired.unwrap_or_else(example)
     }
 }
 

@@ -23,8 +23,8 @@ pub(crate) struct Unit {
 
 /// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
 ///
-/// Inch, foot, pound and standard gravity are exact by definition; the pound-force is their
-/// product.
+/// Inch, foot, yard, pound, US gallon and standard gravity are exact by definition; the forces named
+/// after masses are their products. `tonf` is the metric ton-force, 1000 kgf.
 const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("1", 1, 1, 0, 0, Dimension::NONE),
     ("%", 1, 1, -2, 0, Dimension::NONE),
@@ -37,7 +37,11 @@ const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("µm", 1, 1, -6, 0, Dimension::LENGTH),
     ("in", 254, 1, -4, 0, Dimension::LENGTH),
     ("ft", 3048, 1, -4, 0, Dimension::LENGTH),
+    ("yd", 9144, 1, -4, 0, Dimension::LENGTH),
     ("L", 1, 1, -3, 0, Dimension::VOLUME),
+    ("mL", 1, 1, -6, 0, Dimension::VOLUME),
+    ("hL", 1, 1, -1, 0, Dimension::VOLUME),
+    ("gallon", 3_785_411_784, 1, -12, 0, Dimension::VOLUME),
     ("kg", 1, 1, 0, 0, Dimension::MASS),
     ("gram", 1, 1, -3, 0, Dimension::MASS),
     ("t", 1, 1, 3, 0, Dimension::MASS),
@@ -57,14 +61,63 @@ const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("N", 1, 1, 0, 0, Dimension::FORCE),
     ("kN", 1, 1, 3, 0, Dimension::FORCE),
     ("MN", 1, 1, 6, 0, Dimension::FORCE),
+    ("kgf", 980_665, 1, -5, 0, Dimension::FORCE),
+    ("tonf", 980_665, 1, -2, 0, Dimension::FORCE),
     ("lbf", 44_482_216_152_605, 1, -13, 0, Dimension::FORCE),
     ("kip", 44_482_216_152_605, 1, -10, 0, Dimension::FORCE),
     ("Pa", 1, 1, 0, 0, Dimension::STIFFNESS_PER_LENGTH),
     ("kPa", 1, 1, 3, 0, Dimension::STIFFNESS_PER_LENGTH),
     ("MPa", 1, 1, 6, 0, Dimension::STIFFNESS_PER_LENGTH),
-    // lbf/in² = 4.4482216152605 N / (0.0254 m)².
+    ("GPa", 1, 1, 9, 0, Dimension::STIFFNESS_PER_LENGTH),
+    ("bar", 1, 1, 5, 0, Dimension::STIFFNESS_PER_LENGTH),
+    // lbf/in² = 4.4482216152605 N / (0.0254 m)², lbf/ft² = 4.4482216152605 N / (0.3048 m)².
     ("psi", 44_482_216_152_605, 64_516, -5, 0, Dimension::STIFFNESS_PER_LENGTH),
+    ("ksi", 44_482_216_152_605, 64_516, -2, 0, Dimension::STIFFNESS_PER_LENGTH),
+    ("psf", 44_482_216_152_605, 9_290_304, -5, 0, Dimension::STIFFNESS_PER_LENGTH),
+    // lb/ft³ = 0.45359237 kg / (0.3048 m)³.
+    ("pcf", 45_359_237, 28_316_846_592, 4, 0, Dimension::DENSITY),
 ];
+
+/// Other spellings of units that have no second meaning.
+const ALIASES: &[(&str, &str)] = &[
+    ("lbs", "lb"),
+    ("lbm", "lb"),
+    ("kgs", "kg"),
+    ("tf", "tonf"),
+    ("kips", "kip"),
+    ("l", "L"),
+    ("liter", "L"),
+    ("liters", "L"),
+    ("litre", "L"),
+    ("litres", "L"),
+    ("ml", "mL"),
+    ("hl", "hL"),
+    ("gallons", "gallon"),
+    ("gals", "gallon"),
+    ("grams", "gram"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("meter", "m"),
+    ("meters", "m"),
+    ("metre", "m"),
+    ("metres", "m"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("foot", "ft"),
+    ("feet", "ft"),
+    ("tonne", "t"),
+    ("tonnes", "t"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("newton", "N"),
+    ("newtons", "N"),
+];
+
+/// The word with two meanings, and the unit that each of them is called by.
+const GAL: (&str, [&str; 2]) = ("gal", ["gallon", "Gal"]);
 
 /// Names of all units.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -87,14 +140,30 @@ impl UnitError {
     }
 }
 
-/// Reads a unit expression.
-pub(crate) fn parse(text: &str) -> Result<Unit, UnitError> {
+/// Reads a unit expression; there are two readings where it holds `gal`, which is a US gallon and a
+/// cm/s².
+pub(crate) fn readings(text: &str) -> Result<Vec<Unit>, UnitError> {
     if text.len() > 200 {
         return Err(UnitError::Malformed("it is too long"));
     }
     let tokens = tokenize(text)?;
+    let (word, meanings) = GAL;
+    let ambiguous = Token::Name(word.to_owned());
+    if !tokens.contains(&ambiguous) {
+        return Ok(vec![whole(&tokens)?]);
+    }
+    let reading = |meaning: &str| {
+        let named = |token: &Token| {
+            if *token == ambiguous { Token::Name(meaning.to_owned()) } else { token.clone() }
+        };
+        whole(&tokens.iter().map(named).collect::<Vec<_>>())
+    };
+    meanings.into_iter().map(reading).collect()
+}
+
+fn whole(tokens: &[Token]) -> Result<Unit, UnitError> {
     let mut at = 0;
-    let unit = product(&tokens, &mut at, 0)?;
+    let unit = product(tokens, &mut at, 0)?;
     if at < tokens.len() {
         return Err(UnitError::Malformed("a closing parenthesis has no opening one"));
     }
@@ -146,6 +215,10 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
                     chars.next();
                 }
                 tokens.push(Token::Name(name));
+                // `ft/s2` as files and spreadsheets have it.
+                if let Some(power) = chars.next_if(|next| c != '1' && ('2'..='6').contains(next)) {
+                    tokens.push(Token::Power(power.to_string()));
+                }
             }
             ',' => return Err(UnitError::Malformed("write the decimal mark as a point")),
             _ if c.is_ascii_digit() || c == '.' || c == '-' || c == '+' => {
@@ -236,53 +309,74 @@ fn halves(power: &str) -> Result<i8, UnitError> {
     Ok(halves as i8)
 }
 
-/// Words that users write for units.
-const SYNONYMS: &[(&str, &str)] = &[
-    ("grams", "gram"),
-    ("sec", "s"),
-    ("secs", "s"),
-    ("second", "s"),
-    ("seconds", "s"),
-    ("msec", "ms"),
-    ("meter", "m"),
-    ("meters", "m"),
-    ("metre", "m"),
-    ("metres", "m"),
-    ("inch", "in"),
-    ("inches", "in"),
-    ("\"", "in"),
-    ("feet", "ft"),
-    ("'", "ft"),
-    ("lbs", "lb"),
-    ("pound", "lb"),
-    ("pounds", "lb"),
-    ("degree", "deg"),
-    ("degrees", "deg"),
-    ("newton", "N"),
-    ("kgf", "kg"),
-    ("tonne", "t"),
-    ("ton", "t"),
-    ("l", "L"),
-    ("liter", "L"),
-    ("litre", "L"),
-    ("liters", "L"),
-    ("gal", "Gal"),
-    ("hz", "Hz"),
-];
+/// Words that have no single meaning, or are no words, and the unit that is most often meant.
+const MEANT: &[(&str, &str)] =
+    &[("\"", "in"), ("'", "ft"), ("pound", "lb"), ("pounds", "lb"), ("ton", "t"), ("tons", "t")];
 
 fn named(name: &str) -> Result<Unit, UnitError> {
+    let spelled = ALIASES.iter().find(|(word, _)| *word == name).map_or(name, |(_, unit)| *unit);
     if let Some(&(_, numerator, denominator, ten, pi, dimension)) =
-        UNITS.iter().find(|unit| unit.0 == name)
+        UNITS.iter().find(|unit| unit.0 == spelled)
     {
         let scale = Scale { numerator, denominator, ten, pi, factor: 1.0 };
         return Ok(Unit { scale, dimension });
     }
-    let nearest = SYNONYMS
+    let nearest = MEANT
         .iter()
+        .chain(ALIASES)
         .find(|(word, _)| word.eq_ignore_ascii_case(name))
         .map(|(_, unit)| (*unit).to_owned())
         .or_else(|| names().find(|unit| unit.eq_ignore_ascii_case(name)).map(str::to_owned));
     Err(UnitError::Unknown { unit: name.chars().take(30).collect(), nearest })
+}
+
+/// Units of mass and of the weight of as much, which are mistaken for one another.
+const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
+
+/// The text of a unit with every name replaced that `replace` gives another for.
+fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while !rest.is_empty() {
+        let end = rest.find(|c: char| !(c.is_alphabetic() || c == '_')).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        out.push_str(replace(word).unwrap_or(word));
+        let skip = after.find(char::is_alphabetic).unwrap_or(after.len());
+        out.push_str(&after[..skip]);
+        rest = &after[skip..];
+    }
+    out
+}
+
+/// Other texts for a unit that is unknown or of another kind than wanted, the likeliest first; they
+/// may be no better.
+pub(crate) fn alternatives(text: &str) -> Vec<String> {
+    let canonical =
+        |word: &str| ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, unit)| *unit);
+    let meant = |word: &str| {
+        let likely = MEANT.iter().chain(ALIASES).find(|(w, _)| w.eq_ignore_ascii_case(word));
+        let known = || names().find(|unit| unit.eq_ignore_ascii_case(word));
+        if names().any(|unit| unit == word) {
+            None
+        } else {
+            likely.map(|(_, unit)| *unit).or_else(known)
+        }
+    };
+    let likely = renamed(text, meant);
+    let likely = likely.replace('"', "in").replace('\'', "ft");
+    let spelled = renamed(&likely, canonical);
+    let swapped = |from_mass: bool| {
+        renamed(&spelled, |word| {
+            let pair = WEIGHTS
+                .iter()
+                .find(|(mass, weight)| if from_mass { *mass == word } else { *weight == word });
+            pair.map(|(mass, weight)| if from_mass { *weight } else { *mass })
+        })
+    };
+    let gram = renamed(&spelled, |word| (word == "g").then_some("gram"));
+    let gallon = renamed(&spelled, |word| (word == "Gal").then_some("gallon"));
+    let (weight, mass) = (swapped(true), swapped(false));
+    vec![likely, weight, mass, gram, gallon]
 }
 
 impl Unit {

@@ -19,9 +19,24 @@ pub enum AccelerationUnit {
     Gal,
     /// mm/s².
     MillimetersPerSecondSquared,
+    /// ft/s², 0.3048 m/s².
+    FeetPerSecondSquared,
+    /// in/s², 0.0254 m/s².
+    InchesPerSecondSquared,
 }
 
 impl AccelerationUnit {
+    /// Every unit.
+    pub const ALL: [Self; 7] = [
+        Self::G,
+        Self::TenthG,
+        Self::MetersPerSecondSquared,
+        Self::Gal,
+        Self::MillimetersPerSecondSquared,
+        Self::FeetPerSecondSquared,
+        Self::InchesPerSecondSquared,
+    ];
+
     /// m/s² to one of this unit.
     pub fn factor(self) -> f64 {
         match self {
@@ -30,6 +45,8 @@ impl AccelerationUnit {
             Self::MetersPerSecondSquared => 1.0,
             Self::Gal => 0.01,
             Self::MillimetersPerSecondSquared => 0.001,
+            Self::FeetPerSecondSquared => 0.3048,
+            Self::InchesPerSecondSquared => 0.0254,
         }
     }
 }
@@ -40,7 +57,9 @@ printed_as!(
     TenthG = "g/10",
     MetersPerSecondSquared = "m/s2",
     Gal = "cm/s2",
-    MillimetersPerSecondSquared = "mm/s2"
+    MillimetersPerSecondSquared = "mm/s2",
+    FeetPerSecondSquared = "ft/s2",
+    InchesPerSecondSquared = "in/s2"
 );
 
 impl FromStr for AccelerationUnit {
@@ -55,10 +74,12 @@ impl FromStr for AccelerationUnit {
             "m/s2" | "m/s/s" | "m/ss" | "m/s\u{b2}" => Self::MetersPerSecondSquared,
             "cm/s2" | "cm/s/s" | "cm/ss" | "gal" | "gals" | "cm/s\u{b2}" => Self::Gal,
             "mm/s2" | "mm/s/s" | "mm/s\u{b2}" => Self::MillimetersPerSecondSquared,
+            "ft/s2" | "ft/s/s" | "ft/ss" | "ft/s\u{b2}" => Self::FeetPerSecondSquared,
+            "in/s2" | "in/s/s" | "in/ss" | "in/s\u{b2}" => Self::InchesPerSecondSquared,
             _ => {
                 return Err(MotionError::parameter(
                     "unit of acceleration",
-                    "g, g/10, m/s2, cm/s2, gal or mm/s2",
+                    "g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2 or in/s2",
                     format!("\"{text}\""),
                 ));
             }

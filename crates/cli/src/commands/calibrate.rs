@@ -286,7 +286,8 @@ fn striker(args: &DropArgs) -> anyhow::Result<Option<Striker>> {
 
 /// The value (SI) of an option that is a positive quantity.
 fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
-    let example = || format!("{option}: expected {dimension} such as \"{}\"", dimension.example());
+    let suggestion = Quantity::suggestion(text, &[dimension]);
+    let example = || format!("{option}: expected {dimension} such as \"{suggestion}\"");
     let value = Quantity::parse_as(text, &[dimension]).with_context(example)?.value;
     anyhow::ensure!(value > 0.0, "{}, above zero; found \"{text}\"", example());
     Ok(value)

@@ -4,7 +4,7 @@ use crate::FileRef;
 use crate::dimension::Dimension;
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Named, Range};
-use crate::quantity::{Quantity, QuantityError, plain, shorten};
+use crate::quantity::{Quantity, plain, shorten};
 use crate::tree::{Node, Origin, Value, parse_value};
 
 use super::{Reader, Result, nearest, owned};
@@ -360,15 +360,13 @@ impl Reader<'_> {
         dimensions: &[Dimension],
         range: Range,
     ) -> Result<Quantity> {
-        let example = dimensions[0].example();
         // A bare number is most often meant in SI.
         let unit = dimensions[0].si_unit();
         let kind = "a quantity with its unit";
         match &node.value {
             Value::Text(text) => {
                 let quantity = Quantity::parse_as(text, dimensions).map_err(|reason| {
-                    let repaired = repaired(text, &reason, &unit);
-                    let example = repaired.unwrap_or_else(|| format!("\"{example}\""));
+                    let example = format!("\"{}\"", Quantity::suggestion(text, dimensions));
                     let field = self.path_of(name);
                     self.sources.error(node.origin, Problem::Quantity { field, reason, example })
                 })?;
@@ -445,15 +443,4 @@ impl Reader<'_> {
         };
         self.sources.error(node.origin, problem)
     }
-}
-
-/// The text with the unit it lacks, or with the unit that was probably meant.
-fn repaired(text: &str, reason: &QuantityError, unit: &str) -> Option<String> {
-    if let QuantityError::NoUnit { .. } = reason {
-        return Some(format!("\"{} {unit}\"", text.trim()));
-    }
-    if let QuantityError::UnknownUnit { nearest: Some(nearest), unit, .. } = reason {
-        return Some(format!("\"{}\"", shorten(&text.trim().replace(unit.as_str(), nearest))));
-    }
-    None
 }

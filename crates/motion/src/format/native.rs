@@ -66,8 +66,9 @@ pub(super) fn described(
         })
     };
     let (line, text) = need("unit")?;
-    let unit: AccelerationUnit =
-        text.parse().map_err(|_| refuse(line, "g, g/10, m/s2, cm/s2 or mm/s2", &text))?;
+    let unit: AccelerationUnit = text
+        .parse()
+        .map_err(|_| refuse(line, "g, g/10, m/s2, cm/s2, mm/s2, ft/s2 or in/s2", &text))?;
     let (line, text) = need("time_step")?;
     let time_step = parse_number(text.as_bytes())
         .filter(|step| *step > 0.0)

@@ -40,7 +40,7 @@ pub enum GroundError {
     /// A unit that no file uses.
     #[error(
         "motion.unit = {unit} m/s² is no unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
-         1 cm/s^2 or 1 mm/s^2"
+         1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"
     )]
     Unit {
         /// The unit asked for (m/s²).

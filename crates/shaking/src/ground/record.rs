@@ -136,14 +136,8 @@ pub(super) fn read_file(
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {
-    [
-        AccelerationUnit::G,
-        AccelerationUnit::TenthG,
-        AccelerationUnit::MetersPerSecondSquared,
-        AccelerationUnit::Gal,
-        AccelerationUnit::MillimetersPerSecondSquared,
-    ]
-    .into_iter()
-    .find(|unit| (unit.factor() / meters_per_second_squared - 1.0).abs() < 1e-6)
-    .ok_or(GroundError::Unit { unit: meters_per_second_squared })
+    AccelerationUnit::ALL
+        .into_iter()
+        .find(|unit| (unit.factor() / meters_per_second_squared - 1.0).abs() < 1e-6)
+        .ok_or(GroundError::Unit { unit: meters_per_second_squared })
 }

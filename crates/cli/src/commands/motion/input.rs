@@ -32,7 +32,8 @@ pub(super) struct Input {
     /// publishers, and combine their components.
     #[arg(long, conflicts_with = "join")]
     pub(super) allow_mixed: bool,
-    /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal or mm/s2.
+    /// Unit of acceleration where the file states none: g, g/10, m/s2, cm/s2, gal, mm/s2, ft/s2
+    /// or in/s2.
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
     /// Step where the file states none, such as "0.005 s".
@@ -293,14 +294,17 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
 
 /// A quantity with its unit in SI; the option is named where it is wrong.
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
+    let suggestion = Quantity::suggestion(text, &[dimension]);
     let example = match dimension {
+        // Where nothing is known to be better, the examples of the option.
+        _ if suggestion != dimension.example() => suggestion,
         Dimension::FREQUENCY => "0.1 Hz".to_owned(),
         Dimension::TIME if option == "--time-step" => "0.01 s".to_owned(),
         Dimension::TIME => "0.5 s".to_owned(),
         Dimension::LENGTH => "20 cm".to_owned(),
         Dimension::STIFFNESS_PER_LENGTH => "7 MPa".to_owned(),
         Dimension::NONE => "5 %".to_owned(),
-        other => other.example(),
+        _ => suggestion,
     };
     Quantity::parse_as(text, &[dimension])
         .map(|quantity| quantity.value)

@@ -70,8 +70,10 @@ impl Size {
     ) -> anyhow::Result<GroundMotion> {
         let period = quantity("--period", &self.period, Dimension::TIME)?;
         let dimensions = [Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH];
-        let peak = Quantity::parse_as(&self.peak, &dimensions)
-            .map_err(|error| anyhow::anyhow!("--peak: {error}; write for example \"0.4 g\""))?;
+        let peak = Quantity::parse_as(&self.peak, &dimensions).map_err(|error| {
+            let example = Quantity::suggestion(&self.peak, &dimensions);
+            anyhow::anyhow!("--peak: {error}; write for example \"{example}\"")
+        })?;
         let pulse = pulse(period)?;
         let measure = match peak.dimension {
             Dimension::ACCELERATION => IntensityMeasure::Pga,
