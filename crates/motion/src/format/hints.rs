@@ -26,6 +26,23 @@ impl<'a> Hints<'a> {
         Self { options, unit: no(), time_step: no(), sensitivity: no(), recorded: no() }
     }
 
+    /// All that the caller gave.
+    pub(super) fn options(&self) -> &'a ReadOptions {
+        self.options
+    }
+
+    /// Marks as used what another reader used of the same values.
+    pub(super) fn used_as(&self, other: &Hints<'_>) {
+        for (mine, theirs) in [
+            (&self.unit, &other.unit),
+            (&self.time_step, &other.time_step),
+            (&self.sensitivity, &other.sensitivity),
+            (&self.recorded, &other.recorded),
+        ] {
+            mine.set(mine.get() || theirs.get());
+        }
+    }
+
     pub(super) fn unit(&self) -> Option<AccelerationUnit> {
         self.unit.set(true);
         self.options.unit

@@ -1,15 +1,19 @@
 //! Readers of strong-motion files: each format in a file of its own, chosen from the bytes.
 
 mod afad;
+mod bbp;
 mod bhrc;
 mod cdmg;
 mod columns;
 mod cosmos;
+mod counts;
 mod csmip_v2;
+mod csmnc;
 mod cwa;
 mod esm;
 mod even;
 mod geonet;
+mod gse;
 mod hints;
 mod knet;
 mod miniseed;
@@ -22,9 +26,12 @@ mod place;
 mod quoted;
 mod refused;
 mod sac;
+mod sac_text;
 mod seed;
+mod seed_volume;
 mod smc;
 mod source;
+mod timeseries;
 mod unam;
 mod zip;
 
@@ -111,6 +118,7 @@ impl std::fmt::Debug for Format {
 pub const FORMATS: &[Format] = &[
     sac::FORMAT,
     miniseed::FORMAT,
+    seed_volume::FORMAT,
     native::FORMAT,
     npz::FORMAT,
     smc::FORMAT,
@@ -127,12 +135,38 @@ pub const FORMATS: &[Format] = &[
     cwa::FORMAT,
     unam::FORMAT,
     peer::FORMAT,
+    csmnc::FORMAT,
+    timeseries::FORMAT,
+    gse::FORMAT,
+    sac_text::FORMAT,
+    bbp::FORMAT,
     columns::FORMAT,
 ];
 
 /// Files that are known and refused, tried first.
-const KNOWN_OTHERS: &[Format] =
-    &[refused::HDF5, refused::XML, refused::USGS_BLOCKS, refused::SLAMMER];
+const KNOWN_OTHERS: &[Format] = &[
+    refused::HDF5,
+    refused::WEB_PAGE,
+    refused::XML,
+    refused::USGS_BLOCKS,
+    refused::SLAMMER,
+    refused::COSMOS_SPECTRA,
+    refused::EVT,
+    refused::WIN,
+    refused::SEISAN,
+    refused::MINISEED3,
+    refused::GSE1,
+    refused::SEGY,
+    refused::MATLAB,
+    refused::TDMS,
+    refused::NUMPY,
+    refused::PARQUET,
+    refused::NETCDF,
+    refused::OFFICE,
+    refused::PDF,
+    refused::PICTURE,
+    refused::PACKED,
+];
 
 /// Reads a strong-motion file of any format, also one inside a gzip or zip file; `name` is used in
 /// messages only.

@@ -88,3 +88,240 @@ fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     };
     Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }
+
+/// A format that is recognized by its first bytes and refused by its name.
+macro_rules! refused_by_name {
+    ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {
+        pub(crate) const $constant: Format = Format {
+            name: $name,
+            title: concat!($what, " (refused)"),
+            sniff: $fits,
+            read: |source, _| {
+                Err(source.error(
+                    (),
+                    Refusal::Unrecognized,
+                    "a format with a reader",
+                    concat!("a file of the format ", $what),
+                    $remedy,
+                ))
+            },
+        };
+    };
+}
+
+refused_by_name!(
+    EVT,
+    "evt",
+    "Kinemetrics EVT (Altus, Everest)",
+    is_evt,
+    "convert it to COSMOS or miniSEED with the recorder's own program and give that file"
+);
+refused_by_name!(
+    WIN,
+    "win",
+    "WIN or WIN32 (Japan)",
+    |source| is_win(source.bytes) || is_win32(source.bytes),
+    "convert it to SAC or miniSEED, with win2sac for example, and give that file with the \
+     sensitivity of each channel"
+);
+refused_by_name!(
+    SEISAN,
+    "seisan",
+    "SEISAN waveforms",
+    is_seisan,
+    "convert it to SAC or miniSEED with SEISAN's wavetool and give that file"
+);
+refused_by_name!(
+    MINISEED3,
+    "miniseed3",
+    "miniSEED 3",
+    |source| source.bytes.starts_with(b"MS\x03"),
+    "convert it to miniSEED 2 with mseedconvert and give that file"
+);
+refused_by_name!(
+    GSE1,
+    "gse1",
+    "GSE 1",
+    |source| source.raw(0).starts_with(b"WID1") || source.raw(0).starts_with(b"XW01"),
+    "convert it to GSE 2 with integers, or to SAC, and give that file"
+);
+refused_by_name!(
+    SEGY,
+    "segy",
+    "SEG-Y or SEG-2",
+    |source| {
+        let b = source.bytes;
+        // The text header of SEG-Y has 40 cards of 80 characters that begin with C, in EBCDIC or ASCII.
+        let cards = |c: u8| (0..40).all(|card| b.get(80 * card) == Some(&c));
+        cards(0xC3) || cards(b'C') || b.starts_with(&[0x55, 0x3A]) || b.starts_with(&[0x3A, 0x55])
+    },
+    "export the acceleration of the channel to plain columns with its unit and step"
+);
+refused_by_name!(
+    MATLAB,
+    "matlab",
+    "MATLAB",
+    |source| source.bytes.starts_with(b"MATLAB "),
+    "write time and acceleration from MATLAB to a CSV file with writematrix and give that"
+);
+refused_by_name!(
+    TDMS,
+    "tdms",
+    "TDMS (National Instruments)",
+    |source| source.bytes.starts_with(b"TDSm"),
+    "export time and acceleration to a CSV file and give that"
+);
+refused_by_name!(
+    NUMPY,
+    "npy",
+    "NumPy (one array)",
+    |source| source.bytes.starts_with(b"\x93NUMPY"),
+    "write time and acceleration with numpy.savetxt, one row to a sample, and give that file"
+);
+refused_by_name!(
+    PARQUET,
+    "parquet",
+    "Parquet",
+    |source| source.bytes.starts_with(b"PAR1"),
+    "write the table as CSV and give that file"
+);
+refused_by_name!(
+    NETCDF,
+    "netcdf",
+    "NetCDF",
+    |source| source.bytes.starts_with(b"CDF\x01") || source.bytes.starts_with(b"CDF\x02"),
+    "write time and acceleration to a CSV file and give that"
+);
+refused_by_name!(
+    OFFICE,
+    "office",
+    "Excel or Word before 2007",
+    |source| source.bytes.starts_with(&[0xD0, 0xCF, 0x11, 0xE0]),
+    "save the sheet as CSV, with time and acceleration in columns, and give that file"
+);
+refused_by_name!(
+    PDF,
+    "pdf",
+    "PDF",
+    |source| source.bytes.starts_with(b"%PDF"),
+    "give the data file of the record, not its description"
+);
+refused_by_name!(
+    PICTURE,
+    "picture",
+    "PNG, JPEG, GIF or TIFF (a picture)",
+    |source| {
+        [&b"\x89PNG"[..], b"\xFF\xD8\xFF", b"GIF8", b"II*\0", b"MM\0*"]
+            .iter()
+            .any(|magic| source.bytes.starts_with(magic))
+    },
+    "give the data file of the record, not a picture of it"
+);
+refused_by_name!(
+    PACKED,
+    "packed-otherwise",
+    "7z, RAR, bzip2, xz, zstd or compress (a packed file)",
+    |source| {
+        [
+            &b"7z\xBC\xAF\x27\x1C"[..],
+            b"Rar!\x1A\x07",
+            b"BZh91AY&SY",
+            b"\xFD7zXZ\0",
+            b"\x28\xB5\x2F\xFD",
+            b"\x1F\x9D",
+        ]
+        .iter()
+        .any(|magic| source.bytes.starts_with(magic))
+    },
+    "unpack it and give the record inside; zip, tar and gzip are unpacked here"
+);
+refused_by_name!(
+    WEB_PAGE,
+    "html",
+    "HTML (a web page)",
+    |source| {
+        // Some begin with a line that says XML.
+        (0..4).any(|line| {
+            let start = source.text(line).to_ascii_lowercase();
+            ["<!doctype html", "<html", "<head"].iter().any(|tag| start.starts_with(tag))
+        })
+    },
+    "the download gave a page in place of the record, often one that asks to log in; open it in a \
+     browser and download the record again"
+);
+
+/// COSMOS volume 3: response and Fourier spectra, which no motion can be made of.
+pub(crate) const COSMOS_SPECTRA: Format = Format {
+    name: "cosmos-v3",
+    title: "COSMOS volume 3 (refused)",
+    sniff: |source| {
+        source.has(0, "(Format v")
+            && ["SPECTR", "RESPONSE", "FOURIER"].iter().any(|word| source.has(0, word))
+    },
+    read: |source, _| {
+        Err(source.not_acceleration(
+            0,
+            "a COSMOS file of volume 0, 1 or 2",
+            "COSMOS volume 3, response and Fourier spectra",
+            "give the file of volume 1 or 2 of the same record",
+        ))
+    },
+};
+
+/// The tag at the head of a Kinemetrics file: `K`, byte order, version, instrument, and the kind of
+/// frame as a 32-bit number, 1 for the header of the file.
+fn is_evt(source: &Source<'_>) -> bool {
+    let Some(&[b'K', order @ 0..=1, version @ 0..=3, _, a, b, c, d]) =
+        source.bytes.first_chunk::<8>()
+    else {
+        return false;
+    };
+    let kind = [u32::from_be_bytes([a, b, c, d]), u32::from_le_bytes([a, b, c, d])];
+    (version > 0 || order > 0) && kind.contains(&1)
+}
+
+/// Whether bytes are a date and a time in binary-coded decimals: year, month, day, hour, minute,
+/// second.
+fn is_coded_time(bytes: &[u8]) -> bool {
+    let decimal =
+        |byte: u8| (byte >> 4 < 10 && byte & 15 < 10).then_some(10 * (byte >> 4) + (byte & 15));
+    let numbers: Option<Vec<u8>> = bytes.iter().map(|byte| decimal(*byte)).collect();
+    let Some(&[_, month, day, hour, minute, second]) = numbers.as_deref() else { return false };
+    (1..=12).contains(&month) && (1..=31).contains(&day) && hour < 24 && minute < 60 && second < 60
+}
+
+fn big_endian(bytes: &[u8], at: usize) -> Option<usize> {
+    let four = bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
+    usize::try_from(u32::from_be_bytes(four)).ok()
+}
+
+/// Blocks of one second, each with its length and its time; the second block is looked at too.
+///
+/// Spec: Urabe and Tsukada 1991, WIN format (Earthquake Research Institute, Tokyo).
+fn is_win(bytes: &[u8]) -> bool {
+    let timed = |at: usize| bytes.get(at + 4..at + 10).is_some_and(is_coded_time);
+    let Some(length) = big_endian(bytes, 0) else { return false };
+    let fits = (15..=bytes.len()).contains(&length) && timed(0);
+    fits && (length == bytes.len() || timed(length))
+}
+
+/// As WIN with four bytes of zeros before, and a time of eight bytes.
+fn is_win32(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0; 4]) && bytes.get(5..11).is_some_and(is_coded_time) && bytes.len() > 20
+}
+
+/// Unformatted Fortran: the first record is a line of 80 characters between its lengths.
+///
+/// Spec: Ottemöller, Voss and Havskov, SEISAN manual, appendix B.
+fn is_seisan(source: &Source<'_>) -> bool {
+    let b = source.bytes;
+    let line = |from: usize| {
+        b.get(from..from + 80).is_some_and(|line| line.iter().all(|c| (0x20..0x7F).contains(c)))
+    };
+    // Lengths of one byte (PC), four bytes in either order, or eight.
+    (b.starts_with(b"KP") && b.get(82) == Some(&b'P') && line(2))
+        || ((b.starts_with(&[80, 0, 0, 0]) || b.starts_with(&[0, 0, 0, 80])) && line(4))
+        || ((b.starts_with(&[80, 0, 0, 0, 0, 0, 0, 0])
+            || b.starts_with(&[0, 0, 0, 0, 0, 0, 0, 80]))
+            && line(8))
+}

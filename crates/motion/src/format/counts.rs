@@ -1,0 +1,121 @@
+//! Channels with SEED codes whose samples are counts, or stand in a unit that the file states.
+
+use super::source::Source;
+use super::{Hints, seed};
+use crate::direction::Direction;
+use crate::error::{Given, ReadError, Refusal};
+use crate::instrument::SeedName;
+use crate::record::{Channel, Quantity, Record};
+use crate::site::Site;
+use crate::units::MotionUnit;
+use crate::utc::Utc;
+
+/// The samples of one channel as they stand in a file.
+pub(super) struct Samples {
+    pub(super) codes: SeedName,
+    pub(super) start: Option<Utc>,
+    /// Step (s).
+    pub(super) time_step: f64,
+    pub(super) values: Vec<f64>,
+    /// What the file says of the unit.
+    pub(super) unit: Unit,
+    /// Where the channel points, where the file says more than its code.
+    pub(super) direction: Option<Direction>,
+}
+
+/// What a file says of the unit of its samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unit {
+    /// Counts of a digitizer.
+    Counts,
+    /// A unit of motion.
+    Motion(MotionUnit),
+}
+
+impl Unit {
+    /// The unit of a word such as `M/S**2`, `nm/s` or `COUNTS`; none where it is not known.
+    pub(super) fn of(word: &str) -> Option<Self> {
+        let plain = word.trim().to_ascii_lowercase();
+        if ["count", "counts", "ct", "cts", ""].contains(&plain.as_str()) {
+            return Some(Self::Counts);
+        }
+        MotionUnit::parse(&plain).map(Self::Motion)
+    }
+}
+
+/// A channel in m/s²: counts divided by the sensitivity that the caller knows, samples with a unit
+/// converted; velocities and displacements differentiated where the caller asks for it.
+///
+/// `format` is what messages call the file.
+pub(super) fn channel(
+    source: &Source<'_>,
+    record: &mut Record,
+    hints: &Hints<'_>,
+    format: &str,
+    samples: Samples,
+) -> Result<Channel, ReadError> {
+    let Samples { codes, start, time_step, values, unit, direction } = samples;
+    let name = codes.channel.clone();
+    // Metadata are for counts; a unit that the file states needs none.
+    let known = (unit == Unit::Counts).then(|| hints.instrument(&codes, start)).flatten();
+    let factor = match unit {
+        Unit::Counts => {
+            let sensitivity = known.map(|known| known.sensitivity).or_else(|| hints.sensitivity());
+            let sensitivity = sensitivity.ok_or_else(|| {
+                source.error(
+                    (),
+                    Refusal::Missing(Given::Sensitivity),
+                    format!("a sensitivity for channel {name} ({format} holds counts)"),
+                    hints.no_instrument(&codes, start),
+                    "state the counts per m/s2 from the station's StationXML (InstrumentSensitivity)",
+                )
+            })?;
+            record.notes.push(format!(
+                "channel {name}: counts divided by {sensitivity} counts per m/s2, as given"
+            ));
+            1.0 / sensitivity
+        }
+        Unit::Motion(MotionUnit { quantity, factor }) => {
+            // What the file states goes before the code of the channel.
+            if quantity != Quantity::Acceleration && hints.recorded().is_none() {
+                return Err(source.error(
+                    (),
+                    Refusal::OtherInstrument,
+                    "a channel of accelerations",
+                    format!("{name}, whose unit is one of {quantity}"),
+                    "give the accelerations of the same station, or state that this is to be \
+                     differentiated",
+                ));
+            }
+            factor
+        }
+    };
+    let values: Vec<f64> = values.iter().map(|value| value * factor).collect();
+    let accelerations =
+        matches!(unit, Unit::Motion(MotionUnit { quantity: Quantity::Acceleration, .. }));
+    let values = if accelerations {
+        values
+    } else {
+        seed::as_acceleration(source, record, hints, &codes, known, time_step, values)?
+    };
+    let direction = known
+        .and_then(|known| known.direction)
+        .or(direction)
+        .unwrap_or_else(|| Direction::parse(&name));
+    let station = [codes.network.as_str(), codes.station.as_str()];
+    let station = station.into_iter().filter(|code| !code.is_empty()).collect::<Vec<_>>().join(".");
+    let mut channel = Channel::new(name, direction, time_step, values);
+    channel.start = start;
+    channel.site = Site { station, sensor: codes.location, ..Site::default() };
+    if let Some(known) = known {
+        known.complete(&mut channel.site);
+    }
+    Ok(channel)
+}
+
+/// The stations of all channels, each once.
+pub(super) fn stations(record: &Record) -> String {
+    let mut all: Vec<&str> = record.channels.iter().map(|c| c.site.station.as_str()).collect();
+    all.dedup();
+    all.join(", ")
+}
