@@ -65,40 +65,33 @@ mod corners;
 mod direction;
 mod error;
 mod fault_axes;
-mod fiv3;
 mod format;
-mod fourier;
 mod ground_motion;
-mod history;
 mod horizontals;
 mod instrument;
-mod intensity;
 mod join;
-mod layers;
 mod matched;
 mod matching;
-mod math;
-mod normal_equations;
 mod people;
 mod process;
-mod pulse;
-mod pulse_class;
-mod pulse_fit;
-mod random;
 mod record;
-mod response;
 mod rotd;
-mod sampled;
 mod select;
 mod site;
 mod synthesis;
-mod target;
 mod told;
 mod units;
 mod utc;
 mod wavelets;
 pub mod write;
 
+// Known here by their own names, as the modules beside them are.
+use barrelstack_series::{
+    fourier, history, intensity, layers, math, normal_equations, pulse, pulse_class, random,
+    response, sampled, target,
+};
+
+pub use barrelstack_series::pulse_fit::{PulseFit, dominant_pulse};
 pub use bundled::{BUNDLED, bundled};
 pub use collection::{
     FlatRow, Flatfile, Measured, MeasuredComponent, MeasuredPair, RecordFiles, group_files,
@@ -121,7 +114,6 @@ pub use math::STANDARD_GRAVITY;
 pub use process::{MeanRemoval, Pads, Processed, Processing, Residuals};
 pub use pulse::Pulse;
 pub use pulse_class::{ClassifiedPulse, classify_component, classify_pair};
-pub use pulse_fit::{PulseFit, dominant_pulse};
 pub use random::Random;
 pub use record::{Channel, Quantity, Record, Stage, StatedPeak, Warning};
 pub use response::{ResponsePeaks, ResponseSpectrum, response, standard_periods};

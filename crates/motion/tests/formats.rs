@@ -495,12 +495,12 @@ fn stars_words_and_huge_numbers_are_refused_with_their_place() {
         let numeric: Vec<usize> = (0..lines.len())
             .filter(|&k| {
                 let text = lines[k].trim_ascii();
-                !text.is_empty() && text.iter().all(|b| b"0123456789.+-Ee, ".contains(b))
+                !text.is_empty() && text.iter().all(|b| b"0123456789.+-Ee, \t".contains(b))
             })
             .collect();
         let target = numeric[numeric.len() - 4];
         let line = String::from_utf8_lossy(&lines[target]).into_owned();
-        let start = line.find(|c: char| c.is_ascii_digit() || c == '-' || c == '.').unwrap();
+        let start = line.find(|c: char| c.is_ascii_digit() || "+-.".contains(c)).unwrap();
         let body = line.as_bytes();
         let mut end = start + 1;
         while end < body.len()

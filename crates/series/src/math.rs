@@ -1,8 +1,8 @@
 //! Transcendental functions with the same bits on every platform, from the pure-Rust `libm`.
 
-pub(crate) use std::f64::consts::{PI, TAU};
+pub use std::f64::consts::{PI, TAU};
 
-pub(crate) use libm::{
+pub use libm::{
     atan2, cos, erf, exp, hypot, log as ln, log10, pow as powf, sin, sincos as sin_cos, tan,
 };
 
@@ -10,23 +10,23 @@ pub(crate) use libm::{
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Integer power by repeated multiplication, in a fixed order.
-pub(crate) fn powi(x: f64, n: u32) -> f64 {
+pub fn powi(x: f64, n: u32) -> f64 {
     (0..n).fold(1.0, |product, _| product * x)
 }
 
 /// `n + 1` values from `first` to `last`, evenly spaced in the logarithm.
-pub(crate) fn log_space(first: f64, last: f64, n: usize) -> Vec<f64> {
+pub fn log_space(first: f64, last: f64, n: usize) -> Vec<f64> {
     let step = ln(last / first) / n as f64;
     (0..=n).map(|i| if i == n { last } else { first * exp(step * i as f64) }).collect()
 }
 
 /// Largest absolute value, 0 for an empty slice.
-pub(crate) fn peak(values: &[f64]) -> f64 {
+pub fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
 }
 
 /// Takes the mean off and gives it.
-pub(crate) fn take_mean(values: &mut [f64]) -> f64 {
+pub fn take_mean(values: &mut [f64]) -> f64 {
     let mean = mean(values);
     for value in values {
         *value -= mean;
@@ -35,12 +35,12 @@ pub(crate) fn take_mean(values: &mut [f64]) -> f64 {
 }
 
 /// Arithmetic mean, 0 for an empty slice.
-pub(crate) fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
 }
 
 /// Trapezoid integral of equally spaced values.
-pub(crate) fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
+pub fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
     let mut sum = 0.0;
     let mut previous: Option<f64> = None;
     for value in values {
@@ -53,7 +53,7 @@ pub(crate) fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
 }
 
 /// Piecewise-linear interpolation through points of ascending abscissa, held at both ends.
-pub(crate) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+pub fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let n = x.len().min(y.len());
     if n == 0 {
         return 0.0;

@@ -11,7 +11,7 @@ use crate::response::{TOGETHER, larger};
 const LAYER_STEPS: f64 = 40.0;
 
 /// A piecewise-linear acceleration averaged around the samples of ever coarser steps.
-pub(crate) struct Layers {
+pub struct Layers {
     time_step: f64,
     /// At 1, 2, 4, ... steps, means weighted by a triangle of two such steps: what oscillators receive whose
     /// impulse response is linear between the samples.
@@ -20,7 +20,7 @@ pub(crate) struct Layers {
 
 impl Layers {
     /// Layers of accelerations (m/s²) of step `time_step` (s) for periods up to `longest` (s).
-    pub(crate) fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
+    pub fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
         let mut layers = vec![averaged(acceleration, 1, [4.0 / 6.0, 1.0 / 6.0])];
         let mut step = 2.0 * time_step;
         while step * LAYER_STEPS <= longest {
@@ -34,7 +34,7 @@ impl Layers {
     /// Lets oscillators of up to [`TOGETHER`] ascending periods (s) follow the motion; `see` is given the
     /// number of the motion's sample and the pseudo-accelerations (m/s²) there, sample by sample.
     #[inline]
-    pub(crate) fn follow(
+    pub fn follow(
         &self,
         periods: &[f64],
         damping: f64,
@@ -70,7 +70,7 @@ impl Layers {
     }
 
     /// Peak pseudo-accelerations (m/s²) at ascending periods (s).
-    pub(crate) fn pseudo_accelerations(&self, periods: &[f64], damping: f64) -> Vec<f64> {
+    pub fn pseudo_accelerations(&self, periods: &[f64], damping: f64) -> Vec<f64> {
         let mut out = Vec::with_capacity(periods.len());
         for some in periods.chunks(TOGETHER) {
             let mut peaks = [0.0_f64; TOGETHER];

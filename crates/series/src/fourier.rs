@@ -7,28 +7,33 @@ use crate::math::{self, TAU};
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Complex {
-    pub(crate) re: f64,
-    pub(crate) im: f64,
+pub struct Complex {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
 }
 
 impl Complex {
-    pub(crate) fn norm(self) -> f64 {
+    /// Returns the absolute value.
+    pub fn norm(self) -> f64 {
         (self.re * self.re + self.im * self.im).sqrt()
     }
 
-    pub(crate) fn times(self, factor: f64) -> Self {
+    /// Multiplies by a real factor.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
     }
 }
 
 /// In-place forward transform `X[k] = Σ x[n] exp(-2πi kn/N)`; the length is a power of two.
-pub(crate) fn forward(values: &mut [Complex]) {
+pub fn forward(values: &mut [Complex]) {
     transform(values, -1.0);
 }
 
 /// In-place inverse transform, including the division by the length.
-pub(crate) fn inverse(values: &mut [Complex]) {
+pub fn inverse(values: &mut [Complex]) {
     transform(values, 1.0);
     let factor = 1.0 / values.len() as f64;
     for value in values {
@@ -77,7 +82,7 @@ fn transform(values: &mut [Complex], sign: f64) {
 
 /// Correlation of a series with another at every shift, from their transforms; where the second is real,
 /// the real and the imaginary part of the first keep apart.
-pub(crate) fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
+pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     let mut product: Vec<Complex> = series
         .iter()
         .zip(kernel)
@@ -88,7 +93,7 @@ pub(crate) fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> 
 }
 
 /// Transform of real values, padded with zeros to `length` (a power of two).
-pub(crate) fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
+pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     let mut padded: Vec<Complex> = values.iter().map(|&re| Complex { re, im: 0.0 }).collect();
     padded.resize(length, Complex::default());
     forward(&mut padded);
@@ -97,7 +102,7 @@ pub(crate) fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
 
 /// Multiplies the transform of a real signal of step `time_step` by a real gain of frequency (Hz),
 /// which keeps every phase.
-pub(crate) fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
+pub fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
     let n = spectrum.len();
     for k in 0..=n / 2 {
         let g = gain(k as f64 / (n as f64 * time_step));

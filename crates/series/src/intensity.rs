@@ -119,7 +119,10 @@ impl IntensityMeasure {
 
     /// The factor on a motion that brings this measure to `target` (SI units); `value` gives the
     /// measure of the motion times a factor, `name` is the motion's.
-    pub(crate) fn factor(
+    ///
+    /// # Errors
+    /// When the measure does not grow with the motion, or is zero.
+    pub fn factor(
         self,
         target: f64,
         name: &str,

@@ -243,7 +243,7 @@ impl Pulse {
 
     /// The pulse with time times `time` and acceleration times `factor`.
     #[must_use]
-    pub(crate) fn stretched(&self, time: f64, factor: f64) -> Self {
+    pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let mut pulse = *self;
         let (amplitude, kind) = pulse.amplitude_mut();
         *amplitude *= match kind {
@@ -349,7 +349,7 @@ fn half_cosine(x: f64, length: f64, direction: f64) -> (f64, f64, f64) {
 
 /// The root φ in (0, π/4) of
 /// `cos((2n+1)π - φ) + ((2n+1)π - 2φ) sin φ - cos φ = 0`, that is `((2n+1)π - 2φ) tan φ = 2`.
-pub(crate) fn cycloid_c_phase(cycles: u32) -> f64 {
+pub fn cycloid_c_phase(cycles: u32) -> f64 {
     let turn = (2.0 * f64::from(cycles) + 1.0) * PI;
     let mut phase = 2.0 / turn;
     // Newton from the small-angle root; the error squares each time and starts below 0.02.

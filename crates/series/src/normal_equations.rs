@@ -5,19 +5,20 @@ const RIDGE: f64 = 1e-4;
 
 /// Normal equations `(CᵀC + λI) b = Cᵀ r` of many demands on few wavelets, solved by Cholesky
 /// factors.
-pub(crate) struct System {
+pub struct System {
     size: usize,
     normal: Vec<f64>,
     right: Vec<f64>,
 }
 
 impl System {
-    pub(crate) fn new(size: usize) -> Self {
+    /// Creates a system without rows for `size` unknowns.
+    pub fn new(size: usize) -> Self {
         Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
     }
 
     /// Adds one demand: its row and what is demanded.
-    pub(crate) fn add(&mut self, row: &[f64], value: f64) {
+    pub fn add(&mut self, row: &[f64], value: f64) {
         for j in 0..self.size {
             self.right[j] += row[j] * value;
             let sums = &mut self.normal[j * self.size..][..=j];
@@ -28,7 +29,7 @@ impl System {
     }
 
     /// The unknowns.
-    pub(crate) fn solve(mut self) -> Vec<f64> {
+    pub fn solve(mut self) -> Vec<f64> {
         let n = self.size;
         let m = &mut self.normal;
         let largest = (0..n).map(|k| m[k * n + k]).fold(0.0, f64::max);

@@ -39,12 +39,12 @@ impl Kinematics {
 /// held and the displacement grows linearly.
 ///
 /// ```
-/// use barrelstack_motion::Sampled;
+/// use barrelstack_series::Sampled;
 /// let ramp = Sampled::new(0.5, vec![0.0, 1.0, 2.0])?;
 /// let middle = ramp.at(0.75);
 /// assert_eq!(middle.acceleration, 1.5);
 /// assert_eq!(middle.velocity, 0.75 * 0.75);
-/// # Ok::<(), barrelstack_motion::MotionError>(())
+/// # Ok::<(), barrelstack_series::MotionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
@@ -95,7 +95,10 @@ impl Sampled {
     }
 
     /// Refuses another component with another step.
-    pub(crate) fn require_step(&self, other: &Self) -> Result<(), MotionError> {
+    ///
+    /// # Errors
+    /// When they differ.
+    pub fn require_step(&self, other: &Self) -> Result<(), MotionError> {
         let (one, two) = (self.time_step, other.time_step);
         if (two / one - 1.0).abs() > 1e-9 {
             let what = format!("one horizontal has a step of {one} s, the other of {two} s");
@@ -190,7 +193,7 @@ impl Sampled {
 
     /// The same motion with time times `time` and acceleration times `factor`.
     #[must_use]
-    pub(crate) fn stretched(&self, time: f64, factor: f64) -> Self {
+    pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let times = |values: &[f64], f: f64| values.iter().map(|v| v * f).collect();
         Self {
             time_step: self.time_step * time,
@@ -202,7 +205,7 @@ impl Sampled {
 }
 
 /// The integral of sampled values up to every sample, by trapezoids from 0.
-pub(crate) fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
+pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let after = values.windows(2).map(|pair| {
         sum += 0.5 * time_step * (pair[0] + pair[1]);
@@ -212,7 +215,7 @@ pub(crate) fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
 }
 
 /// Velocity and displacement at the samples of a piecewise-linear acceleration.
-pub(crate) fn integrate(
+pub fn integrate(
     time_step: f64,
     acceleration: &[f64],
     initial_velocity: f64,

@@ -21,7 +21,7 @@ pub struct ResponsePeaks {
 /// Coefficients that carry `(u, u̇)` over one step exactly when the load is linear inside it
 /// (Nigam and Jennings 1969, BSSA 59:909-922).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Step {
+pub struct Step {
     displacement: [f64; 4],
     velocity: [f64; 4],
     frequency: f64,
@@ -29,7 +29,8 @@ pub(crate) struct Step {
 }
 
 impl Step {
-    pub(crate) fn new(period: f64, damping: f64, time_step: f64) -> Self {
+    /// Creates the step of an oscillator of a period (s) and a damping ratio.
+    pub fn new(period: f64, damping: f64, time_step: f64) -> Self {
         let w = TAU / period;
         let q = (1.0 - damping * damping).sqrt();
         let decay = math::exp(-damping * w * time_step);
@@ -70,7 +71,7 @@ impl Step {
 
     /// Relative displacement and velocity one step later; `load` is minus the ground acceleration.
     #[inline]
-    pub(crate) fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
+    pub fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
         let d = &self.displacement;
         let r = &self.velocity;
         (
@@ -87,7 +88,10 @@ impl Step {
 }
 
 /// Checks a period (s, zero allowed) and a damping ratio (0 up to but not including 1).
-pub(crate) fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
+///
+/// # Errors
+/// When one of them is out of its range.
+pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     let real = period >= 0.0 && period.is_finite();
     MotionError::require(real, "oscillator period (s)", "0 or above", period)?;
     let swings = (0.0..1.0).contains(&damping);
@@ -137,20 +141,22 @@ pub fn response(
 }
 
 /// Oscillators that advance side by side: what one waits for, the others fill.
-pub(crate) const TOGETHER: usize = 8;
+pub const TOGETHER: usize = 8;
 
 /// Oscillators of several periods in step with one another; each has the bits of one alone.
-pub(crate) struct Bank {
+pub struct Bank {
     /// Coefficient by coefficient, as [`Step`] has them for one oscillator.
     displacement: [[f64; TOGETHER]; 4],
     velocity: [[f64; TOGETHER]; 4],
-    pub(crate) u: [f64; TOGETHER],
-    pub(crate) v: [f64; TOGETHER],
+    /// Relative displacements.
+    pub u: [f64; TOGETHER],
+    /// Relative velocities.
+    pub v: [f64; TOGETHER],
 }
 
 impl Bank {
     /// Oscillators at rest; where there are fewer than [`TOGETHER`], the last stands for the rest.
-    pub(crate) fn new(steps: &[Step]) -> Self {
+    pub fn new(steps: &[Step]) -> Self {
         let lane = |k: usize| &steps[k.min(steps.len() - 1)];
         let of = |take: fn(&Step) -> &[f64; 4]| {
             std::array::from_fn(|c| std::array::from_fn(|k| take(lane(k))[c]))
@@ -165,7 +171,7 @@ impl Bank {
 
     /// As [`Step::advance`].
     #[inline]
-    pub(crate) fn advance(&mut self, load: f64, next: f64) {
+    pub fn advance(&mut self, load: f64, next: f64) {
         let (d, r) = (&self.displacement, &self.velocity);
         for k in 0..TOGETHER {
             let (u, v) = (self.u[k], self.v[k]);
@@ -177,12 +183,12 @@ impl Bank {
 
 /// The larger in size; plain, so that it can be done for several side by side.
 #[inline]
-pub(crate) fn larger(peak: f64, value: f64) -> f64 {
+pub fn larger(peak: f64, value: f64) -> f64 {
     if value.abs() > peak { value.abs() } else { peak }
 }
 
 /// Pseudo-accelerations (m/s²) at periods above zero, bit for bit those of [`response`].
-pub(crate) fn pseudo_accelerations(
+pub fn pseudo_accelerations(
     time_step: f64,
     acceleration: &[f64],
     periods: &[f64],

@@ -1,0 +1,31 @@
+//! Time series of ground motion: samples and their exact integrals, analytic pulses, response spectra,
+//! intensity measures, target spectra, and the transforms behind them.
+//!
+//! Numbers are SI and carry no names: files, stations and components belong to `barrelstack-motion`, which
+//! gives out what users need of this crate under its own name.
+
+// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
+)]
+
+mod error;
+mod fiv3;
+pub mod fourier;
+pub mod history;
+pub mod intensity;
+pub mod layers;
+pub mod math;
+pub mod normal_equations;
+pub mod pulse;
+pub mod pulse_class;
+pub mod pulse_fit;
+pub mod random;
+pub mod response;
+pub mod sampled;
+pub mod target;
+pub mod words;
+
+pub use error::MotionError;
