@@ -12,7 +12,7 @@ use crate::math::{self, TAU};
 /// The generator of all synthetic motions.
 ///
 /// ```
-/// use barrelstack_series::Random;
+/// use barrelstack_series::random::Random;
 /// let (mut one, mut two) = (Random::new(7), Random::new(7));
 /// assert_eq!(one.uniform(), two.uniform());
 /// ```

@@ -39,7 +39,7 @@ impl Kinematics {
 /// held and the displacement grows linearly.
 ///
 /// ```
-/// use barrelstack_series::Sampled;
+/// use barrelstack_series::sampled::Sampled;
 /// let ramp = Sampled::new(0.5, vec![0.0, 1.0, 2.0])?;
 /// let middle = ramp.at(0.75);
 /// assert_eq!(middle.acceleration, 1.5);

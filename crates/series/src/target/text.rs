@@ -109,7 +109,7 @@ impl<'a> Parameters<'a> {
 /// `ec8:ag=0.3,site=B`, `nch433:zone=2,soil=D`, `nch2745:zone=2,soil=II`, `nzs1170:z=0.3,site=C` or `ac156:sds=1`.
 ///
 /// ```
-/// use barrelstack_series::TargetSpectrum;
+/// use barrelstack_series::target::TargetSpectrum;
 /// let target: TargetSpectrum = "ec8:ag=0.3,site=B,damping=0.02".parse()?;
 /// assert_eq!(target.damping(), 0.02);
 /// assert!("ec8:ag=0.3".parse::<TargetSpectrum>().unwrap_err().to_string().starts_with("ec8: site is missing: "));
