@@ -11,6 +11,8 @@ pub enum Refusal {
     NotAcceleration,
     /// The file contradicts itself or its format: cut, overflown, counted wrong, not a number.
     Damaged,
+    /// The archive holds several records, of which one must be named.
+    SeveralRecords,
     /// The file does not say something that must be known and was not given by the caller.
     Missing(Given),
     /// The channel is of another instrument than an accelerometer; the caller may have it

@@ -41,6 +41,7 @@
 //!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
 //!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
+//! - Archives as downloaded: [`read`] takes one record, [`Archive`] its files.
 //! - Many records: [`group_files`], [`measure`], [`Flatfile`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
@@ -58,6 +59,7 @@
 mod printed;
 
 mod align;
+mod archive;
 mod bundled;
 mod changed;
 mod collection;
@@ -91,6 +93,7 @@ use barrelstack_series::{
     response, sampled, target,
 };
 
+pub use archive::Archive;
 pub use barrelstack_series::pulse_fit::{PulseFit, dominant_pulse};
 pub use bundled::{BUNDLED, bundled};
 pub use collection::{

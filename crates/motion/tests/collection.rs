@@ -72,3 +72,22 @@ fn what_is_wrong_is_told_with_its_line_and_column() {
     );
     assert!(told("a,b\n").contains("a column \"Record Sequence Number\""));
 }
+
+#[test]
+fn components_are_grouped_by_the_names_that_networks_give_them() {
+    let groups = |files: &[&str]| -> Vec<usize> {
+        let files: Vec<String> = files.iter().map(|file| (*file).to_owned()).collect();
+        group_files(&files).iter().map(|record| record.files.len()).collect()
+    };
+    // AFAD, the Broadband Platform, CSMNC, and names by hand.
+    assert_eq!(
+        groups(&["2020_9999_ap_Acc_E.asc", "2020_9999_ap_Acc_N.asc", "2020_9999_ap_Acc_U.asc"]),
+        [3]
+    );
+    assert_eq!(groups(&["s01.000", "s01.090", "s01.ver", "s02.000"]), [3, 1]);
+    assert_eq!(groups(&["00AAA200101EW.dat", "00AAA200101NS.dat", "00AAA200101UD.dat"]), [3]);
+    assert_eq!(groups(&["site-EW.csv", "site-NS.csv", "other-EW.csv"]), [1, 2]);
+    // Words that end in these letters are no components, nor are files of other kinds.
+    assert_eq!(groups(&["NAPAE.txt", "NAPAN.txt", "news.txt"]), [1, 1, 1]);
+    assert_eq!(groups(&["site_E.txt", "site_N.csv"]), [1, 1]);
+}

@@ -5,7 +5,9 @@
 use std::io::{Cursor, Write as _};
 use std::path::Path;
 
-use barrelstack_motion::{Channel, Direction, ReadOptions, Record, Refusal, bundled, read, write};
+use barrelstack_motion::{
+    Archive, Channel, Direction, ReadOptions, Record, Refusal, bundled, read, write,
+};
 
 fn bytes(file: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file)).unwrap()
@@ -92,15 +94,119 @@ fn archives_that_hold_no_single_record_are_refused_in_words() {
         assert!(error.contains(word), "{word}: {error}");
     };
     let at2 = bytes("peer/nga-west2.AT2");
-    refused(
-        &zipped(&[("a.AT2", at2.as_slice()), ("b.AT2", at2.as_slice())]),
-        "2 files (a.AT2, b.AT2)",
-    );
     refused(&zipped(&[]), "expected");
+    refused(&zipped(&[("[Content_Types].xml", b"<x/>"), ("xl/a.xml", b"<x/>")]), "as CSV");
+    refused(&zipped(&[("a.pdf", b"%PDF-1.4"), ("b.txt", b"no numbers")]), "2 files without one");
     let gz = gzipped(&at2);
     refused(&gz[..gz.len() / 2], "can be unpacked");
     // 200 MB of zeros in 200 kB.
     refused(&gzipped(&vec![b'0'; 200 << 20]), "at most 12 MB");
     // An archive in an archive is not opened.
     refused(&gzipped(&gz), "expected");
+}
+
+fn tarred(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut out = tar::Builder::new(Vec::new());
+    for (name, bytes) in files {
+        let mut header = tar::Header::new_gnu();
+        header.set_size(bytes.len() as u64);
+        header.set_mode(0o644);
+        out.append_data(&mut header, name, *bytes).unwrap();
+    }
+    out.into_inner().unwrap()
+}
+
+/// Three components of one station as AFAD names them, and what lies beside them in a download.
+fn three() -> Vec<(String, Vec<u8>)> {
+    let east = String::from_utf8(bytes("esm/example.ACC.ASC")).unwrap();
+    let component = |letter: &str, stream: &str| {
+        (
+            format!("20200101000000_9999_ap_Acc_{letter}.asc"),
+            east.replace("STREAM: HNE", &format!("STREAM: {stream}")).into_bytes(),
+        )
+    };
+    vec![
+        component("E", "HNE"),
+        component("N", "HNN"),
+        component("U", "HNZ"),
+        ("README.txt".to_owned(), b"Cite the network.\nThank you.\n".to_vec()),
+    ]
+}
+
+fn named(files: &[(String, Vec<u8>)]) -> Vec<(&str, &[u8])> {
+    files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())).collect()
+}
+
+#[test]
+fn the_components_of_one_record_in_an_archive_are_one_record_that_says_so() {
+    let files = three();
+    let files = named(&files);
+    let tar = tarred(&files);
+    let nested = zipped(&[("station.zip", zipped(&files).as_slice())]);
+    for (archive, name) in [
+        (zipped(&files), "download.zip"),
+        (gzipped(&tar), "download.tar.gz"),
+        (tar, "download.tar"),
+        (nested, "event.zip"),
+    ] {
+        let record = given(&archive, name);
+        let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["HNE", "HNN", "HNZ"], "{name}");
+        assert_eq!(record.file, name);
+        let said = record.notes.join("; ");
+        assert!(said.contains("Acc_E.asc"), "{said}");
+        assert!(said.contains("left out") && said.contains("README.txt"), "{said}");
+    }
+}
+
+#[test]
+fn an_archive_of_several_records_names_them_and_gives_each_by_its_path() {
+    let at2 = bytes("peer/nga-west2.AT2");
+    let archive =
+        zipped(&[("a/RSN1_X360.AT2", at2.as_slice()), ("a/RSN2_Y360.AT2", at2.as_slice())]);
+    let error = read(&archive, "set.zip", &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.refusal, Refusal::SeveralRecords, "{error}");
+    for word in ["RSN1_X", "RSN2_Y", "such as set.zip/a/RSN1_X360.AT2"] {
+        assert!(error.to_string().contains(word), "{error}");
+    }
+    let (path, inner) = Archive::path_inside(Path::new("d/set.zip/a/RSN1_X360.AT2")).unwrap();
+    assert_eq!((path.as_path(), inner.as_str()), (Path::new("d/set.zip"), "a/RSN1_X360.AT2"));
+    assert_eq!(Archive::path_inside(Path::new("d/set.zip")), None);
+    let opened = Archive::open(archive, "set.zip").unwrap().unwrap();
+    assert_eq!(opened.names().unwrap(), ["a/RSN1_X360.AT2", "a/RSN2_Y360.AT2"]);
+    assert_eq!(opened.file(&inner).unwrap(), at2);
+    let error = opened.file("b").unwrap_err();
+    assert!(error.to_string().contains("RSN2_Y360"), "{error}");
+}
+
+#[test]
+fn counts_in_an_archive_find_the_sensitivity_beside_them() {
+    let xml = br#"<FDSNStationXML><Network code="ZZ"><Station code="XXXX"><Channel code="HNE" locationCode="00">
+        <Latitude>38.1</Latitude><Longitude>27.1</Longitude><Elevation>1</Elevation><Azimuth>90</Azimuth><Dip>0</Dip>
+        <Response><InstrumentSensitivity><Value>4278.19</Value><InputUnits><Name>m/s**2</Name></InputUnits>
+        </InstrumentSensitivity></Response></Channel></Station></Network></FDSNStationXML>"#;
+    let counts = bytes("miniseed/steim1.mseed");
+    let archive = tarred(&[("a.mseed", counts.as_slice()), ("a.xml", xml)]);
+    let known = ReadOptions { sensitivity: Some(4278.19), ..ReadOptions::default() };
+    let open = read(&counts, "a.mseed", &known).unwrap();
+    let record = given(&archive, "a.tar");
+    assert_eq!(record.channels[0].acceleration, open.channels[0].acceleration);
+    // Without it the question is the one that the file alone would give.
+    let bare = read(&tarred(&[("a.mseed", counts.as_slice())]), "a.tar", &ReadOptions::default());
+    assert!(matches!(bare.unwrap_err().refusal, Refusal::Missing(_)));
+}
+
+#[test]
+fn a_damaged_archive_is_refused_and_never_read_in_part() {
+    let files = three();
+    let files = named(&files);
+    for whole in [zipped(&files), tarred(&files), gzipped(&tarred(&files))] {
+        for keep in (0..whole.len()).step_by(whole.len() / 40) {
+            let cut = read(&whole[..keep], "cut", &ReadOptions::default());
+            // A tar archive that ends behind a file is whole as far as it can be known.
+            if let Ok(record) = cut {
+                assert!(record.channels.iter().all(|channel| channel.acceleration.len() > 100));
+            }
+        }
+    }
 }

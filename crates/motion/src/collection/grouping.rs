@@ -21,7 +21,10 @@ pub struct RecordFiles {
 ///   names that end in `.AT2` by what stands before an azimuth, `-E` or `-UP`;
 /// - `AOM0011801241951.EW`, `.NS` and `.UD`, and those of a borehole (`.EW1`) apart from those of the
 ///   surface (`.EW2`);
-/// - names with a SEED channel such as `HNE` between dots, dashes or underscores.
+/// - names with a SEED channel such as `HNE` between dots, dashes or underscores;
+/// - other names that end, before their ending, in `_E`, `_N` and `_U` (or `_Z`), as AFAD's do, or in
+///   `_EW`, `_NS` and `_UD`, with a dash or a dot too, and those of CSMNC, whose number goes before;
+/// - names that end in `.000`, `.090` and `.ver`, as those of the Broadband Platform do.
 ///
 /// Any other file is a record of its own.
 /// Whether the channels do belong together is for [`crate::Record::gather`] to tell.
@@ -78,7 +81,31 @@ fn key(file: &str) -> (String, String) {
             return (format!("{name}.knet"), name);
         }
     }
-    seed(file).map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
+    if matches!(ending.as_str(), "000" | "090" | "VER") {
+        return (format!("{stem}.bbp"), stem);
+    }
+    let named = seed(file).or_else(|| {
+        let (name, ending) = (direction_off(&stem)?, file.get(stem.len()..)?);
+        Some(format!("{name}?{ending}"))
+    });
+    named.map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
+}
+
+/// A name without the direction that it ends in: one letter or two behind a mark, two behind a digit.
+fn direction_off(stem: &str) -> Option<&str> {
+    let upper = stem.to_ascii_uppercase();
+    let marked = |direction: &&str| {
+        let before = upper.strip_suffix(*direction).unwrap_or_default();
+        before.len() > 1 && before.ends_with(['_', '-', '.'])
+    };
+    let numbered = |direction: &&str| {
+        let before = upper.strip_suffix(*direction).unwrap_or_default();
+        direction.len() == 2 && before.ends_with(|c: char| c.is_ascii_digit())
+    };
+    let found = ["EW", "NS", "UD", "E", "N", "U", "Z"]
+        .into_iter()
+        .find(|direction| marked(direction) || numbered(direction))?;
+    stem.get(..stem.len() - found.len())
 }
 
 /// A name of PEER's without its component.

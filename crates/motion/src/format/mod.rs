@@ -33,7 +33,7 @@ mod smc;
 mod source;
 mod timeseries;
 mod unam;
-mod zip;
+pub(crate) mod zip;
 
 use crate::error::{ReadError, Refusal};
 use crate::instrument::Instrument;
@@ -41,6 +41,7 @@ use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Quantity, Record};
 use crate::units::AccelerationUnit;
 use hints::Hints;
+pub(crate) use packed::LARGEST as LARGEST_UNPACKED;
 use source::{LARGEST_ACCELERATION, Place, parse_number};
 pub(crate) use source::{Printed, Source, quoted, shorten};
 
@@ -168,8 +169,12 @@ const KNOWN_OTHERS: &[Format] = &[
     refused::PACKED,
 ];
 
-/// Reads a strong-motion file of any format, also one inside a gzip or zip file; `name` is used in
-/// messages only.
+/// Reads a strong-motion file of any format, also one inside gzip, and the one record of a zip, tar or
+/// tar.gz archive; `name` is used in messages only.
+///
+/// The components of a record may lie in several files of an archive; its notes say which, and what was
+/// left out. An archive of several records is refused ([`Refusal::SeveralRecords`]): [`crate::Archive`]
+/// gives its files one by one.
 ///
 /// # Errors
 /// If no format fits, the file holds no acceleration, is damaged, or lacks a unit, step or
@@ -188,14 +193,10 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     let source = Source::new(name, bytes);
     check_bytes(&source)?;
     check_options(&source, options)?;
-    if let Some((bytes, inside)) = packed::unpack(&source)? {
-        let inside = Source::new(&inside, &bytes);
-        check_bytes(&inside)?;
-        let mut record = read_any(&inside, options)?;
-        name.clone_into(&mut record.file);
-        return Ok(record);
+    match packed::read(&source, options)? {
+        Some(record) => Ok(record),
+        None => read_any(&source, options),
     }
-    read_any(&source, options)
 }
 
 /// Reads bytes that are not packed.

@@ -24,13 +24,7 @@ enum Array {
 }
 
 fn sniff(source: &Source<'_>) -> bool {
-    is_numpy(source)
-}
-
-pub(super) fn is_numpy(source: &Source<'_>) -> bool {
-    // The name of the first file of the archive stands 30 bytes behind its beginning.
-    let name = source.bytes.get(30..source.bytes.len().min(200)).unwrap_or(&[]);
-    source.bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
+    zip::is_numpy(source.bytes)
 }
 
 fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {

@@ -1,59 +1,226 @@
-//! One record inside a gzip or zip file.
+//! Records inside gzip, zip and tar.
 
 use std::io::Read;
 
 use super::source::{Source, shorten};
-use super::zip;
-use crate::error::{ReadError, Refusal};
+use super::{ReadOptions, check_bytes, read_any};
+use crate::archive::Archive;
+use crate::collection::{RecordFiles, group_files};
+use crate::error::{Given, ReadError, Refusal};
+use crate::instrument::station_xml;
+use crate::record::Record;
 
 /// Most bytes that are unpacked, lest a few packed bytes take all memory: lines of one digit take sixteen
 /// times their size while they are read, 192 MB of as many as this; 64 MB of them would take 1 GB.
 /// An hour of one component at 100 Hz has a quarter of it as text.
-const LARGEST: u64 = 12 << 20;
+pub(crate) const LARGEST: u64 = 12 << 20;
 
-/// The bytes of the one file inside, and its name; nothing where the file is not packed.
-pub(super) fn unpack(source: &Source<'_>) -> Result<Option<(Vec<u8>, String)>, ReadError> {
-    if source.bytes.starts_with(&[0x1F, 0x8B]) {
-        let inside = flate2::read::MultiGzDecoder::new(source.bytes);
-        let name = source.name.strip_suffix(".gz").unwrap_or(source.name);
-        return Ok(Some((all(source, inside)?, name.to_owned())));
-    }
-    if !source.bytes.starts_with(b"PK\x03\x04") || super::npz::is_numpy(source) {
+/// The record of a packed file; nothing where the file is not packed.
+pub(super) fn read(
+    source: &Source<'_>,
+    options: &ReadOptions,
+) -> Result<Option<Record>, ReadError> {
+    let packed = [&b"PK"[..], &[0x1F, 0x8B]].iter().any(|magic| source.bytes.starts_with(magic));
+    // Bytes are copied only where they may be an archive; tar has a name and a checksum at its head.
+    let tar = source.bytes.get(257..262) == Some(b"ustar");
+    if !packed && !tar {
         return Ok(None);
     }
-    let entries = zip::entries(source.bytes).map_err(|found| damaged(source, &found))?;
-    // Folders, and what one system adds about its own files, are no records.
-    let files: Vec<zip::Entry<'_>> = entries
-        .into_iter()
-        .filter(|entry| !entry.name.ends_with('/') && !entry.name.starts_with("__MACOSX"))
-        .collect();
-    let [file] = files.as_slice() else {
-        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
-        return Err(source.error(
-            (),
-            Refusal::Unrecognized,
-            "an archive of one file",
-            format!("{} files ({})", files.len(), shorten(&names.join(", "))),
-            "unpack it and give the files of one record",
-        ));
-    };
-    let bytes = file.unpack(LARGEST).map_err(|found| damaged(source, &found))?;
-    Ok(Some((bytes, format!("{}/{}", source.name, file.name))))
+    if let Some(archive) = Archive::open(source.bytes.to_vec(), source.name)? {
+        return from_archive(source, &archive, options).map(Some);
+    }
+    if !source.bytes.starts_with(&[0x1F, 0x8B]) {
+        return Ok(None);
+    }
+    let inside = flate2::read::MultiGzDecoder::new(source.bytes);
+    let name = source.name.strip_suffix(".gz").unwrap_or(source.name);
+    let mut record = unpacked(&all(source, inside)?, name, options)?;
+    source.name.clone_into(&mut record.file);
+    Ok(Some(record))
 }
 
-fn damaged(source: &Source<'_>, found: &str) -> ReadError {
-    source.damaged(
+/// A file that was packed; what is packed twice is not opened.
+fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
+    let inside = Source::new(name, bytes);
+    check_bytes(&inside)?;
+    read_any(&inside, options)
+}
+
+/// The one record of an archive: its files are grouped by their names, and what holds no acceleration is
+/// left out with its reason.
+fn from_archive(
+    source: &Source<'_>,
+    archive: &Archive,
+    options: &ReadOptions,
+) -> Result<Record, ReadError> {
+    let names = archive.names()?;
+    let groups = group_files(&names);
+    let mut found: Vec<(String, Record)> = Vec::new();
+    let mut left_out: Vec<(String, ReadError)> = Vec::new();
+    let mut metadata = Metadata { names: &names, options: None };
+    for group in &groups {
+        let mut parts = Vec::new();
+        for file in &group.files {
+            match metadata.read(source, archive, file, options) {
+                Ok(record) => parts.push(record),
+                Err(error) => left_out.push((file.clone(), error)),
+            }
+        }
+        if parts.is_empty() {
+            continue;
+        }
+        let record = Record::gather(&parts).map_err(|error| {
+            let remedy = "give the files of one record by their paths inside the archive";
+            source.damaged((), "files of one record", error.to_string(), remedy)
+        })?;
+        match found.last_mut() {
+            Some((_, last)) if belongs(last, &record) => {
+                *last = Record::gather(&[last.clone(), record])
+                    .map_err(|e| source.damaged((), "one record", e.to_string(), "unpack it"))?;
+            }
+            _ => found.push((group.name.clone(), record)),
+        }
+        // The names say how many there may be; two that are read show that it is not one.
+        if found.len() > 1 {
+            return Err(several(source, &groups, &found));
+        }
+    }
+    let Some((_, mut record)) = found.pop() else {
+        return Err(none(source, &names, left_out));
+    };
+    let prefix = format!("{}/", source.name);
+    let files: Vec<&str> =
+        record.file.split(", ").map(|file| file.strip_prefix(&prefix).unwrap_or(file)).collect();
+    if names.len() > 1 {
+        let files = files.join(", ");
+        record.notes.push(format!("one record of the archive {}: {files}", source.name));
+    }
+    if !left_out.is_empty() {
+        let list: Vec<String> =
+            left_out.iter().map(|(file, error)| format!("{file} ({})", error.found)).collect();
+        record.notes.push(format!("files of the archive that were left out: {}", list.join(", ")));
+    }
+    source.name.clone_into(&mut record.file);
+    Ok(record)
+}
+
+/// Whether two records of one archive are components of one, though their names do not say so.
+fn belongs(one: &Record, other: &Record) -> bool {
+    let named = !(one.event.is_empty() && one.station.is_empty());
+    let new = |name: &str| one.channels.iter().all(|channel| channel.name != name);
+    named
+        && other.channels.iter().all(|channel| new(&channel.name))
+        && Record::gather(&[one.clone(), other.clone()]).is_ok()
+}
+
+/// `StationXML` in the archive, looked into once a file of counts asks for it.
+struct Metadata<'a> {
+    names: &'a [String],
+    options: Option<ReadOptions>,
+}
+
+impl Metadata<'_> {
+    fn read(
+        &mut self,
+        source: &Source<'_>,
+        archive: &Archive,
+        file: &str,
+        options: &ReadOptions,
+    ) -> Result<Record, ReadError> {
+        let name = format!("{}/{file}", source.name);
+        let bytes = archive.file(file)?;
+        // A single file may be packed once more, as `.gz`.
+        let read = |options: &ReadOptions| match bytes.strip_prefix(&[0x1F, 0x8B]) {
+            Some(_) => {
+                let packed = Source::new(&name, &bytes);
+                let inside = flate2::read::MultiGzDecoder::new(bytes.as_slice());
+                unpacked(&all(&packed, inside)?, &name, options)
+            }
+            None => unpacked(&bytes, &name, options),
+        };
+        let first = read(options);
+        let counts = [Given::Sensitivity, Given::UnitOrSensitivity].map(Refusal::Missing);
+        if !first.as_ref().is_err_and(|error| counts.contains(&error.refusal)) {
+            return first;
+        }
+        let more = self.options.get_or_insert_with(|| {
+            let mut more = options.clone();
+            let xml = |name: &&String| name.to_ascii_lowercase().ends_with(".xml");
+            for name in self.names.iter().filter(xml) {
+                let found = archive.file(name).ok();
+                let text = found.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+                more.instruments
+                    .extend(text.and_then(|t| station_xml(&t).ok()).unwrap_or_default());
+            }
+            more
+        });
+        if more.instruments.len() == options.instruments.len() {
+            return first;
+        }
+        read(more)
+    }
+}
+
+/// An archive of several records, by the names of its files.
+fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record)]) -> ReadError {
+    let named: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    let first = groups.iter().find(|group| group.name == named[0]).map(|g| g.files[0].as_str());
+    source.error(
         (),
-        "a file that can be unpacked",
-        found,
-        "unpack it by itself, or get it again from its source",
+        Refusal::SeveralRecords,
+        "an archive of one record",
+        format!("several: {} are two of up to {} by their names", named.join(" and "), groups.len()),
+        format!(
+            "give one by its path inside, such as {}/{}, or take the archive as a folder of records",
+            source.name,
+            first.unwrap_or_default()
+        ),
+    )
+}
+
+/// An archive without a record: what its only file, or the first that lacks something, is refused for.
+fn none(
+    source: &Source<'_>,
+    names: &[String],
+    mut left_out: Vec<(String, ReadError)>,
+) -> ReadError {
+    if names.iter().any(|name| name == "[Content_Types].xml") {
+        return source.error(
+            (),
+            Refusal::Unrecognized,
+            "a record",
+            "an Excel, Word or LibreOffice file",
+            "save the sheet as CSV, with time and acceleration in columns, and give that file",
+        );
+    }
+    let missing = |(_, error): &(String, ReadError)| matches!(error.refusal, Refusal::Missing(_));
+    let wanting = left_out.iter().position(missing);
+    if let Some(at) = wanting.or((left_out.len() == 1).then_some(0)) {
+        return left_out.swap_remove(at).1;
+    }
+    let reason = left_out.first().map_or_else(String::new, |(file, error)| {
+        format!("; of {file}: expected {}, found {}", error.expected, error.found)
+    });
+    source.error(
+        (),
+        Refusal::Unrecognized,
+        "a record",
+        format!("{} files without one ({}){reason}", names.len(), shorten(&names.join(", "))),
+        "give an archive with the acceleration files of a record",
     )
 }
 
 fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let read = inside.take(LARGEST + 1).read_to_end(&mut bytes);
-    read.map_err(|error| damaged(source, &error.to_string()))?;
+    read.map_err(|error| {
+        source.damaged(
+            (),
+            "a file that can be unpacked",
+            error.to_string(),
+            "unpack it by itself, or get it again from its source",
+        )
+    })?;
     if bytes.len() as u64 > LARGEST {
         return Err(source.damaged(
             (),

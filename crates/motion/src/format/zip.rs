@@ -5,11 +5,11 @@
 use std::io::Read as _;
 
 /// Most files of one archive.
-const MOST: usize = 4096;
+const MOST: usize = 50_000;
 
 /// A file in an archive.
-pub(super) struct Entry<'a> {
-    pub(super) name: String,
+pub(crate) struct Entry<'a> {
+    pub(crate) name: String,
     /// As it lies in the archive.
     packed: &'a [u8],
     method: u16,
@@ -17,7 +17,7 @@ pub(super) struct Entry<'a> {
 }
 
 /// All files of an archive in the order of its directory, or what is wrong with it.
-pub(super) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
+pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
     let cut = || "an archive that ends before its directory".to_owned();
     // The end of the directory has 22 bytes and a comment of at most 64 kB.
     let reach = bytes.len().saturating_sub(22 + 0xFFFF);
@@ -63,7 +63,7 @@ fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
 
 impl Entry<'_> {
     /// The file unpacked, if it has at most `limit` bytes; else what is wrong with it.
-    pub(super) fn unpack(&self, limit: u64) -> Result<Vec<u8>, String> {
+    pub(crate) fn unpack(&self, limit: u64) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let read = match self.method {
             0 => self.packed.take(limit + 1).read_to_end(&mut bytes),
@@ -83,6 +83,13 @@ impl Entry<'_> {
         }
         Ok(bytes)
     }
+}
+
+/// Whether the first file of a zip archive is an array of NumPy.
+pub(crate) fn is_numpy(bytes: &[u8]) -> bool {
+    // Its name stands 30 bytes behind the beginning of the archive.
+    let name = bytes.get(30..bytes.len().min(200)).unwrap_or(&[]);
+    bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
 }
 
 pub(super) fn two(bytes: &[u8], at: usize) -> Option<u16> {

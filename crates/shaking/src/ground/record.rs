@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use barrelstack_input::{FileRef, system};
 use barrelstack_motion::{
-    AccelerationUnit, Given, MotionError, ReadFailure, ReadOptions, Record, Refusal,
+    AccelerationUnit, Archive, Given, MotionError, ReadFailure, ReadOptions, Record, Refusal,
 };
 
 use super::GroundError;
@@ -23,12 +23,19 @@ pub fn held(record: &Record) -> Result<FileRef, MotionError> {
     Ok(file)
 }
 
-/// The bytes of a file of the system, as [`MotionSpec::with_files`] takes them.
+/// The bytes of a file of the system, as [`MotionSpec::with_files`] takes them; `records.zip/a.AT2` is
+/// the file `a.AT2` inside of an archive.
 ///
 /// # Errors
 /// In words, when it cannot be read, or has more than any record.
 pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
-    system::read(path, RECORD_LIMIT)
+    let Some((archive, inner)) = Archive::path_inside(path).filter(|_| !path.exists()) else {
+        return system::read(path, RECORD_LIMIT);
+    };
+    let bytes = system::read(&archive, RECORD_LIMIT)?;
+    let opened = Archive::open(bytes, &archive.display().to_string()).map_err(|e| e.to_string())?;
+    let opened = opened.ok_or_else(|| format!("{} is no archive", archive.display()))?;
+    opened.file(&inner).map_err(|error| error.to_string())
 }
 
 impl MotionSpec {
@@ -111,7 +118,8 @@ pub(super) fn read_file(
 ) -> Result<Record, GroundError> {
     let path = file.resolve();
     let bytes =
-        file.read(RECORD_LIMIT).map_err(|reason| unreadable(path.clone(), reason, obtain))?;
+        if file.is_held() { file.read(RECORD_LIMIT) } else { from_disk(&path).map(Into::into) };
+    let bytes = bytes.map_err(|reason| unreadable(path.clone(), reason, obtain))?;
     let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
     // A page says which file it was, and not where it lies.
     let named = |record: Record| {

@@ -42,7 +42,10 @@ pub(super) fn info(args: &InfoArgs) -> anyhow::Result<ExitCode> {
     match &args.out {
         Some(out) => return table(args, out),
         None if args.input.has_folder() => {
-            bail!("a folder is measured as a table: say where it goes, with --out DIR")
+            bail!(
+                "a folder, or an archive of several records, is measured as a table: say where it \
+                 goes, with --out DIR"
+            )
         }
         None => {}
     }

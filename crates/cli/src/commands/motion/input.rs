@@ -11,6 +11,7 @@ use barrelstack_motion::{
 };
 use clap::ValueEnum;
 
+use super::archives;
 pub(super) use crate::store::plain;
 use crate::typed::typed;
 
@@ -116,9 +117,18 @@ impl Input {
         Ok(record)
     }
 
-    /// Whether a folder is among the files.
+    /// Whether a folder, or an archive of several records, is among the files.
     pub(super) fn has_folder(&self) -> bool {
-        self.files.iter().any(|file| Path::new(file).is_dir())
+        let several = |path: &Path, file: &str| {
+            let options = self.options().unwrap_or_default();
+            let error = archives::is_archive(path).then(|| read_file(file, &options).err())??;
+            let refusal = error.downcast_ref::<ReadError>()?.refusal;
+            (refusal == Refusal::SeveralRecords).then_some(())
+        };
+        self.files.iter().any(|file| {
+            let path = Path::new(file);
+            path.is_dir() || several(path, file).is_some()
+        })
     }
 
     /// What was told of the files, as words.
@@ -343,6 +353,7 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
         Refusal::Missing(Given::Sensitivity) => {
             "add --sensitivity with the counts to one m/s2, or --station-xml with the station's file"
         }
+        Refusal::SeveralRecords => "info, plot, process and convert take it with --out DIR",
         Refusal::Missing(Given::UnitOrSensitivity) => {
             "add --unit g, or the unit it is, or --sensitivity with the counts to one m/s2"
         }
@@ -388,6 +399,11 @@ fn beside(file: &Path) -> Vec<PathBuf> {
 
 /// Files of a folder that end with .xml, in the order of their names.
 fn xml_files(folder: &Path) -> Vec<PathBuf> {
+    let inside = archives::files_below(folder);
+    if !inside.is_empty() {
+        let ends = |path: &PathBuf| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml"));
+        return inside.into_iter().filter(ends).collect();
+    }
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut found: Vec<PathBuf> = entries
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
@@ -400,6 +416,9 @@ fn xml_files(folder: &Path) -> Vec<PathBuf> {
 /// The bytes of a file of at most 256 MB.
 pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let refused = || format!("cannot read {}", path.display());
+    if let Some(bytes) = archives::bytes_inside(path)? {
+        return Ok(bytes);
+    }
     if path.is_dir() {
         bail!("{}: it is a folder, not a file; name one of its files", refused());
     }

@@ -1,5 +1,6 @@
 //! `barrelstack motion`: read, look at, change and make ground motions.
 
+mod archives;
 mod change;
 mod folder;
 mod info;

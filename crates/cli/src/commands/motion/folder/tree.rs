@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use barrelstack_motion::{RecordFiles, group_files};
 
-use crate::commands::motion::input;
+use crate::commands::motion::{archives, input};
 
 /// Deepest folder within a folder; a chain of links cannot be followed for ever.
 const DEEPEST: usize = 32;
@@ -36,13 +36,19 @@ impl Source {
 pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
     let out =
         out.canonicalize().map_err(input::plain).context("cannot find the folder to write")?;
-    let folders = given.iter().filter(|path| Path::new(path).is_dir()).count();
+    let is_folder =
+        |path: &&String| Path::new(path).is_dir() || archives::is_archive(Path::new(path));
+    let folders = given.iter().filter(is_folder).count();
     let mut sources = Vec::new();
     for path in given {
         let root = Path::new(path);
         let mut files = Vec::new();
-        let (root, label) = if root.is_dir() {
-            walk(root, "", &out, 0, &mut files)?;
+        let within = archives::names(root)?;
+        let (root, label) = if root.is_dir() || within.is_some() {
+            match within {
+                Some(names) => files = names,
+                None => walk(root, "", &out, 0, &mut files)?,
+            }
             let name = root.file_name().map(|name| name.to_string_lossy().into_owned());
             // Records of two folders may have the same name.
             let label = name.filter(|_| folders > 1).map_or_else(String::new, |n| format!("{n}/"));
@@ -94,6 +100,8 @@ fn walk(
             if !own {
                 walk(&path, &format!("{before}{name}/"), out, depth + 1, files)?;
             }
+        } else if let Some(names) = archives::names(&path)? {
+            files.extend(names.iter().map(|inner| format!("{before}{name}/{inner}")));
         } else {
             files.push(format!("{before}{name}"));
         }
