@@ -165,6 +165,7 @@ impl Refused {
             | Refusal::NotAcceleration
             | Refusal::Damaged
             | Refusal::OtherInstrument
+            | Refusal::SeveralRecords
             | Refusal::Options => None,
         };
         Self { file: file.to_owned(), why: error.to_string(), missing }
