@@ -69,7 +69,7 @@ fn the_share_counts_what_became_of_the_variants_and_of_nothing_else() {
 }
 
 #[test]
-fn variants_that_cannot_stand_are_counted_and_told() {
+fn variants_that_cannot_be_built_are_counted_and_widen_the_interval() {
     // A barrel 20 mm beside its place stands in its cradle; the stated one is not that far.
     let mut stated = two_levels(&["imperfections.placement=5 mm"]);
     let Scene::Stack { stack, .. } = &mut stated.scene else { panic!("no stack") };
@@ -85,10 +85,48 @@ fn variants_that_cannot_stand_are_counted_and_told() {
     });
     let all = found(&planes(&stated).unwrap());
     assert!(all[0].results[0].outcome.is_ok(), "{:?}", all[0].results[0].outcome);
-    let Spread { variants, cannot_stand, broken, reason, .. } = &all[0].spread;
-    assert!(*cannot_stand > 0 && *variants > 0, "{:?}", all[0].spread);
-    assert_eq!(variants + cannot_stand + broken, 8);
+    let Spread { variants, collapsed, cannot_stand, broken, reason, interval, .. } = &all[0].spread;
+    assert!(*broken > 0 && *variants > 0 && *cannot_stand == 0, "{:?}", all[0].spread);
+    assert_eq!(variants + broken, 8);
     assert!(reason.as_ref().unwrap().contains("overlap"), "{reason:?}");
+    let all = barrelstack_fragility::wilson(*collapsed, 8, 0.95);
+    let most = barrelstack_fragility::wilson(collapsed + broken, 8, 0.95);
+    assert_eq!(*interval, [all.low, most.high]);
+}
+
+#[test]
+fn what_falls_under_its_own_weight_counts_as_fallen_and_is_said_first() {
+    // Hardly shaken; six levels along the barrels do not stand in most variants.
+    let scenario = scenario(
+        "demo-napa",
+        &[
+            "stack.levels=6",
+            "motion.scale.factor=0.05",
+            "imperfections.variants=8",
+            "run.duration=0.5 s",
+        ],
+    );
+    let answer = answer(&scenario, Asked::Typical, &mut |_| ControlFlow::Continue(())).unwrap();
+    let spread = answer.decides.summary.ensemble.clone().unwrap();
+    assert!(spread.cannot_stand > 0 && spread.cannot_stand == spread.collapsed, "{spread:?}");
+    assert_eq!((spread.variants, spread.broken, spread.run()), (8, 0, 8));
+    assert_eq!(spread.modes.get("gravity"), Some(&spread.cannot_stand));
+    let headline = answer.headline();
+    assert!(headline.starts_with("Along the barrels, "), "{headline}");
+    assert!(headline.contains("under their own weight, before they are shaken."), "{headline}");
+    assert!(!headline.contains("it stands."), "{headline}");
+    // What is shown was shaken.
+    let results = answer.decides.variants.unwrap().results;
+    assert!(!results[spread.typical as usize].fell_at_rest());
+    for fallen in results.iter().filter(|one| one.fell_at_rest()) {
+        let levels = match &fallen.outcome {
+            Ok(Outcome::Collapse { from_level, to_level, .. }) => to_level + 1 - from_level,
+            other => panic!("{other:?}"),
+        };
+        let down = fallen.falls.iter().filter(|(_, at)| *at == Some(0.0)).count();
+        assert_eq!((down, fallen.fall_heights.len()), (levels as usize, levels as usize));
+        assert!(fallen.fall_heights.iter().all(|drop| *drop > 0.0 && *drop < 5.0), "{fallen:?}");
+    }
 }
 
 #[test]

@@ -125,6 +125,8 @@ pub struct Heights {
     pub runs: usize,
     /// Runs without a verdict.
     pub left_out: usize,
+    /// Runs whose stack fell under its own weight, before it was shaken.
+    pub fallen_at_rest: usize,
     /// What is to be known of runs that were not followed until nothing moved.
     pub ends: Vec<String>,
     /// What the reader must know.
@@ -199,12 +201,13 @@ pub fn heights(
 /// What the tables say.
 fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded) = (Vec::new(), Vec::new());
-    let (mut runs, mut left_out, mut motions) = (0, 0, 0);
+    let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);
     let mut ends = Vec::new();
     for (view, as_recorded, collected) in found {
         let cases = Cases::read(collected)?;
         runs += collected.table.rows();
         left_out += cases.left_out;
+        fallen_at_rest += cases.fallen_at_rest();
         ends.extend(cases.endings.sentences());
         if *as_recorded {
             recorded.extend(recorded_runs(&cases, collected, *view));
@@ -223,6 +226,7 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
         motions,
         runs,
         left_out,
+        fallen_at_rest,
         ends,
         warnings: Vec::new(),
         document: Document::default(),

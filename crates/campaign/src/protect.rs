@@ -108,6 +108,8 @@ pub struct Ranked {
     pub runs: usize,
     /// Runs without a verdict.
     pub left_out: usize,
+    /// Runs whose stack fell under its own weight, before it was shaken.
+    pub fallen_at_rest: usize,
     /// The last round in which it was run, counted from 1.
     pub round: u32,
     /// Whether nothing that was tried costs no more and loses less.
@@ -355,6 +357,7 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64]) -> Ranked {
         motions: runs.motions(),
         runs: trial.runs.iter().map(|runs| runs.count).sum(),
         left_out: trial.runs.iter().map(|runs| runs.left_out).sum(),
+        fallen_at_rest: trial.runs.iter().map(|runs| runs.fallen_at_rest).sum(),
         round: trial.round,
         on_front: false,
         worn: None,

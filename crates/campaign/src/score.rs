@@ -98,6 +98,8 @@ pub struct Scored {
     pub runs: usize,
     /// Runs without a verdict.
     pub left_out: usize,
+    /// Runs whose stack fell under its own weight, before it was shaken.
+    pub fallen_at_rest: usize,
 }
 
 impl Scored {
@@ -237,7 +239,8 @@ pub fn score(
             ScoreError::Curve { state: state.name.clone(), direction, source }
         })?;
         let (runs, left_out) = (cases.all.len() + cases.left_out, cases.left_out);
-        rows.push(Scored { state, view, capacity, curve, runs, left_out });
+        let fallen_at_rest = cases.fallen_at_rest();
+        rows.push(Scored { state, view, capacity, curve, runs, left_out, fallen_at_rest });
     }
     let document = Document::default();
     let mut sheet = Sheet { scenario: stack, protocol: protocol.clone(), rows, document };

@@ -150,10 +150,13 @@ fn variants(summary: &Summary) -> Option<Table> {
         row("fallen barrels", four([d.debris_right, d.debris_left, d.debris_away, d.debris_near]));
     }
     if spread.cannot_stand > 0 {
-        row("do not stand before they are shaken", spread.cannot_stand.to_string());
+        row(
+            "of these under their own weight, before they are shaken",
+            spread.cannot_stand.to_string(),
+        );
     }
     if spread.broken > 0 {
-        row("broke down", spread.broken.to_string());
+        row("without a verdict", spread.broken.to_string());
     }
     Some(table)
 }

@@ -81,11 +81,36 @@ impl Case {
         Self { result, first: run.heading, debris: run.debris().collect() }
     }
 
+    /// Of a scenario that could not be run: it collapses where the stack falls under its own weight, and has no verdict
+    /// otherwise.
+    pub fn refused(scenario: &Scenario, failure: &RunFailure) -> Self {
+        let result = fallen_at_rest(scenario, failure)
+            .unwrap_or_else(|| CaseResult::failed(failure.to_string()));
+        Self { result, first: None, debris: Vec::new() }
+    }
+
     /// The way of the first body and those of fallen barrels; none without a verdict.
     pub fn ways(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some((self.first, self.debris.as_slice()))
     }
+}
+
+fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResult> {
+    let RunFailure::Settle(restless) = failure else { return None };
+    let levels = scenario.stack().filter(|_| restless.falls())?.levels;
+    // As it was built, before it fell.
+    let stack = Stack::of(scenario).ok()?;
+    let name = restless.error.body.as_str();
+    let first = stack.parts.iter().find(|part| part.name == name);
+    let barrel = |body: usize| {
+        let part = &stack.parts[body];
+        let center = stack.model.bodies()[body].pose.position.z;
+        (part.name.clone(), part.level, (center - part.size).max(0.0))
+    };
+    let barrels: Vec<(String, u32, f64)> = stack.of_kind(PartKind::Barrel).map(barrel).collect();
+    let from_level = first.map_or(1, |part| part.level.max(1));
+    Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
 /// The demands: displacements are horizontal, whatever their direction.
@@ -151,16 +176,13 @@ pub fn run_all(
             let over = stopped.load(Ordering::Relaxed);
             if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let run = run_on(&plane.variant(*number), ground.clone(), &mut going);
+        let variant = plane.variant(*number);
+        let run = run_on(&variant, ground.clone(), &mut going);
         done.fetch_add(1, Ordering::Relaxed);
         hear(done.load(Ordering::Relaxed));
         match run {
             Ok(run) => Case::of(&run),
-            Err(error) => Case {
-                result: CaseResult::failed(error.to_string()),
-                first: None,
-                debris: Vec::new(),
-            },
+            Err(failure) => Case::refused(&variant, &failure),
         }
     };
     let cases = pool::map(&numbers, work, &|_| ());

@@ -18,6 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use barrelstack_dynamics::Method;
 use barrelstack_dynamics::lanes::Topology;
 
+use crate::assemble::{Part, PartKind, assemble};
 use crate::pool;
 use crate::run::{RunFailure, check_length, end_time, method};
 
@@ -32,7 +33,7 @@ pub use trail::{RATE, Trail};
 
 /// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
 /// results of two versions are never put together.
-pub const VERSION: u32 = 12;
+pub const VERSION: u32 = 13;
 
 /// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
 const BATCH: usize = 32;
@@ -132,12 +133,13 @@ pub fn simulate_in(
     let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
     let mut ready = Vec::new();
     for (run, result) in runs.into_iter().zip(&mut results) {
-        match run.and_then(|run| stacks[run.stack].found().map(|_| run)) {
-            Ok(run) => ready.push(run),
-            Err(reason) => {
-                let failed = result.insert(CaseResult::failed(reason));
-                (audience.tell)(failed);
-            }
+        let refused = match run {
+            Ok(run) => stacks[run.stack].refusal().ok_or(run),
+            Err(reason) => Ok(CaseResult::failed(reason)),
+        };
+        match refused {
+            Ok(refused) => (audience.tell)(result.insert(refused)),
+            Err(run) => ready.push(run),
         }
     }
     for (method, group) in groups(&ready, &stacks) {
@@ -158,6 +160,37 @@ impl Stack<'_> {
     /// The stack, or in words why there is none.
     fn found(&self) -> Result<&Standing, String> {
         self.standing.as_ref().map_err(ToString::to_string)
+    }
+
+    /// What becomes of every case on a stack that is not there to be shaken: it collapses where it falls under its own
+    /// weight, and has no verdict where it cannot be built or does not come to rest.
+    fn refusal(&self) -> Option<CaseResult> {
+        let failure = self.standing.as_ref().err()?;
+        Some(
+            self.fallen_at_rest(failure).unwrap_or_else(|| CaseResult::failed(failure.to_string())),
+        )
+    }
+
+    fn fallen_at_rest(&self, failure: &RunFailure) -> Option<CaseResult> {
+        let RunFailure::Settle(restless) = failure else { return None };
+        let levels = self.scenario.stack().filter(|_| restless.falls())?.levels;
+        // As it was built, before it fell.
+        let assembly = assemble(self.scenario).ok()?;
+        let level = |part: &Part| part.level.unwrap_or(1);
+        let first = assembly.parts.iter().find(|part| part.name == restless.error.body);
+        let height = |body: usize| {
+            let center = assembly.model.bodies()[body].pose.position.z;
+            (center - assembly.parts[body].size).max(0.0)
+        };
+        let barrels: Vec<(String, u32, f64)> = assembly
+            .of_kind(PartKind::Barrel)
+            .map(|body| {
+                let part = &assembly.parts[body];
+                (part.name.clone(), level(part), height(body))
+            })
+            .collect();
+        let first = (restless.error.body.as_str(), first.map_or(1, level));
+        Some(CaseResult::fallen_at_rest(first, levels, &barrels, failure.to_string()))
     }
 }
 

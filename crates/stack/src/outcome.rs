@@ -16,12 +16,20 @@ pub enum CollapseMode {
     RackSliding,
     /// The whole stack turns over about its foot.
     Overturning,
+    /// The stack falls under its own weight, before it is shaken.
+    Gravity,
 }
 
 impl CollapseMode {
-    /// All modes.
-    pub const ALL: [Self; 4] =
+    /// The modes of a stack that is shaken.
+    pub const SHAKEN: [Self; 4] =
         [Self::Ejection, Self::Rocking, Self::RackSliding, Self::Overturning];
+
+    /// The mode with a name as [`CollapseMode::name`] gives it.
+    pub fn named(name: &str) -> Option<Self> {
+        let all = Self::SHAKEN.into_iter().chain([Self::Gravity]);
+        all.into_iter().find(|mode| mode.name() == name)
+    }
 
     /// The word used in files and reports.
     pub fn name(self) -> &'static str {
@@ -30,6 +38,7 @@ impl CollapseMode {
             Self::Rocking => "rocking",
             Self::RackSliding => "rack-sliding",
             Self::Overturning => "overturning",
+            Self::Gravity => "gravity",
         }
     }
 }
@@ -62,6 +71,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Whether it collapsed under its own weight, before it was shaken.
+    pub fn fell_at_rest(&self) -> bool {
+        matches!(self, Self::Collapse { mode: CollapseMode::Gravity, .. })
+    }
+
     /// The word used in files and reports.
     pub fn kind(&self) -> &'static str {
         match self {

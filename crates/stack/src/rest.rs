@@ -10,6 +10,21 @@ pub struct Restless {
     pub error: SettleError,
 }
 
+impl Restless {
+    /// Whether the stack falls under its own weight. Where its forces merely do not balance in time, or a regularized
+    /// friction law lets it creep, nothing is known of that.
+    pub fn falls(&self) -> bool {
+        match self.error.lack {
+            Lack::Support
+            | Lack::Stiffness { .. }
+            | Lack::Friction { .. }
+            | Lack::Balance { .. }
+            | Lack::Place => true,
+            Lack::Stick { .. } | Lack::Time { .. } => false,
+        }
+    }
+}
+
 /// The next move of who wants a stack that stands.
 fn remedy(lack: &Lack) -> String {
     match lack {

@@ -63,9 +63,8 @@ impl Case {
         let outcome = match self.outcome {
             Ended::Stable => Ok(Outcome::Stable),
             Ended::Collapse { mode, time, first, from_level, to_level } => {
-                let known = CollapseMode::ALL.into_iter().find(|known| known.name() == mode);
-                let mode =
-                    known.ok_or_else(|| format!("there is no mode of collapse \"{mode}\""))?;
+                let mode = CollapseMode::named(&mode)
+                    .ok_or_else(|| format!("there is no mode of collapse \"{mode}\""))?;
                 Ok(Outcome::Collapse { mode, time, first, from_level, to_level })
             }
             Ended::NotJudged => Ok(Outcome::NotJudged),

@@ -17,6 +17,7 @@ pub const WORDS: &[Word] = &[
     word("rocking", "upper levels rock on the barrels below and topple together"),
     word("rack-sliding", "a rack walks along the barrels below until it is off them"),
     word("overturning", "the whole stack turns over about its foot"),
+    word("gravity", "the stack falls under its own weight, before it is shaken"),
     word("drift", "how far the top moves sideways, over the height of the stack"),
     word("uplift", "how far a body rises from what it stands on"),
     word("pretension", "the force to which a strap is tightened when it is put on"),

@@ -127,20 +127,20 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let modes = spread.modes.iter().map(|(mode, count)| format!("{mode} {count}"));
         Some(modes.collect::<Vec<_>>().join(", ")).filter(|text| !text.is_empty())
     });
-    row("do not stand before they are shaken", &|spread| {
+    row("of these under their own weight, before they are shaken", &|spread| {
         (spread.cannot_stand > 0).then(|| spread.cannot_stand.to_string())
     });
-    row("broke down", &|spread| (spread.broken > 0).then(|| spread.broken.to_string()));
+    row("without a verdict", &|spread| (spread.broken > 0).then(|| spread.broken.to_string()));
     let number = |number: u32| if number == 0 { "as stated".into() } else { number.to_string() };
     row("most typical", &|spread| Some(number(spread.typical)));
     row("gentlest", &|spread| Some(number(spread.gentlest)));
     row("worst", &|spread| Some(number(spread.worst)));
     let mut blocks = vec![Block::Table(table)];
-    blocks.extend(
-        planes.iter().find_map(|(_, spread)| spread.reason.as_ref()).map(|reason| {
-            Block::Paragraph(format!("The first variant without a verdict: {reason}."))
-        }),
-    );
+    blocks.extend(planes.iter().find_map(|(_, spread)| spread.reason.as_ref()).map(|reason| {
+        Block::Paragraph(format!(
+            "The first variant that falls before it is shaken, or has no verdict: {reason}."
+        ))
+    }));
     blocks
 }
 

@@ -78,6 +78,9 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
              it."
         ),
         CollapseMode::Overturning => "The whole stack turns over about its foot.".to_owned(),
+        CollapseMode::Gravity => {
+            format!("It falls under its own weight, before it is shaken: {first} does not stand.")
+        }
     }
 }
 

@@ -207,7 +207,7 @@ fn weight(shown: &Shown) -> (f64, f64) {
     let barrels = outcome.barrels.max(1) as f64;
     let spread: Option<&Spread> = shown.summary.ensemble.as_ref();
     let alone = if outcome.mode.is_some() { 1.0 } else { 0.0 };
-    let share = spread.and_then(|spread| spread.share).unwrap_or(alone);
+    let share = spread.and_then(Spread::largest_share).unwrap_or(alone);
     let median = spread.and_then(|spread| spread.barrels_fallen).map(|fallen| fallen.p50);
     (share, median.unwrap_or(outcome.barrels_fallen.unwrap_or(0) as f64) / barrels)
 }

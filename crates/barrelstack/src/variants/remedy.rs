@@ -92,7 +92,7 @@ pub fn remedy(
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Remedy>, GroundError> {
     let spreads = answer.decides.summary.spreads();
-    let worst = spreads.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
+    let worst = spreads.iter().filter_map(|(_, spread)| spread.largest_share()).reduce(f64::max);
     if worst.is_none_or(enough) || answer.decides.run.interrupted {
         return Ok(None);
     }

@@ -24,15 +24,15 @@ described! {
         pub seed: u32,
         /// Variants that have a verdict.
         pub variants: u32,
-        /// Those of them that collapse.
+        /// Those of them that collapse: while they are shaken, or under their own weight before.
         pub collapsed: u32,
         /// The share of those; null where no variant has a verdict.
         pub share: Option<f64> as "1",
-        /// Wilson's interval of that share, 95 %.
+        /// Wilson's interval of that share, 95 %; it spans what variants without a verdict could make of it.
         pub interval: [f64; 2] as "1",
-        /// When the first barrel had fallen, of the variants in which one falls.
+        /// When the first barrel had fallen, of the variants in which one falls while they are shaken.
         pub first_fall: Option<Range> as "s",
-        /// Barrels that fall in variants that collapse.
+        /// Barrels that fall in variants that collapse while they are shaken.
         pub barrels_fallen: Option<Range> as "1",
         /// Barrels in all.
         pub barrels: usize,
@@ -41,11 +41,11 @@ described! {
         pub standing_until: Option<f64> as "s",
         /// Variants by the mode of their collapse.
         pub modes: BTreeMap<&'static str, u32>,
-        /// Variants that do not stand before they are shaken.
+        /// Variants of those that collapse which fall under their own weight, before they are shaken.
         pub cannot_stand: u32,
-        /// Variants whose numbers broke down.
+        /// Variants without a verdict: they could not be built, or their numbers broke down.
         pub broken: u32,
-        /// Why the first of those has no verdict.
+        /// Why the first of those that fall before they are shaken, or have no verdict, does.
         pub reason: Option<String>,
         /// What happens to the case as it is stated.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
@@ -91,6 +91,7 @@ impl Spread {
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
         let falling = || judged().filter(|result| collapsed(result));
+        let shaken = || falling().filter(|result| !result.fell_at_rest());
         let mut modes = BTreeMap::new();
         for result in falling() {
             if let Ok(Outcome::Collapse { mode, .. }) = &result.outcome {
@@ -98,7 +99,8 @@ impl Spread {
             }
         }
         let (count, falls) = (number(judged().count()), number(falling().count()));
-        let interval = wilson(falls, count, LEVEL);
+        let broken = number(variants.len()) - count;
+        let interval = |falls| wilson(falls, count + broken, LEVEL);
         let order = Order::of(results);
         Self {
             kind: imperfections.kind.name(),
@@ -106,21 +108,20 @@ impl Spread {
             variants: count,
             collapsed: falls,
             share: (count > 0).then(|| f64::from(falls) / f64::from(count)),
-            interval: [interval.low, interval.high],
-            first_fall: Range::of(judged().filter_map(|result| result.first_fall)),
-            barrels_fallen: Range::of(falling().map(|result| fallen(result) as f64)),
+            interval: [interval(falls).low, interval(falls + broken).high],
+            first_fall: Range::of(shaken().filter_map(|result| result.first_fall)),
+            barrels_fallen: Range::of(shaken().map(|result| fallen(result) as f64)),
             barrels: results.iter().map(|result| result.barrels).max().unwrap_or(0),
             standing_until: judged()
                 .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
                 .filter_map(|result| result.end_time)
                 .reduce(f64::min),
             modes,
-            cannot_stand: number(variants.iter().filter(|one| one.outcome.is_err()).count()),
-            broken: number(
-                variants.iter().filter(|one| one.outcome.is_ok() && !self::judged(one)).count(),
-            ),
+            cannot_stand: number(variants.iter().filter(|one| one.fell_at_rest()).count()),
+            broken,
             reason: variants.iter().find_map(|one| match &one.outcome {
                 Err(reason) | Ok(Outcome::Invalid { reason }) => Some(reason.clone()),
+                Ok(outcome) if outcome.fell_at_rest() => one.warnings.first().cloned(),
                 Ok(Outcome::Stable | Outcome::Collapse { .. } | Outcome::NotJudged) => None,
             }),
             stated: results.first().map_or("invalid", |result| match &result.outcome {
@@ -135,13 +136,24 @@ impl Spread {
 
     /// The variants that were run, whatever became of them.
     pub fn run(&self) -> u32 {
-        self.variants + self.cannot_stand + self.broken
+        self.variants + self.broken
+    }
+
+    /// The share that collapses if every variant without a verdict does; none where none was run.
+    pub fn largest_share(&self) -> Option<f64> {
+        let run = self.run();
+        (run > 0).then(|| f64::from(self.collapsed + self.broken) / f64::from(run))
     }
 }
 
 /// Whether a case has a verdict.
 pub(super) fn judged(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
+}
+
+/// Whether a case has a verdict and was shaken, so that it can be shown.
+pub(super) fn shown(result: &CaseResult) -> bool {
+    judged(result) && !result.fell_at_rest()
 }
 
 /// Whether it collapsed.

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::spread::{collapsed, fallen, judged};
+use super::spread::{collapsed, fallen, shown};
 use crate::ensemble::CaseResult;
 use crate::outcome::{CollapseMode, Outcome};
 
@@ -15,16 +15,16 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Of results, the case as it is stated first; that one where none has a verdict.
+    /// Of results, the case as it is stated first; that one where none was shaken and has a verdict.
     pub(super) fn of(results: &[CaseResult]) -> Self {
-        let judged: Vec<usize> = (0..results.len()).filter(|at| judged(&results[*at])).collect();
+        let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
         let severity = |a: &&usize, b: &&usize| severity(&results[**a], &results[**b]);
         Self {
             typical: typical(&[results]),
             // Of equals the first.
-            gentlest: number(judged.iter().min_by(severity)),
-            worst: number(judged.iter().rev().max_by(severity)),
+            gentlest: number(shown.iter().min_by(severity)),
+            worst: number(shown.iter().rev().max_by(severity)),
         }
     }
 }
@@ -53,14 +53,14 @@ pub(super) fn typical(planes: &[&[CaseResult]]) -> u32 {
 
 /// The sum of the distances of each run to all others; none where it has no verdict.
 fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
-    let judged: Vec<usize> = (0..results.len()).filter(|at| judged(&results[*at])).collect();
-    let times = extent(judged.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
+    let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
+    let times = extent(shown.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
     let drifts = extent(
-        judged.iter().filter(|at| !collapsed(&results[**at])).filter_map(|at| drift(&results[*at])),
+        shown.iter().filter(|at| !collapsed(&results[**at])).filter_map(|at| drift(&results[*at])),
     );
     let sum = |result: &CaseResult| {
         let to = |other: &usize| distance(result, &results[*other], times, drifts);
-        self::judged(result).then(|| judged.iter().map(to).sum())
+        self::shown(result).then(|| shown.iter().map(to).sum())
     };
     results.iter().map(sum).collect()
 }

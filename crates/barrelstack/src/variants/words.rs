@@ -19,17 +19,17 @@ const UNSAFE: &str = "treat it as not safe";
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     match planes {
         [] => String::new(),
-        [(_, spread)] => alone(spread) + &unjudged(spread),
+        [(_, spread)] => before(None, spread) + &alone(spread),
         [(first_view, first), (second_view, second), ..] => {
             let both = together([(*first_view, first), (*second_view, second)]);
-            both + &unjudged(first) + &unjudged(second)
+            before(Some(*first_view), first) + &before(Some(*second_view), second) + &both
         }
     }
 }
 
 /// The kind of the verdict: what is not safe counts as falling.
 pub fn tone(planes: &[(View, &Spread)]) -> Tone {
-    match planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max) {
+    match planes.iter().filter_map(|(_, spread)| judged_share(spread)).reduce(f64::max) {
         None => Tone::Invalid,
         Some(share) if share <= STANDS => Tone::Stands,
         Some(_) => Tone::Falls,
@@ -45,10 +45,15 @@ fn all_of(variants: u32) -> String {
     }
 }
 
+/// The share by which a stack is judged, variants without a verdict counted as falling; none where none has a verdict.
+fn judged_share(spread: &Spread) -> Option<f64> {
+    spread.share.and(spread.largest_share())
+}
+
 /// The verdict of one plane.
 fn alone(spread: &Spread) -> String {
     let Spread { variants, collapsed, interval, .. } = spread;
-    let Some(share) = spread.share else {
+    let Some(share) = judged_share(spread) else {
         return "None of the variants of this stack has a verdict.".to_owned();
     };
     let course = course(spread);
@@ -65,6 +70,12 @@ fn alone(spread: &Spread) -> String {
         );
     }
     match (*collapsed, share) {
+        (0, share) if share > STANDS => {
+            format!(
+                "This stack stands in {}, and others have no verdict: {UNSAFE}.",
+                all_of(*variants)
+            )
+        }
         (0, _) => format!(
             "This stack stands in {}: of stacks like it at most {} fall.",
             all_of(*variants),
@@ -106,7 +117,7 @@ fn together(planes: [(View, &Spread); 2]) -> String {
             Some(_) => format!("{place} it {fate}"),
         });
     }
-    let worst = planes.iter().filter_map(|(_, spread)| spread.share).reduce(f64::max);
+    let worst = planes.iter().filter_map(|(_, spread)| judged_share(spread)).reduce(f64::max);
     let verdict = match worst {
         None => return format!("{}.", parts.join("; ")),
         Some(share) if share >= FALLS => "it falls",
@@ -177,7 +188,7 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
 
 /// Whether a stack is said to stand.
 pub(crate) fn stands(spread: &Spread) -> bool {
-    spread.share.is_some_and(|share| share <= STANDS)
+    judged_share(spread).is_some_and(|share| share <= STANDS)
 }
 
 /// What a stack does: "falls in 97 % of variants".
@@ -194,6 +205,9 @@ pub fn fate(spread: &Spread) -> String {
 
 /// When the first barrel falls, and how many do: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
 pub fn course(spread: &Spread) -> String {
+    if spread.collapsed == spread.cannot_stand {
+        return "before it is shaken".to_owned();
+    }
     let Some(first) = spread.first_fall else { return "but no barrel leaves it".to_owned() };
     let [from, to] = [first.p05, first.p95].map(|time| format!("{time:.1}"));
     let when = if from == to {
@@ -219,22 +233,34 @@ fn barrels(fallen: Range, all: usize) -> String {
     }
 }
 
-/// Variants without a verdict, as sentences that follow another; empty where there are none.
-fn unjudged(spread: &Spread) -> String {
-    let one = |count: u32, single: &str, several: &str| match count {
-        0 => String::new(),
-        1 => format!(" One more variant {single}."),
-        _ => format!(" {count} more variants {several}."),
-    };
-    one(
-        spread.cannot_stand,
-        "does not stand before it is shaken",
-        "do not stand before they are shaken",
-    ) + &one(
-        spread.broken,
-        "has no verdict: its numbers broke down",
-        "have no verdict: their numbers broke down",
-    )
+/// What comes before the verdict: variants that fall under their own weight, and those without a verdict; empty where
+/// there are none.
+fn before(view: Option<View>, spread: &Spread) -> String {
+    let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
+    let mut said = String::new();
+    let (fallen, broken, all) = (spread.cannot_stand, spread.broken, spread.run());
+    let counted =
+        |count: u32| if count == all { all_of(all) } else { format!("{count} of {all} variants") };
+    if fallen > 0 {
+        let (their, they) = if fallen == 1 {
+            ("falls under its", "it is")
+        } else {
+            ("fall under their", "they are")
+        };
+        said = capital(&format!(
+            "{place}{} {their} own weight, before {they} shaken. ",
+            counted(fallen)
+        ));
+    }
+    if broken > 0 {
+        let has = if broken == 1 { "has" } else { "have" };
+        said += &capital(&format!(
+            "{place}{} {has} no verdict: they could not be built or their numbers broke down; the verdict counts them \
+             as falling. ",
+            counted(broken)
+        ));
+    }
+    said
 }
 
 /// A number to a tenth, in the shortest form.
@@ -345,13 +371,32 @@ mod tests {
     }
 
     #[test]
-    fn variants_without_a_verdict_are_told() {
-        let mut one = spread(61, 0);
-        (one.cannot_stand, one.broken) = (2, 1);
+    fn what_falls_by_itself_or_has_no_verdict_comes_first_and_counts() {
+        let mut one = spread(61, 2);
+        (one.cannot_stand, one.broken) = (2, 4);
         let said = headline(&[(View::Transverse, &one)]);
-        let end = " 2 more variants do not stand before they are shaken. One more variant has no verdict: its \
-                   numbers broke down.";
-        assert!(said.ends_with(end), "{said}");
+        assert_eq!(
+            said,
+            "2 of 65 variants fall under their own weight, before they are shaken. 4 of 65 variants have no verdict: \
+             they could not be built or their numbers broke down; the verdict counts them as falling. This stack falls \
+             in 2 of 61 variants, before it is shaken: treat it as not safe."
+        );
+        // As many of both planes.
+        let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
+        assert!(
+            both.starts_with("Along the barrels, 2 of 65 variants fall under their own weight"),
+            "{both}"
+        );
+        assert!(both.ends_with("along them it stands in 97 %: treat it as not safe."), "{both}");
+        // What alone has no verdict is not taken as standing.
+        (one.cannot_stand, one.collapsed, one.share) = (0, 0, Some(0.0));
+        let said = headline(&[(View::Transverse, &one)]);
+        assert!(
+            said.ends_with(
+                "stands in all 61 variants, and others have no verdict: treat it as not safe."
+            ),
+            "{said}"
+        );
     }
 
     #[test]

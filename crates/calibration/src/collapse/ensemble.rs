@@ -23,6 +23,10 @@ pub(super) struct Seen {
 
 impl Seen {
     fn of(case: &CaseResult) -> Option<Self> {
+        // A stack that was tested had come to rest first: parameters with which it does not are none of it.
+        if case.fell_at_rest() {
+            return None;
+        }
         let (mode, loss) = match case.outcome.as_ref().ok()? {
             Outcome::Stable => (Mode::Stands, Time::Never),
             Outcome::Collapse { mode, time, .. } => (Mode::Collapse(*mode), Time::At(*time)),

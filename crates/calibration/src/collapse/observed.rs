@@ -183,7 +183,7 @@ fn mode(table: &Table, row: usize) -> Result<Option<Mode>, CalibrateError> {
     if cell == STANDS {
         return Ok(Some(Mode::Stands));
     }
-    let modes = CollapseMode::ALL;
+    let modes = CollapseMode::SHAKEN;
     if let Some(mode) = modes.into_iter().find(|mode| mode.name() == cell) {
         return Ok(Some(Mode::Collapse(mode)));
     }

@@ -8,6 +8,7 @@ use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::Cell;
 
 use super::DecisionError;
+use crate::outcome::CollapseMode;
 use crate::study::{Collected, Endings, Provenance, Role, StudyTable, Value, word};
 use crate::watch::Ending;
 
@@ -96,6 +97,8 @@ pub struct Case {
     pub record: u32,
     /// Whether a barrel or rack lost its seat.
     pub collapsed: bool,
+    /// Whether its stack fell under its own weight, before it was shaken.
+    pub fell_at_rest: bool,
     /// How it collapsed: a number among [`Cases::modes`].
     pub mode: Option<u8>,
     /// Whether it was followed until nothing moved, so that it tells what falls.
@@ -291,6 +294,7 @@ impl Reading {
                 intensities[self.cases.main] = level;
             }
             let mode = modes.and_then(|of| of[row].as_deref());
+            let fell_at_rest = mode == Some(CollapseMode::Gravity.name());
             let mode = mode.and_then(|mode| u8::try_from(self.modes.of(mode)).ok());
             let numbers = |column, of: Option<&[Option<String>]>| {
                 let told = of.and_then(|of| of[row].as_deref()).unwrap_or_default();
@@ -313,10 +317,13 @@ impl Reading {
                 record: self.records.of(name),
                 collapsed,
                 mode,
-                followed: ended[row].as_deref() == Some(Ending::Rest.name()),
+                followed: [Ending::Rest, Ending::NotShaken]
+                    .iter()
+                    .any(|ending| ended[row].as_deref() == Some(ending.name())),
                 barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
                 falls: numbers("fall_heights", heights)?,
-                forces: match forces {
+                fell_at_rest,
+                forces: match forces.filter(|_| !fell_at_rest) {
                     Some(_) => Some(numbers("fall_forces", forces)?),
                     None => None,
                 },
@@ -355,6 +362,11 @@ impl Cases {
         let mut fewer = self.clone();
         fewer.all.retain(|case| keep(case));
         fewer
+    }
+
+    /// How many cases fell under their own weight, before they were shaken.
+    pub fn fallen_at_rest(&self) -> usize {
+        self.all.iter().filter(|case| case.fell_at_rest).count()
     }
 
     /// The measure of the study.

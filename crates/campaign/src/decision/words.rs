@@ -44,6 +44,16 @@ pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     })
 }
 
+/// What is said before anything else of stacks that fall under their own weight; empty where there are none.
+pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
+    let (falls, they) = match fallen {
+        0 => return String::new(),
+        1 => ("falls under its", "it is"),
+        _ => ("fall under their", "they are"),
+    };
+    format!("{fallen} of {of} {what} {falls} own weight, before {they} shaken. ")
+}
+
 /// A collapse once in how many years.
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
@@ -83,6 +93,12 @@ pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String
 
 /// The largest words of the page.
 pub(super) fn headline(decision: &Decision) -> String {
+    let cases = &decision.cases;
+    fallen_at_rest(cases.fallen_at_rest(), cases.all.len(), "cases") + &collapse(decision)
+}
+
+/// How collapse depends on the measure of the study.
+fn collapse(decision: &Decision) -> String {
     let cases = &decision.cases;
     let curve = &decision.curves[0];
     let measure = cases.measure();
@@ -205,6 +221,15 @@ pub(super) fn warnings(
         said.push(format!(
             "The study is not finished: {} of {} chunks are done. Run it again to go on.",
             made.chunks_done, made.chunks
+        ));
+    }
+    if cases.fallen_at_rest() > 0 {
+        said.push(format!(
+            "{} of {} cases do not stand by themselves: they count as collapsed at every level of shaking, the level \
+             that gives way and all above it as fallen to the floor. A fitted curve tends to nothing where shaking does, \
+             and theirs does not: read the raw fractions.",
+            cases.fallen_at_rest(),
+            cases.all.len()
         ));
     }
     if cases.left_out > 0 {

@@ -23,6 +23,8 @@ described! {
         pub runs: usize = all.runs,
         /// Runs without a verdict.
         pub runs_without_verdict: usize = all.left_out,
+        /// Runs whose stack fell under its own weight, before it was shaken; they count as collapsed.
+        pub runs_fallen_at_rest: usize = all.fallen_at_rest,
         /// The answer in a sentence.
         pub headline: String = all.document.verdict.headline.clone(),
         /// Every height in every direction.

@@ -8,7 +8,8 @@ use barrelstack_report::{
 use super::plan::{HEIGHTS, VELOCITIES};
 use super::{AtLevel, Heights, field};
 use crate::decision::{
-    LimitCurve, chance_axis, heading, left_out, percent, points, range, refusal, text,
+    LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
+    text,
 };
 use crate::scenario::View;
 use crate::scenario::catalog;
@@ -24,7 +25,7 @@ pub(super) fn document(all: &Heights) -> Document {
     Document {
         title: format!("How high is safe: stacks on {} racks", all.request.rack),
         verdict: Verdict {
-            headline: headline(all),
+            headline: fallen_at_rest(all.fallen_at_rest, all.runs, "runs") + &headline(all),
             sentences: sentences(all),
             ..Verdict::default()
         },

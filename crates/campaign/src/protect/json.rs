@@ -74,6 +74,8 @@ described! {
         pub runs: usize = one.runs,
         /// Runs without a verdict.
         pub runs_without_verdict: usize = one.left_out,
+        /// Runs whose stack fell under its own weight, before it was shaken; they count as collapsed.
+        pub runs_fallen_at_rest: usize = one.fallen_at_rest,
         /// The last round in which it was run.
         pub round: u32 = one.round,
         /// Whether nothing that was tried in all rounds costs no more and loses less.

@@ -6,7 +6,7 @@ use barrelstack_report::{
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
-use crate::decision::{heading, left_out, percent, points, text};
+use crate::decision::{fallen_at_rest, heading, left_out, percent, points, text};
 
 pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document {
     let mut blocks = before_and_after;
@@ -26,7 +26,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     Document {
         title: format!("What protects best: {}", all.request.scenario.title),
         verdict: Verdict {
-            headline: headline(all),
+            headline: by_themselves(all) + &headline(all),
             sentences: sentences(all),
             ..Verdict::default()
         },
@@ -63,6 +63,18 @@ fn is_site(all: &Ranking) -> bool {
 /// How likely collapse is, or how often.
 fn collapse(all: &Ranking, value: f64) -> String {
     if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
+}
+
+/// What comes first: how often the stack as it is, or what is recommended for it, falls without any shaking.
+fn by_themselves(all: &Ranking) -> String {
+    let of = |one: Option<&Ranked>, name: &str| {
+        let said = one.map(|one| fallen_at_rest(one.fallen_at_rest, one.runs, "runs"));
+        said.filter(|said| !said.is_empty())
+            .map_or_else(String::new, |said| format!("{name}, {said}"))
+    };
+    let best = all.best();
+    let name = best.map_or_else(String::new, |best| format!("With {}", best.protection.name));
+    of(all.as_it_is(), "As it is") + &of(best, &name)
 }
 
 fn headline(all: &Ranking) -> String {
@@ -260,5 +272,10 @@ fn rests_on(all: &Ranking) -> Vec<String> {
 
 fn warnings(all: &Ranking) -> Vec<String> {
     let lost = all.all.iter().map(|one| one.left_out).sum();
-    left_out(lost, all.runs).into_iter().collect()
+    let fallen: usize = all.all.iter().map(|one| one.fallen_at_rest).sum();
+    let fallen = (fallen > 0).then(|| {
+        let said = fallen_at_rest(fallen, all.runs, "runs of all protections");
+        format!("{said}They count as collapsed, and the level that gives way and all above it as fallen.")
+    });
+    left_out(lost, all.runs).into_iter().chain(fallen).collect()
 }

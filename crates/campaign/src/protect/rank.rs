@@ -37,6 +37,8 @@ pub(super) struct Runs {
     by_motion: BTreeMap<String, Vec<Vec<Outcome>>>,
     pub(super) count: usize,
     pub(super) left_out: usize,
+    /// Runs whose stack fell under its own weight, before it was shaken.
+    pub(super) fallen_at_rest: usize,
 }
 
 /// What one quantity comes to.
@@ -57,6 +59,7 @@ impl Runs {
     /// Adds the cases of a round at levels of shaking (m/s).
     pub(super) fn add(&mut self, cases: &Cases, levels: &[f64]) {
         self.left_out += cases.left_out;
+        self.fallen_at_rest += cases.fallen_at_rest();
         self.count += cases.all.len() + cases.left_out;
         for case in &cases.all {
             let Some(velocity) = case.intensity(cases.main) else { continue };
@@ -190,7 +193,7 @@ mod tests {
         let of = |(name, levels): &(&str, &[f64])| {
             ((*name).to_owned(), levels.iter().map(outcome).collect())
         };
-        Runs { by_motion: motions.iter().map(of).collect(), count: 0, left_out: 0 }
+        Runs { by_motion: motions.iter().map(of).collect(), ..Runs::default() }
     }
 
     #[test]

@@ -56,5 +56,7 @@ described! {
         pub runs: usize = row.0.runs,
         /// Runs without a verdict.
         pub runs_without_verdict: usize = row.0.left_out,
+        /// Runs whose stack fell under its own weight, before it was shaken; they count as collapsed.
+        pub runs_fallen_at_rest: usize = row.0.fallen_at_rest,
     }
 }

@@ -5,14 +5,14 @@ use barrelstack_report::{Axis, Block, Cell, Document, Figure, Plot, Rating, Tabl
 use barrelstack_input::listing::Source;
 
 use super::{Capacity, Scored, Sheet};
-use crate::decision::{chance_axis, fitted, heading, left_out, percent, raw, text};
+use crate::decision::{chance_axis, fallen_at_rest, fitted, heading, left_out, percent, raw, text};
 
 pub(super) fn document(sheet: &Sheet) -> Document {
     let protocol = &sheet.protocol;
     Document {
         title: format!("RockScore of {}", scored(sheet)),
         verdict: Verdict {
-            headline: headline(sheet),
+            headline: by_themselves(sheet) + &headline(sheet),
             sentences: sentences(sheet),
             ..Verdict::default()
         },
@@ -51,6 +51,12 @@ fn scored(sheet: &Sheet) -> String {
 /// A velocity (m/s) in whole cm/s.
 fn shown(velocity: f64) -> String {
     format!("{:.0}", 100.0 * velocity)
+}
+
+/// What comes first: how many stacks fall without any shaking.
+fn by_themselves(sheet: &Sheet) -> String {
+    let sum = |of: fn(&Scored) -> usize| sheet.rows.iter().map(of).sum();
+    fallen_at_rest(sum(|row| row.fallen_at_rest), sum(|row| row.runs), "runs")
 }
 
 fn headline(sheet: &Sheet) -> String {

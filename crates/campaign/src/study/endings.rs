@@ -18,7 +18,8 @@ use crate::watch::Ending;
 pub struct Endings {
     /// All of them.
     pub judged: u64,
-    /// Those that were followed until the ground was still, or calm after a collapse, and nothing moved.
+    /// Those that were followed until the ground was still, or calm after a collapse, and nothing moved; with those
+    /// that fell under their own weight, so that there was nothing to follow.
     pub followed: u64,
     /// Those that were stopped a while after their collapse, because the study says so.
     pub stopped: u64,
@@ -50,7 +51,7 @@ impl Endings {
             let is = |ending: Ending| u64::from(ended.as_deref() == Some(ending.name()));
             let left = left.unwrap_or(0.0);
             self.judged += 1;
-            self.followed += is(Ending::Rest);
+            self.followed += is(Ending::Rest) + is(Ending::NotShaken);
             self.stopped += is(Ending::AfterCollapse);
             self.short += is(Ending::Duration);
             self.moving += is(Ending::Patience);

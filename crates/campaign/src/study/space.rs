@@ -62,7 +62,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     match run_on(scenario, ground, &mut going) {
         Ok(run) if run.ending == Ending::Interrupted => None,
         Ok(run) => Some(InSpace::of(&run).into()),
-        Err(failure) => Some(CaseResult::failed(failure.to_string()).into()),
+        Err(failure) => Some(InSpace::refused(scenario, &failure).into()),
     }
 }
 

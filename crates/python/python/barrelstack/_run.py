@@ -37,7 +37,8 @@ class Outcome(NamedTuple):
 
     #: ``stable``, ``collapse``, ``not-judged``, ``interrupted`` or ``invalid``.
     kind: str
-    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``.
+    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
+    #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
     mode: str | None
     #: When the first body left its seat (s).
     time: float | None

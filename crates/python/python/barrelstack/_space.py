@@ -22,7 +22,8 @@ class OutcomeInSpace(NamedTuple):
 
     #: ``stable``, ``collapse``, ``not-judged`` or ``invalid``.
     kind: str
-    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``.
+    #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
+    #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
     mode: str | None
     #: When the first body left its seat (s).
     time: float | None

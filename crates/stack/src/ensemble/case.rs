@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::assemble::{Assembly, PartKind};
 use crate::demand::Demands;
 use crate::ground::{Ground, GroundError};
-use crate::outcome::Outcome;
+use crate::outcome::{CollapseMode, Outcome};
 use crate::run::{CUT, Verdict};
 use crate::scenario::Scenario;
 use crate::watch::{Ending, Fates, Joint, Joints, Stresses};
@@ -123,6 +123,49 @@ impl CaseResult {
             trail,
             ..told
         }
+    }
+
+    /// A case whose stack falls under its own weight, before it is shaken: a collapse at the start, of the lowest body
+    /// that does not stand (its name and level) and of all levels from there up, whose barrels count as fallen.
+    ///
+    /// `barrels` are those of the whole stack, each by its name, its level and the height (m) over the floor, which
+    /// counts as its drop.
+    pub fn fallen_at_rest(
+        (first, from_level): (&str, u32),
+        levels: u32,
+        barrels: &[(String, u32, f64)],
+        reason: String,
+    ) -> Self {
+        let falls = |(_, level, _): &&(String, u32, f64)| *level >= from_level;
+        let outcome = Outcome::Collapse {
+            mode: CollapseMode::Gravity,
+            time: 0.0,
+            first: first.to_owned(),
+            from_level,
+            to_level: levels,
+        };
+        let fallen = || barrels.iter().filter(falls);
+        Self {
+            outcome: Ok(outcome),
+            first_fall: fallen().next().map(|_| 0.0),
+            barrels: barrels.len(),
+            falls: barrels
+                .iter()
+                .map(|barrel| (barrel.0.clone(), falls(&barrel).then_some(0.0)))
+                .collect(),
+            fall_heights: fallen().map(|(_, _, height)| *height).collect(),
+            ending: Some(Ending::NotShaken),
+            cut: Some(0.0),
+            end_time: Some(0.0),
+            steps: Some(0),
+            warnings: vec![reason],
+            ..Self::failed(String::new())
+        }
+    }
+
+    /// Whether its stack fell under its own weight, before it was shaken.
+    pub fn fell_at_rest(&self) -> bool {
+        self.outcome.as_ref().is_ok_and(Outcome::fell_at_rest)
     }
 
     /// A case that could not run.

@@ -108,12 +108,12 @@ columns! {
     outcome "": Outcome Text |case| {
         Some(case.outcome.as_ref().map_or("error", Outcome::kind).to_owned())
     };
-    /// how it collapsed
+    /// how it collapsed: ejection, rocking, rack-sliding, overturning, or gravity, which is before it was shaken
     mode "": Outcome Text |case| match &case.outcome {
         Ok(Outcome::Collapse { mode, .. }) => Some(mode.name().to_owned()),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
     };
-    /// when the first body left its seat
+    /// when the first body left its seat; 0 where the stack fell under its own weight
     first_loss "s": Outcome Number |case| match &case.outcome {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
@@ -153,7 +153,7 @@ columns! {
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
     /// largest displacement of a barrel at the end
     residual_displacement "m": Demand Number |case| case.residual_displacement;
-    /// why the case ended: rest, after-collapse, duration, patience or broken
+    /// why the case ended: rest, after-collapse, duration, patience, broken or not-shaken
     ended "": Run Text |case| case.ending.map(|ending| ending.name().to_owned());
     /// time of the motion that was left when it ended
     motion_left "s": Run Number |case| case.cut;

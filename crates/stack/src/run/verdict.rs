@@ -114,6 +114,10 @@ fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64)
             "something still moved at {time:.1} s, when the run ended; a longer run.patience shows \
              more"
         )),
-        Ending::Duration | Ending::AfterCollapse | Ending::Rest | Ending::Broken => None,
+        Ending::Duration
+        | Ending::AfterCollapse
+        | Ending::Rest
+        | Ending::Broken
+        | Ending::NotShaken => None,
     }
 }

@@ -46,6 +46,8 @@ pub enum Ending {
     Interrupted,
     /// The numbers broke down.
     Broken,
+    /// The stack fell under its own weight, so it was not shaken.
+    NotShaken,
 }
 
 impl Ending {
@@ -58,6 +60,7 @@ impl Ending {
             Self::Patience => "patience",
             Self::Interrupted => "interrupted",
             Self::Broken => "broken",
+            Self::NotShaken => "not-shaken",
         }
     }
 

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use barrelstack::outcome::CollapseMode;
 use barrelstack_campaign::study::{Endings, Provenance, Status, StudyTable, Tally};
 use barrelstack_report::described;
 
@@ -103,6 +104,12 @@ pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> 
         )
     };
     lines.push(format!("  {}{state}", counted(tally.cases, "case")));
+    if let Some(fallen) = answer.modes.get(CollapseMode::Gravity.name()) {
+        let fall = if *fallen == 1 { "falls under its" } else { "fall under their" };
+        lines.push(format!(
+            "  {fallen} {fall} own weight, before being shaken, and count as collapsed"
+        ));
+    }
     lines.extend(collapse(&tally, provenance));
     lines.extend(answer.endings.sentences().into_iter().map(|said| format!("  {said}")));
     let modes: Vec<String> =

@@ -1,0 +1,57 @@
+//! Stacks that fall under their own weight: they count as collapsed in a study.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+use barrelstack_campaign::Study;
+use barrelstack_campaign::study::Tally;
+
+/// Levels along the barrels, hardly shaken, with one rack a little beside its place: four stand, six and eight do not.
+const STUDY: &str = r#"
+schema = 1
+title = "levels along the barrels"
+[base]
+extends = "demo-napa"
+stack.view = "longitudinal"
+stack.columns = 1
+stack.levels = 6
+motion.scale.factor = 0.02
+run.duration = "0.5 s"
+[[base.stack.override]]
+kind = "rack"
+level = 2
+offset_x = "2 mm"
+[[factor]]
+field = "stack.levels"
+values = [4, 6, 8]
+[design]
+kind = "full-factorial"
+"#;
+
+#[test]
+fn what_does_not_stand_by_itself_counts_as_collapsed_in_a_study() {
+    let table = Study::parse("study.toml", STUDY).unwrap().table().unwrap();
+    let texts = |name| -> Vec<&str> {
+        table.texts(name).unwrap().iter().map(|text| text.as_deref().unwrap_or_default()).collect()
+    };
+    assert_eq!(texts("outcome"), ["stable", "collapse", "collapse"]);
+    assert_eq!(texts("mode"), ["", "gravity", "gravity"]);
+    assert_eq!(texts("ended"), ["duration", "not-shaken", "not-shaken"]);
+    assert_eq!(table.numbers("first_loss").unwrap(), [None, Some(0.0), Some(0.0)]);
+    // With the level that gives way falls all above it, to the floor.
+    let levels = [0, 6, 8];
+    for ((fallen, drops), most) in
+        table.integers("barrels_fallen").unwrap().iter().zip(texts("fall_heights")).zip(levels)
+    {
+        let drops: Vec<f64> = drops
+            .split(';')
+            .filter(|drop| !drop.is_empty())
+            .map(|drop| drop.parse().unwrap())
+            .collect();
+        assert_eq!(usize::try_from(fallen.unwrap()), Ok(drops.len()), "{drops:?}");
+        assert!(drops.len() <= most && (most == 0 || drops.len() >= 4), "{drops:?}");
+        // A level is 0.85 m high.
+        assert!(drops.windows(2).all(|pair| (pair[1] - pair[0] - 0.85).abs() < 0.01), "{drops:?}");
+    }
+    let tally = Tally::of(&table);
+    assert_eq!((tally.cases, tally.judged, tally.collapsed), (3, 3, 2));
+}
