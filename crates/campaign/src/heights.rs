@@ -11,7 +11,7 @@ mod plan;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use barrelstack_fragility::{Interval, Stripe};
+use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
@@ -69,10 +69,16 @@ pub struct Height {
 pub struct AtLevel {
     /// Counts of collapse.
     pub stripe: Stripe,
-    /// Wilson's 95 % interval of the chance of collapse.
+    /// Ends of the chance of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
+}
+
+/// What is known of the chance of collapse from counts: each end holds with 95 % confidence, whatever the chance is, so
+/// that the upper one is the bound that a headline states.
+fn known(stripe: &Stripe) -> Interval {
+    clopper_pearson(stripe.failures, stripe.cases, 0.90)
 }
 
 impl Height {
@@ -85,7 +91,7 @@ impl Height {
         let at = curve.stripes.iter().position(same)?;
         Some(AtLevel {
             stripe: curve.stripes[at],
-            interval: curve.intervals[at],
+            interval: known(&curve.stripes[at]),
             fallen: *self.fallen.get(at)?,
         })
     }

@@ -100,6 +100,9 @@ pub struct Ranked {
     pub burst: Estimate,
     /// How many fewer barrels fall than of the stack as it is, under the same motions; none for itself.
     pub saved: Option<Estimate>,
+    /// The same with an interval that holds for all protections that were tried at once, since the best of many tries
+    /// is looked at.
+    pub saved_together: Option<Estimate>,
     /// The direction of shaking in which more barrels fall.
     pub direction: View,
     /// Motions under which it was run.
@@ -147,12 +150,18 @@ impl Ranking {
         self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
     }
 
-    /// The one that saves most barrels for its cost, of those that went through all rounds and save some beyond doubt.
+    /// How many protections were tried, beside the stack as it is.
+    pub fn tries(&self) -> usize {
+        self.all.len().saturating_sub(1)
+    }
+
+    /// The one that saves most barrels for its cost, of those that went through all rounds and save some beyond doubt:
+    /// by an interval that holds for all that were tried at once.
     pub fn best(&self) -> Option<&Ranked> {
         let last = self.all.iter().map(|one| one.round).max();
         let worth = |one: &Ranked| one.saved.map_or(0.0, |saved| saved.mean / one.cost());
         let helps = self.all.iter().filter(|one| {
-            Some(one.round) == last && one.saved.is_some_and(|saved| saved.low > 0.0)
+            Some(one.round) == last && one.saved_together.is_some_and(|saved| saved.low > 0.0)
         });
         // Of equals the first, under which fewer fall.
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
@@ -282,8 +291,9 @@ pub fn protect(
             open = contenders(&trials, &open, &weights);
         }
     }
+    let tries = trials.len() - 1;
     let mut all: Vec<Ranked> =
-        trials.iter().map(|trial| ranked(trial, &trials[0], &weights)).collect();
+        trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
     mark_front(&mut all);
     search.worn(&trials, &mut all, &weights)?;
     // What was dropped early has met fewer motions, so its mean is another one.
@@ -306,7 +316,8 @@ fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
         (&trial.runs[trial.worse(weights)], middle(&trial.protection))
     };
     let judged: Vec<(&Runs, f64)> = open.iter().map(judged).collect();
-    let kept = rank::contenders(&judged, weights);
+    let most = trials.first().map_or(0.0, Trial::barrels);
+    let kept = rank::contenders(&judged, weights, most);
     kept.into_iter().map(|at| open[at]).collect()
 }
 
@@ -338,21 +349,24 @@ fn middle(protection: &Protection) -> f64 {
     0.5 * (protection.cost[0] + protection.cost[1])
 }
 
-fn ranked(trial: &Trial, base: &Trial, weights: &[f64]) -> Ranked {
+fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked {
     let worse = trial.worse(weights);
-    let (view, stack) = &trial.stacks[worse];
+    let view = &trial.stacks[worse].0;
     let runs = &trial.runs[worse];
-    let barrels = stack.stack().map_or(0, |stack| stack.levels * stack.columns);
-    let most = f64::from(barrels);
-    let saved = (trial.protection.kind != Kind::AsItIs)
-        .then(|| runs.less_than(&base.runs[base.worse(weights)], FALLEN, weights))
-        .flatten();
+    let most = trial.barrels();
+    let before = &base.runs[base.worse(weights)];
+    let saved = |tries: usize| {
+        let changed = trial.protection.kind != Kind::AsItIs;
+        let range = (weights, most.max(base.barrels()));
+        changed.then(|| runs.less_than(before, FALLEN, range, tries)).flatten()
+    };
     Ranked {
         protection: trial.protection.clone(),
         collapse: runs.estimate(|run| run.collapsed, weights, 1.0),
         fallen: runs.estimate(FALLEN, weights, most),
         burst: runs.estimate(|run| run.burst, weights, most),
-        saved,
+        saved: saved(1),
+        saved_together: saved(tries),
         direction: *view,
         motions: runs.motions(),
         runs: trial.runs.iter().map(|runs| runs.count).sum(),

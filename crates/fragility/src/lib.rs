@@ -71,7 +71,7 @@ pub use goodness::{
 };
 pub use hazard::{Contribution, Hazard, HazardError, Rate, chance_within};
 pub use ida::Ida;
-pub use indices::{Index, sobol_indices};
+pub use indices::{FEWEST_BLOCKS, Index, sobol_indices};
 pub use math::{
     chi_square_above, normal, normal_density, normal_quantile, quantile, student_beyond,
     student_quantile,
@@ -80,5 +80,5 @@ pub use measures::{Demanded, Measured, demand_against, failure_against};
 pub use modes::Shares;
 pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};
-pub use proportion::{Interval, clopper_pearson, wilson};
-pub use records::{LeaveOneOut, grouped_mean, leave_one_out};
+pub use proportion::{Interval, at_most, clopper_pearson, unobserved, wilson};
+pub use records::{LeaveOneOut, grouped_mean, leave_one_out, mean_difference};

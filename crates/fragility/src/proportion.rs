@@ -1,6 +1,6 @@
 //! Intervals of a proportion from counts.
 
-use crate::math::{beta_quantile, normal_quantile};
+use crate::math::{beta_quantile, exp, ln, normal_quantile};
 
 /// Two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,10 +47,38 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
+/// The largest share of a population of which a sample may show nothing: what holds for that share is in none of so many
+/// observations with the chance that one tail of an interval of a level leaves.
+pub fn unobserved(count: usize, level: f64) -> f64 {
+    if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
+}
+
+/// The bound below which a proportion lies with a probability (Clopper and Pearson 1934, one-sided): its coverage is
+/// never below that. 1 without cases.
+pub fn at_most(failures: u32, cases: u32, probability: f64) -> f64 {
+    if failures >= cases {
+        return 1.0;
+    }
+    let (k, n) = (f64::from(failures), f64::from(cases));
+    beta_quantile(probability, k + 1.0, n - k)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{exp, ln, ln_choose};
+    use crate::math::ln_choose;
+
+    #[test]
+    fn one_sided_bounds_have_their_textbook_values() {
+        // None of n: 1 − 0.05^(1/n), the rule of three.
+        assert!((at_most(0, 24, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-12);
+        // With a chance at the bound one or none of 34 fails in 5 of 100 tries.
+        let p = at_most(1, 34, 0.95);
+        let tail = (1.0 - p).powi(34) + 34.0 * p * (1.0 - p).powi(33);
+        assert!((tail - 0.05).abs() < 1e-9, "{p}: {tail}");
+        assert_eq!((at_most(3, 3, 0.95), at_most(0, 0, 0.95)), (1.0, 1.0));
+        assert!(((1.0 - unobserved(24, 0.95)).powi(24) - 0.025).abs() < 1e-12);
+    }
 
     #[test]
     fn wilson_has_its_textbook_values() {

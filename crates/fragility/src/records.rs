@@ -6,7 +6,7 @@ use crate::curve::Lognormal;
 use crate::evidence::Evidence;
 use crate::fit::{Dispersion, FitError, fit};
 use crate::math::{exp, ln, normal, normal_quantile, student_quantile};
-use crate::proportion::Interval;
+use crate::proportion::{Interval, unobserved};
 
 /// A curve, and those with each group of evidence, such as all cases of one record, left out.
 ///
@@ -59,6 +59,16 @@ impl LeaveOneOut {
         let change =
             |other: &Lognormal| (one(other) - one(&self.fitted)) * (two(other) - two(&self.fitted));
         (n - 1.0) / n * self.others.iter().map(change).sum::<f64>()
+    }
+
+    /// Standard error of the logarithm of the median, cases of one record going together.
+    pub fn median_error(&self) -> f64 {
+        self.spread(|curve| ln(curve.median), |curve| ln(curve.median)).sqrt()
+    }
+
+    /// Standard error of the logarithm of the dispersion, cases of one record going together.
+    pub fn dispersion_error(&self) -> f64 {
+        self.spread(|curve| ln(curve.dispersion), |curve| ln(curve.dispersion)).sqrt()
     }
 
     /// The interval of anything computed from a curve whose errors are about as large to either side, such
@@ -117,6 +127,8 @@ impl LeaveOneOut {
 ///
 /// Wilson's interval with Student's t for the normal quantile, of as many independent cases as would scatter
 /// like the groups do; as many as there are groups, where these do not scatter at all.
+/// Few groups that happen to be nearly alike scatter little by chance, so the interval also holds what the mean would be
+/// if the groups of which so many show nothing ([`unobserved`]) all had 0 or all had 1.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let count = groups.len() as f64;
     let cases: f64 = groups.iter().map(|(_, cases)| cases).sum();
@@ -132,5 +144,36 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let scale = 1.0 + z * z / n;
     let center = (p + z * z / (2.0 * n)) / scale;
     let half = z / scale * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-    Interval { low: (center - half).max(0.0), high: (center + half).min(1.0) }
+    let missed = unobserved(groups.len(), level);
+    Interval {
+        low: (center - half).min((1.0 - missed) * p).max(0.0),
+        high: (center + half).max((1.0 - missed) * p + missed).min(1.0),
+    }
+}
+
+/// The interval of the mean of paired differences, one a group, each between `-most` and `most`; none for fewer than two.
+///
+/// Student's, and where few differences happen to be nearly alike as wide as by the guard of [`grouped_mean`] at 95 %.
+/// `tries` is how many such intervals are looked at to pick one: then each has the confidence with which all of them hold
+/// together at the level (Bonferroni), so that the best of many tries is not taken for more than it is.
+pub fn mean_difference(
+    differences: &[f64],
+    most: f64,
+    level: f64,
+    tries: usize,
+) -> Option<Interval> {
+    let count = differences.len();
+    if count < 2 {
+        return None;
+    }
+    let mean = differences.iter().sum::<f64>() / count as f64;
+    let squares: f64 = differences.iter().map(|one| (one - mean) * (one - mean)).sum();
+    let error = (squares / (count as f64 * (count as f64 - 1.0))).sqrt();
+    let together = 1.0 - (1.0 - level) / tries.max(1) as f64;
+    let half = student_quantile(together, count - 1) * error;
+    let missed = unobserved(count, level);
+    Some(Interval {
+        low: (mean - half).min((1.0 - missed) * mean - missed * most).max(-most),
+        high: (mean + half).max((1.0 - missed) * mean + missed * most).min(most),
+    })
 }

@@ -121,6 +121,19 @@ impl LimitCurve {
         }
     }
 
+    /// Standard errors of the logarithms of median and dispersion: cases of one record go together where several records
+    /// shake the stack, and are taken as independent where there is one.
+    ///
+    /// # Errors
+    /// Why there is no curve.
+    pub fn standard_errors(&self) -> Result<[f64; 2], &FitError> {
+        let fit = self.fit.as_ref()?;
+        Ok(match &self.left_out {
+            Some(others) => [others.median_error(), others.dispersion_error()],
+            None => [fit.median_error, fit.dispersion_error],
+        })
+    }
+
     /// Whether failure clearly becomes less likely somewhere, against what every curve takes for granted.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05

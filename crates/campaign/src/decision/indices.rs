@@ -1,13 +1,9 @@
 //! What matters: first and total Sobol' indices of every varied quantity, on collapse and on the demands.
 
 use barrelstack_fragility::{Index, sobol_indices};
-use barrelstack_motion::Random;
 
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Role, StudyTable};
-
-/// Resamples of the blocks for intervals.
-const REPLICATES: usize = 400;
 
 /// What every varied quantity does to one result.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +72,7 @@ impl Results {
                 .filter(|block| block.len() == size && !block.iter().any(|v| v.is_nan()))
                 .map(<[f64]>::to_vec)
                 .collect();
-            let mut random = Random::new(made.seed);
-            let found = sobol_indices(&whole, REPLICATES, LEVEL, || random.uniform())?;
+            let found = sobol_indices(&whole, LEVEL)?;
             Some(Sensitivity {
                 result,
                 blocks: whole.len(),

@@ -80,12 +80,11 @@ described! {
             curve.fit.as_ref().ok().map(|fit| fit.curve.median),
         /// Standard deviation of the logarithm.
         pub dispersion: Option<f64> as "1" = curve.fit.as_ref().ok().map(|fit| fit.curve.dispersion),
-        /// Standard error of the logarithm of the median.
-        pub ln_median_standard_error: Option<f64> as "1" =
-            curve.fit.as_ref().ok().and_then(|fit| finite(fit.median_error)),
-        /// Standard error of the logarithm of the dispersion.
-        pub ln_dispersion_standard_error: Option<f64> as "1" =
-            curve.fit.as_ref().ok().and_then(|fit| finite(fit.dispersion_error)),
+        /// Standard error of the logarithm of the median: cases of one record go together (jackknife over records) where
+        /// `band` says so, and are taken as independent elsewhere.
+        pub ln_median_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[median, _]| finite(median)),
+        /// Standard error of the logarithm of the dispersion, likewise.
+        pub ln_dispersion_standard_error: Option<f64> as "1" = curve.standard_errors().ok().and_then(|[_, dispersion]| finite(dispersion)),
         /// 95 % interval of the median; an end is null where it is not bounded.
         pub median_interval: Option<[Option<f64>; 2]> as "of the measure" =
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
@@ -237,13 +236,13 @@ described! {
     pub struct SobolIndex of input: &(String, Index) {
         /// Its name.
         pub input: String = input.0.clone(),
-        /// First-order index.
+        /// First-order index, cut to 0 and 1.
         pub first: f64 as "1" = input.1.first,
-        /// Its 95 % interval.
+        /// Its 95 % interval (jackknife over blocks); 0 to 1 where the blocks are too few to say more.
         pub first_interval: [Option<f64>; 2] as "1" = bounds(input.1.first_interval),
-        /// Total index.
+        /// Total index, cut to 0 and 1.
         pub total: f64 as "1" = input.1.total,
-        /// Its 95 % interval.
+        /// Its 95 % interval, likewise.
         pub total_interval: [Option<f64>; 2] as "1" = bounds(input.1.total_interval),
     }
 

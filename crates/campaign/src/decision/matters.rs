@@ -54,24 +54,29 @@ pub(super) fn indices(all: &[Sensitivity]) -> Table {
         if at == 0 { of.result.replace('_', " ") } else { String::new() }
     };
     Table::of(
-        "Sobol' indices with 95 % intervals by resampling of blocks.",
+        "Sobol' indices with 95 % intervals, by leaving out one block at a time.",
         rows.map(|(of, ((name, index), at))| (result(of, at), of.blocks, name, index)),
         &[
             ("result", "", &|(result, ..)| Cell::text(result)),
             ("quantity", "", &|(_, _, name, _)| Cell::text(*name)),
             ("first", "", &|(.., of)| Cell::text(share(of.first))),
-            ("95 % interval (first)", "", &|(.., of)| Cell::text(range(of.first_interval, share))),
+            ("95 % interval (first)", "", &|(.., of)| Cell::text(known(of.first_interval))),
             ("total", "", &|(.., of)| Cell::text(share(of.total))),
-            ("95 % interval (total)", "", &|(.., of)| Cell::text(range(of.total_interval, share))),
+            ("95 % interval (total)", "", &|(.., of)| Cell::text(known(of.total_interval))),
             ("blocks", "", &|(_, of, ..)| count(u32::try_from(*of).unwrap_or(u32::MAX))),
         ],
     )
 }
 
-/// A share of two digits behind the point, that may come out a hair below zero.
+/// The interval of an index, or that the blocks are too few for one.
+fn known(interval: Interval) -> String {
+    let whole = interval.low <= 0.0 && interval.high >= 1.0;
+    if whole { "too few blocks to say".to_owned() } else { range(interval, share) }
+}
+
+/// A share of two digits behind the point.
 fn share(value: f64) -> String {
-    let rounded = (100.0 * value).round() / 100.0 + 0.0;
-    format!("{rounded:.2}").replace('-', "−")
+    format!("{value:.2}")
 }
 
 pub(super) fn measures(decision: &Decision) -> Table {

@@ -83,7 +83,8 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         blocks.push(text(
             "The first index is the share of the variance that would go if the quantity were known, the total index the \
              share that would stay if everything else were; what the total has more than the first it does together with \
-             others. Demands are those up to the collapse. Indices near zero may come out below it.",
+             others. Demands are those up to the collapse. A quantity that changed nothing in these blocks may in others, so that \
+             no interval ends at zero.",
         ));
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
@@ -138,16 +139,21 @@ fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> 
             cases.all.len() / curve.stripes.len().max(1)
         ));
     }
-    match &curve.fit {
+    match curve.standard_errors() {
         Err(reason) => {
             said.push(format!("No curve: {}.", words::refusal(reason, |x| measure.words(x))));
         }
-        Ok(fit) => {
+        Ok([median, dispersion]) => {
             said.push(format!(
                 "The curve has the greatest likelihood of all lognormal ones (Baker 2015); standard errors: {} of ln θ, \
-                 {} of ln β.",
-                significant(fit.median_error, 2),
-                significant(fit.dispersion_error, 2)
+                 {} of ln β, {}.",
+                significant(median, 2),
+                significant(dispersion, 2),
+                if curve.left_out.is_some() {
+                    "cases of one record going together"
+                } else {
+                    "as if the cases were independent"
+                }
             ));
             said.push(match curve.band_kind {
                 BandKind::Records => {

@@ -1,9 +1,9 @@
 //! The numbers of the page for programs, in SI units.
 
-use barrelstack_fragility::{Interval, Stripe};
+use barrelstack_fragility::Stripe;
 use barrelstack_report::described;
 
-use super::{AsRecorded, Height, Heights};
+use super::{AsRecorded, Height, Heights, known};
 use crate::decision::{LimitCurve, bounds};
 
 described! {
@@ -68,15 +68,15 @@ described! {
     }
 
     /// What becomes of stacks at one level of shaking.
-    pub struct LevelRow of at: &((&Stripe, &Interval), &f64) {
+    pub struct LevelRow of at: &(&Stripe, &f64) {
         /// Peak ground velocity.
-        pub pgv: f64 as "m/s" = at.0.0.intensity,
+        pub pgv: f64 as "m/s" = at.0.intensity,
         /// Runs with a verdict.
-        pub cases: u32 = at.0.0.cases,
+        pub cases: u32 = at.0.cases,
         /// Runs that collapse.
-        pub collapsed: u32 = at.0.0.failures,
-        /// 95 % interval of the chance of collapse (Wilson).
-        pub interval: [Option<f64>; 2] as "1" = bounds(*at.0.1),
+        pub collapsed: u32 = at.0.failures,
+        /// Ends of the chance of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
+        pub interval: [Option<f64>; 2] as "1" = bounds(known(at.0)),
         /// Mean share of the barrels that fall.
         pub fallen_share: f64 as "1" = *at.1,
     }
@@ -98,6 +98,6 @@ described! {
 
 fn levels(height: &Height) -> Vec<LevelRow> {
     let curve = &height.by_velocity;
-    let at = curve.stripes.iter().zip(&curve.intervals).zip(&height.fallen);
+    let at = curve.stripes.iter().zip(&height.fallen);
     at.map(|at| LevelRow::of(&at)).collect()
 }

@@ -1,6 +1,6 @@
 //! The page: how high is safe, for someone with a minute.
 
-use barrelstack_fragility::{Fit, Interval, wilson};
+use barrelstack_fragility::{Fit, Interval, at_most};
 use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
@@ -14,8 +14,9 @@ use crate::decision::{
 use crate::scenario::View;
 use crate::scenario::catalog;
 
-/// Largest share of collapse that is called low, and the largest upper bound of its interval.
-const LOW: (f64, f64) = (0.05, 0.20);
+/// Largest share of collapse that is called low, and the largest chance that the counts may leave possible: a chance
+/// above that is called low in one of 20 tries at most, however many motions there are.
+const LOW: (f64, f64) = (0.05, 0.12);
 
 /// Largest share that is called medium.
 const MEDIUM: f64 = 0.25;
@@ -69,12 +70,12 @@ fn named(velocity: f64) -> String {
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// A height at a level of PGV (m/s) in the direction in which more stacks collapse.
+/// A height at a level of PGV (m/s) in the direction in which the counts leave the larger chance of collapse possible.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
         .filter_map(|view| all.of(levels, view)?.at(velocity))
-        .max_by(|a, b| a.stripe.fraction().total_cmp(&b.stripe.fraction()))
+        .max_by(|a, b| a.interval.high.total_cmp(&b.interval.high))
 }
 
 fn rating(at: &AtLevel) -> Rating {
@@ -98,9 +99,9 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
-/// Fewest motions whose interval can end low enough, were no stack to collapse.
+/// Fewest motions that can leave no more than a low chance possible, were no stack to collapse.
 fn fewest_motions() -> u32 {
-    (1..1_000_000).find(|n| wilson(0, *n, 0.95).high <= LOW.1).unwrap_or(u32::MAX)
+    (1..1_000_000).find(|n| at_most(0, *n, 0.95) <= LOW.1).unwrap_or(u32::MAX)
 }
 
 fn headline(all: &Heights) -> String {
@@ -111,23 +112,41 @@ fn headline(all: &Heights) -> String {
             "Too few motions to call anything low in risk: {motions} shook every stack, and {more} more would do."
         );
     }
-    let strongest =
-        (0..VELOCITIES.len()).rev().find_map(|at| Some((at, highest_low(all, VELOCITIES[at])?)));
-    match strongest {
-        Some((at, levels)) => {
-            let next = (at + 1 < VELOCITIES.len()).then(|| {
-                format!("; from {} on not even two levels are", named(VELOCITIES[at + 1]))
-            });
-            format!(
-                "Up to {levels} levels are low in risk in {}{}.",
-                named(VELOCITIES[at]),
-                next.unwrap_or_default()
-            )
-        }
-        None => {
-            format!("Not even two levels are low in risk in {}.", named(VELOCITIES[0]))
-        }
-    }
+    // From the weakest shaking on and no further than to the first that is not low: had each level of shaking its own
+    // chance to pass, one too many would.
+    let low =
+        VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
+    let Some((velocity, levels)) = low.last() else {
+        return format!("Not even two levels are low in risk in {}.", named(VELOCITIES[0]));
+    };
+    let next = VELOCITIES.into_iter().find(|other| *other > velocity);
+    format!(
+        "Up to {levels} levels are low in risk in {}: {}{}.",
+        named(velocity),
+        found(all, levels, velocity),
+        next.map(|next| format!("; in {} not even two levels are", named(next)))
+            .unwrap_or_default()
+    )
+}
+
+/// What is known of all stacks of up to some levels at a level of PGV (m/s), of which each has been counted: "in 24
+/// motions none fell: at most 12 % (95 %)".
+fn found(all: &Heights, levels: u32, velocity: f64) -> String {
+    let heights = HEIGHTS.into_iter().take_while(|height| *height <= levels);
+    let worst = heights
+        .filter_map(|height| worse(all, height, velocity))
+        .max_by(|a, b| a.interval.high.total_cmp(&b.interval.high));
+    let Some(AtLevel { stripe, interval, .. }) = worst else { return String::new() };
+    let fell = match stripe.failures {
+        0 => "none fell".to_owned(),
+        count => format!("no more than {count} of a height fell"),
+    };
+    format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
+}
+
+/// A bound in whole percent, which rounding may not make smaller than it is by more than half a percent.
+fn bound(high: f64) -> String {
+    format!("{:.0} %", 100.0 * high)
 }
 
 fn sentences(all: &Heights) -> Vec<String> {
@@ -156,9 +175,10 @@ fn blocks(all: &Heights) -> Vec<Block> {
         heading("How high is safe"),
         Block::Table(card(all)),
         text(format!(
-            "Each cell is the share of stacks that collapse in the direction in which more do, and the range in which the \
-             true chance lies with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or below. \
-             ! medium: at most {:.0} %. ✗ high: more. These limits are a choice.",
+            "Each cell is the share of stacks that collapse in the direction in which more may, and the range of the true \
+             chance, of which each end holds with 95 % confidence. ✓ low: at most {:.0} %, and the range ends at {:.0} % or \
+             below, so that a higher chance passes for low in one of 20 tries at most. ! medium: at most {:.0} %. ✗ high: \
+             more. These limits are a choice.",
             100.0 * LOW.0,
             100.0 * LOW.1,
             100.0 * MEDIUM
@@ -263,8 +283,8 @@ fn chart(all: &Heights) -> Figure {
     }
     Figure::new(
         "height-chart",
-        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Upright bars: 95 % \
-         confidence.",
+        "Chance of collapse against height in the weaker direction, at three strengths of shaking. Each end of an upright bar \
+         holds with 95 % confidence.",
         Plot { x: level_axis(), y: chance_axis("chance of collapse"), series, ..Plot::default() },
     )
 }
@@ -356,7 +376,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
         "Scaled motions are not the motions of stronger earthquakes: real ones are longer and have longer periods. Levels far \
          from a motion's own strength are the least certain."
             .into(),
-        "Intervals count every motion as one observation and hold for motions like these, not for what the model leaves out."
+        "Ranges count every motion as one observation and hold for motions like these, not for what the model leaves out."
             .into(),
         "Racks are those of the catalog, of which several dimensions are assumptions. A study runs the same for \
          racks and rooms of your own: the folder holds the studies of this page."

@@ -27,6 +27,8 @@ described! {
         pub seed: u32 = all.request.seed,
         /// Most that a protection may cost for a stack.
         pub budget: Option<f64> as "US$" = all.request.budget,
+        /// How many protections were tried, beside the stack as it is.
+        pub tries: usize = all.tries(),
         /// Runs in all.
         pub runs: usize = all.runs,
         /// The answer in a sentence.
@@ -62,6 +64,9 @@ described! {
         pub barrels_burst: Interval = Interval::of(&one.burst),
         /// How many fewer barrels fall than of the stack as it is, under the same motions; null for itself.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
+        /// The same with an interval that holds for all protections that were tried at once (Bonferroni), by which `best`
+        /// is chosen; null for the stack as it is.
+        pub barrels_saved_together: Option<Interval> = one.saved_together.as_ref().map(Interval::of),
         /// Barrels that fall when it is worst kept; null where that was not tried.
         pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(|(_, worn)| Interval::of(worn)),
         /// What it is then, in words.
@@ -82,7 +87,8 @@ described! {
         pub on_front: bool = one.on_front,
     }
 
-    /// A mean and its 95 % interval, for which the runs of one motion go together.
+    /// A mean and its 95 % interval, for which the runs of one motion go together and which is no narrower than so few
+    /// motions allow.
     pub struct Interval of estimate: &Estimate {
         /// The mean; null where no run has a verdict.
         pub mean: Option<f64> as "that of the field" = Some(estimate.mean).filter(|mean| mean.is_finite()),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use barrelstack_fragility::{Hazard, Interval, grouped_mean, student_quantile};
+use barrelstack_fragility::{Hazard, Interval, grouped_mean, mean_difference};
 
 use crate::decision::{Breakage, Case, Cases};
 
@@ -109,26 +109,23 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// By how much less a quantity is than in other runs under the same motions: the mean of the differences and
-    /// its 95 % interval (Student's); none with fewer than two motions in common.
+    /// By how much less a quantity is than in other runs under the same motions: the mean of the differences and its
+    /// 95 % interval ([`mean_difference`]), the best of so many tries; `most` is what one run can come to. None with
+    /// fewer than two motions in common.
     pub(super) fn less_than(
         &self,
         other: &Self,
         quantity: Quantity,
-        weights: &[f64],
+        (weights, most): (&[f64], f64),
+        tries: usize,
     ) -> Option<Estimate> {
         let (own, other) = (self.by_motion(quantity, weights), other.by_motion(quantity, weights));
         let differences: Vec<f64> =
             own.iter().filter_map(|(name, value)| Some(other.get(name)? - value)).collect();
-        let count = differences.len();
-        if count < 2 {
-            return None;
-        }
-        let mean = differences.iter().sum::<f64>() / count as f64;
-        let squares: f64 = differences.iter().map(|one| (one - mean) * (one - mean)).sum();
-        let error = (squares / (count as f64 * (count as f64 - 1.0))).sqrt();
-        let half = student_quantile(LEVEL, count - 1) * error;
-        Some(Estimate { mean, low: mean - half, high: mean + half })
+        let most = most * weights.iter().sum::<f64>();
+        let Interval { low, high } = mean_difference(&differences, most, LEVEL, tries)?;
+        let mean = differences.iter().sum::<f64>() / differences.len() as f64;
+        Some(Estimate { mean, low, high })
     }
 }
 
@@ -157,13 +154,15 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
 /// Who goes on to the next round: of those that are not worse than a cheaper one beyond doubt, the better half by mean,
 /// and four at least; the first, the stack as it is, always.
 ///
-/// Beside the runs of each stands the middle of what it costs.
-pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64]) -> Vec<usize> {
+/// Beside the runs of each stands the middle of what it costs; `most` is what one run can come to. Beyond doubt is what
+/// holds for all pairs together.
+pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
+    let pairs = all.len() * all.len().saturating_sub(1) / 2;
     let beaten = |at: usize| {
         all.iter().any(|(runs, cost)| {
-            let less = runs.less_than(all[at].0, FALLEN, weights);
+            let less = runs.less_than(all[at].0, FALLEN, (weights, most), pairs);
             *cost <= all[at].1 && less.is_some_and(|less| less.low > 0.0)
         })
     };
@@ -211,10 +210,34 @@ mod tests {
             runs(&rows)
         };
         let (one, other) = (of(&one), of(&other));
-        let less = one.less_than(&other, FALLEN, &[1.0]).unwrap();
-        assert!((less.mean - 1.25).abs() < 1e-12 && less.low > 1.0, "{less:?}");
+        let less = one.less_than(&other, FALLEN, (&[1.0], 8.0), 1).unwrap();
+        assert!((less.mean - 1.25).abs() < 1e-12, "{less:?}");
         let [a, b] = [&one, &other].map(|runs| runs.estimate(FALLEN, &[1.0], 8.0));
+        // Six motions are too few to know that a seventh would not do the opposite.
+        assert!(less.low < 0.0 && less.high - less.low < a.high - a.low + b.high - b.low);
         assert!(a.high > b.low, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn near_equal_records_claim_nothing_and_more_tries_claim_less() {
+        let of = |falls: &[f64]| {
+            let names = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"];
+            let rows: Vec<[f64; 1]> = falls.iter().map(|x| [*x]).collect();
+            let rows: Vec<(&str, &[f64])> =
+                names.iter().zip(&rows).map(|(name, value)| (*name, &value[..])).collect();
+            runs(&rows)
+        };
+        let less = |own: &[f64], other: &[f64], tries: usize| {
+            of(own).less_than(&of(other), FALLEN, (&[1.0], 8.0), tries).unwrap()
+        };
+        // Two records: as it was, 2.00 (2.00 to 2.00) beyond doubt.
+        let two = less(&[2.0, 2.0], &[4.0, 4.0], 1);
+        assert!(two.mean == 2.0 && two.low < 0.0 && two.high > 4.0, "{two:?}");
+        let falls = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0];
+        let all = [8.0, 6.0, 4.0, 6.0, 7.0, 5.0, 4.0, 8.0, 8.0, 4.0, 2.0, 5.0];
+        let [one, many] = [1, 60].map(|tries| less(&falls, &all, tries));
+        assert!(one.mean == many.mean && many.low <= one.low && one.high < many.high);
+        assert!(many.low > 0.0, "{many:?}");
     }
 
     #[test]
@@ -245,17 +268,19 @@ mod tests {
 
     #[test]
     fn what_a_cheaper_one_beats_beyond_doubt_is_dropped_and_the_stack_as_it_is_stays() {
-        let of = |falls: [f64; 4]| {
-            let names = ["a", "b", "c", "d"];
-            let rows: Vec<[f64; 1]> = falls.iter().map(|x| [*x]).collect();
+        let of = |falls: [f64; 4], motions: usize| {
+            let names: Vec<String> = (0..motions).map(|at| at.to_string()).collect();
+            let rows: Vec<[f64; 1]> = (0..motions).map(|at| [falls[at % 4]]).collect();
             let rows: Vec<(&str, &[f64])> =
-                names.iter().zip(&rows).map(|(name, value)| (*name, &value[..])).collect();
+                names.iter().zip(&rows).map(|(name, value)| (name.as_str(), &value[..])).collect();
             runs(&rows)
         };
-        let base = of([8.0, 8.0, 7.0, 8.0]);
-        let good = of([1.0, 0.0, 1.0, 0.0]);
-        let dear = of([4.0, 5.0, 4.0, 4.0]);
-        let all = [(&base, 0.0), (&dear, 90.0), (&good, 10.0)];
-        assert_eq!(contenders(&all, &[1.0]), [0, 2]);
+        for (motions, expected) in [(4, vec![0, 1, 2]), (24, vec![0, 2])] {
+            let base = of([8.0, 8.0, 7.0, 8.0], motions);
+            let good = of([1.0, 0.0, 1.0, 0.0], motions);
+            let dear = of([6.0, 7.0, 6.0, 6.0], motions);
+            let all = [(&base, 0.0), (&dear, 90.0), (&good, 10.0)];
+            assert_eq!(contenders(&all, &[1.0], 8.0), expected, "{motions} motions");
+        }
     }
 }

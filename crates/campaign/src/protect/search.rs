@@ -37,6 +37,12 @@ impl Trial {
         Ok(Self { protection, stacks, runs, round: 0 })
     }
 
+    /// Most barrels of a stack, in the direction that shows most of them.
+    pub(super) fn barrels(&self) -> f64 {
+        let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
+        stacks.map(|stack| f64::from(stack.levels * stack.columns)).fold(0.0, f64::max)
+    }
+
     /// The direction in which more barrels fall.
     pub(super) fn worse(&self, weights: &[f64]) -> usize {
         let fallen = |at: usize| self.runs[at].estimate(FALLEN, weights, 1.0).mean;
