@@ -89,3 +89,11 @@ pub(crate) fn resolution(text: &str) -> f64 {
     let power = exponent.saturating_sub(i32::try_from(decimals).unwrap_or(0)).clamp(-300, 300);
     crate::math::powf(10.0, f64::from(power))
 }
+
+/// Whether a field is what programs print in place of a number.
+pub(super) fn is_no_number(text: &str) -> bool {
+    let lower = text.trim_matches(['+', '-', '"']).to_ascii_lowercase();
+    let printed =
+        ["nan", "inf", "infinity", "null", "none", "na", "n/a", "1.#inf", "1.#ind", "1.#qnan"];
+    printed.contains(&lower.as_str()) || lower.starts_with('#')
+}

@@ -243,6 +243,11 @@ impl<'a> Source<'a> {
                 "the value overflowed its column when the file was written; get the file again \
                  in a wider format",
             )
+        } else if super::number::is_no_number(&text) {
+            (
+                quoted(&text),
+                "the program that wrote the file had no number there; get the file again from its source",
+            )
         } else {
             (
                 quoted(&text),

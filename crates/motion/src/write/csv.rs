@@ -8,6 +8,9 @@ use crate::record::Record;
 /// Comment that gives the velocity at the first sample of each channel, where one is not zero.
 pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 
+/// First line of the files written here; it names quantity and unit.
+pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
+
 /// A record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row
 /// to a sample.
 ///
@@ -27,8 +30,8 @@ pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 /// If there is no channel or the steps differ.
 pub fn csv(record: &Record) -> Result<String, MotionError> {
     let (step, rows) = super::common(record)?;
-    // The first line names quantity and unit, so that no word further down is taken for them.
-    let mut text = String::from("# acceleration (m/s2)\n");
+    // Readers that know this line take no word further down for a step, a unit or a quantity.
+    let mut text = format!("{FIRST_LINE}\n");
     for (key, value) in [("event", &record.event), ("station", &record.station)] {
         if !value.is_empty() {
             // Writing to a String cannot fail.

@@ -12,8 +12,8 @@ mod text;
 
 pub use at2::at2;
 pub(crate) use at2::{NO_EVENT, NO_STATION};
-pub(crate) use csv::INITIAL_VELOCITY;
 pub use csv::csv;
+pub(crate) use csv::{FIRST_LINE, INITIAL_VELOCITY};
 pub(crate) use npz::array_name;
 pub use npz::{archive, npz};
 pub(crate) use text::TITLE;

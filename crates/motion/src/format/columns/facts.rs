@@ -1,0 +1,436 @@
+//! Statements of a header in words: step, count, duration, unit, peak, component.
+
+use crate::direction::Direction;
+use crate::error::ReadError;
+use crate::format::source::{Source, leading_printed, leading_text, quoted};
+use crate::record::Quantity;
+use crate::units::MotionUnit;
+
+/// A value that a header states, and its line (0-based).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stated<T> {
+    pub(super) line: usize,
+    pub(super) value: T,
+}
+
+/// A peak acceleration as stated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peak {
+    pub(super) value: f64,
+    pub(super) resolution: f64,
+    /// SI value of one of its unit; that of the samples where none is stated.
+    pub(super) factor: Option<f64>,
+}
+
+/// Statements of the header lines above a table.
+#[derive(Debug, Default)]
+pub(super) struct Facts {
+    /// Time between samples (s).
+    pub(super) step: Option<Stated<f64>>,
+    /// Number of samples.
+    pub(super) count: Option<Stated<usize>>,
+    /// Length of the record (s) and one unit of its last printed digit.
+    pub(super) duration: Option<Stated<[f64; 2]>>,
+    /// Unit of the samples.
+    pub(super) unit: Option<Stated<MotionUnit>>,
+    /// Word in the place of a unit that is none of motion.
+    pub(super) unknown_unit: Option<Stated<String>>,
+    pub(super) peak: Option<Stated<Peak>>,
+    /// Name of the only component, if it says a direction.
+    pub(super) component: Option<String>,
+}
+
+const STEP_KEYS: [&str; 20] = [
+    "dt",
+    "delta t",
+    "delta-t",
+    "delta_t",
+    "deltat",
+    "time step",
+    "timestep",
+    "time-step",
+    "time_step",
+    "time increment",
+    "time interval",
+    "time intervals",
+    "sampling interval",
+    "sample interval",
+    "sampling period",
+    "sample period",
+    "sampling time",
+    "sampling step",
+    "intervals of",
+    "equally spaced at",
+];
+const RATE_KEYS: [&str; 8] = [
+    "sampling rate",
+    "sample rate",
+    "sampling_rate",
+    "samplerate",
+    "sampling frequency",
+    "sampling freq",
+    "sample frequency",
+    "fs",
+];
+const COUNT_KEYS: [&str; 20] = [
+    "npts",
+    "ndata",
+    "nsamp",
+    "nsamples",
+    "no. of points",
+    "no of points",
+    "no. of data",
+    "no. of samples",
+    "number of points",
+    "number of samples",
+    "number of data",
+    "number of data points",
+    "number of values",
+    "number of acceleration values",
+    "number of acceleration points",
+    "num samples",
+    "num_samples",
+    "samples",
+    "points",
+    "data points",
+];
+const DURATION_KEYS: [&str; 5] =
+    ["duration", "record length", "length of record", "total time", "length"];
+const PEAK_KEYS: [&str; 10] = [
+    "pga",
+    "peak ground acceleration",
+    "peak acceleration",
+    "peak acc",
+    "peak value",
+    "max. acc.",
+    "max. acc",
+    "max acc",
+    "maximum acceleration",
+    "max acceleration",
+];
+const COMPONENT_KEYS: [&str; 7] =
+    ["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
+/// Words before a key that give it another meaning.
+const OTHER_MEANING: [&str; 12] = [
+    "original",
+    "orig",
+    "raw",
+    "significant",
+    "bracketed",
+    "effective",
+    "uniform",
+    "strong",
+    "event",
+    "pre-event",
+    "post-event",
+    "instrument",
+];
+
+impl Facts {
+    /// Reads header lines; those that name columns are left to the names.
+    ///
+    /// # Errors
+    /// If two lines contradict each other about the step.
+    pub(super) fn read(
+        source: &Source<'_>,
+        lines: impl Iterator<Item = usize>,
+    ) -> Result<Self, ReadError> {
+        let mut facts = Self::default();
+        for line in lines {
+            let text = source.text(line);
+            let lower = text.to_ascii_lowercase();
+            if let Some(step) = step(&lower) {
+                match facts.step {
+                    Some(first) if (first.value / step - 1.0).abs() > 1e-3 => {
+                        return Err(source.damaged(
+                            line,
+                            format!(
+                                "a step of {} s, as stated on line {}",
+                                first.value,
+                                first.line + 1
+                            ),
+                            format!("{step} s"),
+                            "leave the true step alone in the header",
+                        ));
+                    }
+                    Some(_) => {}
+                    None => facts.step = Some(Stated { line, value: step }),
+                }
+            }
+            let stated = count(&lower).map(|value| Stated { line, value });
+            facts.count = facts.count.or(stated);
+            let stated = duration(&lower).map(|value| Stated { line, value });
+            facts.duration = facts.duration.or(stated);
+            let stated = unit(&lower).map(|value| Stated { line, value });
+            facts.unit = facts.unit.or(stated);
+            if facts.unknown_unit.is_none() {
+                let stated = unknown_unit(&lower).map(|value| Stated { line, value });
+                facts.unknown_unit = stated;
+            }
+            let stated = peak(&lower).map(|value| Stated { line, value });
+            facts.peak = facts.peak.or(stated);
+            facts.component = facts.component.take().or_else(|| component(&text));
+        }
+        Ok(facts)
+    }
+
+    /// The step (s) that count and duration give, for advice.
+    pub(super) fn step_by_duration(&self) -> Option<f64> {
+        let (count, [duration, _]) = (self.count?.value, self.duration?.value);
+        (count > 1).then(|| duration / count as f64)
+    }
+}
+
+/// Text behind a key that stands as words of its own, none of `OTHER_MEANING` before it.
+fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    text.match_indices(key).find_map(|(at, _)| {
+        let (before, rest) = (&text[..at], &text[at + key.len()..]);
+        let joined = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let own = !before.ends_with(joined) && !rest.starts_with(joined);
+        let last = before.split_whitespace().last().unwrap_or("");
+        let other =
+            OTHER_MEANING.contains(&last) || rest.starts_with('/') || rest.starts_with(" per ");
+        (own && !other).then_some(rest)
+    })
+}
+
+/// A value behind a key: a unit in parentheses, a number, a word behind it.
+struct Value<'a> {
+    in_parentheses: Option<&'a str>,
+    printed: crate::format::Printed,
+    behind: &'a str,
+}
+
+fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
+    let mut rest = behind(text, key)?.trim_start();
+    let mut in_parentheses = None;
+    if let Some(inner) = rest.strip_prefix(['(', '[']) {
+        let (unit, after) = inner.split_once([')', ']'])?;
+        (in_parentheses, rest) = (Some(unit.trim()), after);
+    }
+    let mut rest = rest.trim_start_matches([' ', '\t', '=', ':', ',', ';']);
+    for filler in ["of ", "is ", "= "] {
+        rest = rest.strip_prefix(filler).unwrap_or(rest).trim_start();
+    }
+    let rest = rest.trim_start_matches([' ', ':', '=']);
+    let (_, printed_text) = leading_text(rest.as_bytes())?;
+    let printed = leading_printed(rest.as_bytes())?;
+    let at = rest.find(&printed_text)? + printed_text.len();
+    let behind = rest[at..].trim_start_matches([' ', '(', '[']);
+    let word = behind.split([' ', ',', ';', ')', ']', '\t']).next().unwrap_or("");
+    Some(Value { in_parentheses, printed, behind: word })
+}
+
+/// Seconds to one of a unit of time.
+pub(super) fn time_factor(text: &str) -> Option<f64> {
+    Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
+        "s" | "sec" | "secs" | "second" | "seconds" => 1.0,
+        "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => 1e-3,
+        "us" | "\u{b5}s" | "usec" | "microsecond" | "microseconds" => 1e-6,
+        "min" | "minute" | "minutes" => 60.0,
+        _ => return None,
+    })
+}
+
+fn step(text: &str) -> Option<f64> {
+    let positive = |value: f64| (value.is_finite() && value > 0.0).then_some(value);
+    let by_step = STEP_KEYS.iter().find_map(|key| {
+        let value = value_behind(text, key)?;
+        let unit = value.in_parentheses.and_then(time_factor).or_else(|| time_factor(value.behind));
+        // "1/200" states no step of 1 s.
+        let number = match value.behind.strip_prefix('/').and_then(|d| leading_text(d.as_bytes())) {
+            Some((divisor, _)) => value.printed.value / divisor,
+            None => value.printed.value,
+        };
+        positive(number * unit.unwrap_or(1.0))
+    });
+    let by_rate = || {
+        let stated = RATE_KEYS.iter().find_map(|key| Some(value_behind(text, key)?.printed.value));
+        let rate = stated.or_else(|| {
+            ["sps", "samples/sec", "samples/s", "samples per second", "samples per sec", "pts/sec"]
+                .iter()
+                .find_map(|mark| number_before(text, mark))
+        });
+        positive(1.0 / rate?)
+    };
+    by_step.or_else(by_rate)
+}
+
+/// The number right before a word.
+fn number_before(text: &str, word: &str) -> Option<f64> {
+    text.match_indices(word).find_map(|(at, _)| {
+        if text[at + word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric()) {
+            return None;
+        }
+        let number = text[..at].trim_end().rsplit([' ', '\t', ',', '(', '=', ':']).next()?;
+        number.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
+    })
+}
+
+/// Fewest samples that a number before "points" is taken for; fewer may be those of a filter.
+const FEWEST_POINTS: f64 = 50.0;
+
+fn count(text: &str) -> Option<usize> {
+    let behind = COUNT_KEYS.iter().find_map(|key| {
+        let value = value_behind(text, key)?;
+        // "3200 samples, 200 sps" states a rate behind the word.
+        let rate = ["sps", "hz", "samples/s"].iter().any(|unit| value.behind.starts_with(unit));
+        (!rate).then_some(value.printed.value)
+    });
+    let stated = behind.or_else(|| {
+        ["points", "samples", "data points", "values", "pts"]
+            .iter()
+            .filter(|word| {
+                let rest = text.find(**word).map_or("", |at| &text[at + word.len()..]);
+                !rest.trim_start().starts_with(['/', '-']) && !rest.trim_start().starts_with("per")
+            })
+            .find_map(|word| number_before(text, word))
+            .filter(|value| *value >= FEWEST_POINTS)
+    })?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "2 to 1e9")]
+    (stated.fract() == 0.0 && (2.0..1e9).contains(&stated)).then_some(stated as usize)
+}
+
+fn duration(text: &str) -> Option<[f64; 2]> {
+    if ["5-95", "5-75", "d5", "d595"].iter().any(|word| text.contains(word)) {
+        return None;
+    }
+    DURATION_KEYS.iter().find_map(|key| {
+        let value = value_behind(text, key)?;
+        let factor =
+            value.in_parentheses.and_then(time_factor).or_else(|| time_factor(value.behind));
+        let bare = value.in_parentheses.is_none() && value.behind.is_empty() && *key != "length";
+        let factor = factor.or(bare.then_some(1.0))?;
+        let stated = [value.printed.value, value.printed.resolution].map(|v| v * factor);
+        (stated[0] > 0.0).then_some(stated)
+    })
+}
+
+fn peak(text: &str) -> Option<Peak> {
+    PEAK_KEYS.iter().find_map(|key| {
+        let value = value_behind(text, key)?;
+        let unit = value.in_parentheses.and_then(MotionUnit::parse);
+        let unit = unit.or_else(|| MotionUnit::parse(value.behind));
+        if unit.is_some_and(|unit| unit.quantity != Quantity::Acceleration) {
+            return None;
+        }
+        let Value { printed, .. } = value;
+        (printed.value != 0.0).then_some(Peak {
+            value: printed.value,
+            resolution: printed.resolution,
+            factor: unit.map(|unit| unit.factor),
+        })
+    })
+}
+
+/// Whether a text speaks of acceleration.
+pub(super) fn says_acceleration(lower: &str) -> bool {
+    words(lower).any(|word| word.starts_with("acc") || word.starts_with("acel"))
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())
+}
+
+/// The unit in a line that states it: behind "unit", or in parentheses, behind "in", a colon or a comma in a
+/// line that speaks of acceleration.
+fn unit(lower: &str) -> Option<MotionUnit> {
+    // A length is no unit of a record in prose: "in" is a preposition, and "m" may be anything.
+    let rate = |text: &str| {
+        MotionUnit::parse(text.trim()).filter(|unit| unit.quantity != Quantity::Displacement)
+    };
+    // A peak and its unit say nothing of the samples.
+    if PEAK_KEYS.iter().any(|key| value_behind(lower, key).is_some()) {
+        return None;
+    }
+    if let Some((_, behind)) = lower.split_once("unit") {
+        let tokens = behind.split([' ', ',', ';', ':', '=', '(', ')', '[', ']', '\t']);
+        if let Some(unit) = tokens.filter(|word| !word.is_empty()).find_map(rate) {
+            return Some(unit);
+        }
+    }
+    if !says_acceleration(lower) {
+        return None;
+    }
+    let behind = &lower[lower.find("acc").or_else(|| lower.find("acel"))?..];
+    let groups = behind.split(['(', '[']).skip(1).filter_map(|text| text.split([')', ']']).next());
+    let after_in = behind.split(" in ").skip(1).filter_map(|text| text.split([' ', ',']).next());
+    let last = behind.rsplit([':', '=', ',']).next();
+    groups.chain(after_in).chain(last).find_map(rate)
+}
+
+/// The word behind "unit" at the beginning of a line, if it is no unit of motion.
+fn unknown_unit(lower: &str) -> Option<String> {
+    let plain = lower.trim_start_matches(['#', '%', '!', '/', '"', ' ']);
+    let rest = ["units", "unit", "acceleration units", "acceleration unit", "accel units"]
+        .iter()
+        .find_map(|key| behind(plain, key).filter(|_| plain.starts_with(key)))?;
+    let rest = rest.trim_matches([' ', ':', '=', ',', '(', ')', '[', ']', '"']);
+    let word = rest.strip_prefix("of ").or_else(|| rest.strip_prefix("are ")).unwrap_or(rest);
+    let known = |word: &str| MotionUnit::parse(word).is_some() || time_factor(word).is_some();
+    (!word.is_empty() && !word.contains(' ') && !known(word)).then(|| word.to_owned())
+}
+
+fn component(text: &str) -> Option<String> {
+    let lower = text.to_ascii_lowercase();
+    COMPONENT_KEYS.iter().find_map(|key| {
+        let plain = lower.trim_start_matches(['#', '%', '!', '/', ' ']);
+        let at = text.len() - plain.len();
+        let rest = behind(plain, key).filter(|_| plain.starts_with(key))?;
+        let value = text.get(at + key.len()..).filter(|_| !rest.is_empty())?;
+        let value = value.trim_matches([' ', ':', '=', ',', '\t', '.']);
+        (Direction::parse(value) != Direction::default()).then(|| value.to_owned())
+    })
+}
+
+/// Refuses a header that says in words that the numbers are no accelerations.
+pub(super) fn refuse_other_quantities(
+    source: &Source<'_>,
+    lines: impl Iterator<Item = usize> + Clone,
+) -> Result<(), ReadError> {
+    let refuse = |line: usize, what: &str, remedy: &str| {
+        Err(source.not_acceleration(line, what, quoted(&source.text(line)), remedy))
+    };
+    let mut acceleration = false;
+    for line in lines.clone() {
+        let lower = source.text(line).to_ascii_lowercase();
+        if is_spectrum(&lower) {
+            let remedy = "give the file of the time history that this spectrum belongs to";
+            return refuse(line, "an acceleration history, not a spectrum", remedy);
+        }
+        acceleration |= says_acceleration(&lower);
+    }
+    if acceleration {
+        return Ok(());
+    }
+    for line in lines {
+        let lower = source.text(line).to_ascii_lowercase();
+        let other = words(&lower)
+            .any(|word| word.starts_with("veloc") || word.starts_with("displ") || word == "counts");
+        if other {
+            return refuse(line, "accelerations", "give the acceleration history");
+        }
+    }
+    Ok(())
+}
+
+fn is_spectrum(lower: &str) -> bool {
+    let history = ["compatible", "match", "history", "series", "accelerogram"];
+    let spectral = lower.contains("spectr") || lower.contains("fourier amplitude");
+    let plain = lower.trim_start_matches(['#', '%', '!', '/', '"', ' ']);
+    let begins = [
+        "period,",
+        "period (",
+        "period(",
+        "period[",
+        "period [",
+        "per(s)",
+        "frequency,",
+        "frequency (",
+        "freq (",
+    ];
+    let names_columns = !plain.contains([':', '=']);
+    (spectral && !history.iter().any(|word| lower.contains(word)))
+        || words(lower).any(|word| matches!(word, "psa" | "psv" | "fas"))
+        || (names_columns && begins.iter().any(|begin| plain.starts_with(begin)))
+}

@@ -1,0 +1,473 @@
+//! Plain columns and CSV: values alone, time and values, or a count and a step on the first line.
+//!
+//! Neither unit nor step is ever guessed: both come from the header, a time column, or the caller. A header line names
+//! columns only if its names say quantities, and what a header states of step, count and duration must agree with the
+//! numbers.
+
+mod facts;
+mod names;
+mod rows;
+mod shape;
+
+use crate::direction::Direction;
+use crate::error::{Given, ReadError, Refusal};
+use crate::format::even::{Timed, even_steps};
+use crate::format::source::{Source, quoted};
+use crate::format::{Format, Hints};
+use crate::math;
+use crate::record::{Channel, Quantity, Record, Stage};
+use crate::units::MotionUnit;
+use crate::write::{FIRST_LINE, INITIAL_VELOCITY};
+use facts::{Facts, Stated};
+use names::{Holds, Name};
+use rows::{count_and_step, end, first_row, is_row, table, without_time};
+use shape::Commas;
+
+pub(crate) const FORMAT: Format =
+    Format { name: "columns", title: "plain columns and CSV", sniff, read };
+
+/// Largest time step (s) of a time column whose unit is not stated.
+const LARGEST_BARE_STEP: f64 = 0.5;
+/// Share by which a stated duration may differ from that of the samples.
+const DURATION_TOLERANCE: f64 = 0.02;
+
+fn sniff(source: &Source<'_>) -> bool {
+    !source.bytes.iter().take(4096).any(|&b| b == 0)
+        && (first_row(source).is_some() || is_row(source, 0))
+}
+
+fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
+    source.require_text()?;
+    let first = first_row(source).unwrap_or(0);
+    let end = end(source, first);
+    match shape::commas(source, first, end) {
+        Commas::Separate => read_table(source, first, end, hints),
+        Commas::Both => Err(source.damaged(
+            first,
+            "decimal points, or another separator than a comma",
+            quoted(&source.text(first)),
+            "write the numbers with decimal points, or with semicolons between them",
+        )),
+        Commas::Decimal => {
+            let mut bytes = source.bytes.to_vec();
+            let start = source.raw(first).as_ptr().addr() - source.bytes.as_ptr().addr();
+            for byte in &mut bytes[start..] {
+                if *byte == b',' {
+                    *byte = b'.';
+                }
+            }
+            let points = Source::new(source.name, &bytes);
+            let mut record = read_table(&points, first, end, hints)?;
+            record.notes.push("commas in numbers were read as decimal points".to_owned());
+            Ok(record)
+        }
+    }
+}
+
+fn read_table(
+    source: &Source<'_>,
+    first: usize,
+    end: usize,
+    hints: &Hints<'_>,
+) -> Result<Record, ReadError> {
+    let mut record = Record::new(FORMAT.name, source.name, Stage::Unknown);
+    let (first_line, header) = (count_and_step(source, first), first);
+    let first = if first_line.is_some() { first + 1 } else { first };
+    let table = table(source, first, end)?;
+    rows::require_rows(source, first, &table)?;
+    let (width, rows) = (table.len(), table[0].len());
+    // Comments of files of our own are a past in free words.
+    let own = header > 0 && source.text(0) == FIRST_LINE;
+    let mut named = names::find(source, header, width);
+    if let Some((_, names)) = named.as_mut().filter(|_| own) {
+        let acceleration = Holds::Motion(Quantity::Acceleration);
+        for name in names.iter_mut().skip(1) {
+            name.holds = acceleration;
+        }
+    }
+    let names_line = named.as_ref().map(|(line, _)| *line);
+    rows::require_no_lost_row(source, header, names_line, width)?;
+    let prose = (0..header).filter(|line| Some(*line) != names_line && !own);
+    let mut facts = Facts::read(source, prose)?;
+    if let Some((line, count, step)) = first_line {
+        facts.count = Some(Stated { line, value: count });
+        facts.step = Some(Stated { line, value: step });
+    }
+    let (names, table) =
+        without_index(&mut record, named.map(|(_, names)| names), table, names_line, first);
+    let width = table.len();
+    let line = names_line.unwrap_or(first);
+    let speaks = |name: &Name| name.holds == Holds::Motion(Quantity::Acceleration);
+    if !names.as_ref().is_some_and(|names| names.iter().any(speaks)) {
+        facts::refuse_other_quantities(source, 0..header)?;
+    }
+    let time = time_of(source, first, &table, names.as_deref())?;
+    let (time_step, names, columns) = if let Some(factor) = time {
+        let (names, mut table) = (without_first(names), table);
+        let time = scaled(&table.remove(0), factor);
+        let resolution = factor * shape::time_resolution(source, first, end);
+        if let Some(row) = shape::repeated_time(&time, resolution) {
+            return Err(source.damaged(
+                first + row,
+                format!("a time after {} s", time[row - 1]),
+                format!("{} s once more", time[row]),
+                "two rows have one time; get the file again from its source, or leave one out",
+            ));
+        }
+        let (names, table) = accelerations(source, line, &mut record, names, table)?;
+        let timed = Timed { first_line: first, per_line: 1, time, values: table, resolution };
+        let (step, columns) = even_steps(source, &mut record, "all", timed)?;
+        require_step(source, &facts, step)?;
+        (step, names, columns)
+    } else {
+        let table = without_time(source, first, end, table, names.as_deref(), &facts, &mut record)?;
+        let (names, table) = accelerations(source, line, &mut record, names, table)?;
+        (step(source, first, width, &facts, hints)?, names, table)
+    };
+    let found = if time.is_some() { rows } else { columns[0].len() };
+    let columns = counted(source, &mut record, &facts, first_line.is_some(), found, columns)?;
+    require_duration(source, &facts, time_step, columns[0].len(), hints)?;
+    let units = units(source, first, line, &names, &facts, hints, &columns)?;
+    let velocities = initial_velocities(source, header, columns.len())?;
+    let stem = crate::format::file_stem(source.name);
+    let several = columns.len() > 1;
+    for (k, (column, unit)) in columns.into_iter().zip(units).enumerate() {
+        let label = names.get(k).map(|name| name.label.clone());
+        // A single column is often called "acceleration"; the header or the file's name says more.
+        let says = |name: &String| several || Direction::parse(name) != Direction::default();
+        let name = label.filter(says).or_else(|| facts.component.clone().filter(|_| !several));
+        let fallback = || if several { format!("column {}", k + 1) } else { stem.clone() };
+        let name = name.unwrap_or_else(fallback);
+        let direction = Direction::parse(&name);
+        let values = column.iter().map(|value| value * unit).collect();
+        let mut channel = Channel::new(name, direction, time_step, values);
+        channel.initial_velocity = velocities.get(k).copied().unwrap_or(0.0);
+        if let (Some(peak), false) = (facts.peak, several) {
+            let peak = peak.value;
+            let printed = crate::format::Printed { value: peak.value, resolution: peak.resolution };
+            channel.state_peak(Some(printed), peak.factor.unwrap_or(unit));
+        }
+        record.channels.push(channel);
+    }
+    Ok(record)
+}
+
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    if factor == 1.0 {
+        values.to_vec()
+    } else {
+        values.iter().map(|value| value * factor).collect()
+    }
+}
+
+/// Names and columns without a first column that counts the rows.
+fn without_index(
+    record: &mut Record,
+    names: Option<Vec<Name>>,
+    mut table: Vec<Vec<f64>>,
+    names_line: Option<usize>,
+    first: usize,
+) -> (Option<Vec<Name>>, Vec<Vec<f64>>) {
+    let counts = match &names {
+        Some(names) => {
+            names[0].holds == Holds::Index || shape::is_index(&table[0]) && names[0].label == "N"
+        }
+        None => shape::is_index(&table[0]),
+    };
+    if table.len() < 2 || !counts {
+        return (names, table);
+    }
+    record
+        .warn(names_line.unwrap_or(first) + 1, "the first column counts the rows and was left out");
+    table.remove(0);
+    (without_first(names), table)
+}
+
+fn without_first(names: Option<Vec<Name>>) -> Option<Vec<Name>> {
+    names.map(|mut names| {
+        names.remove(0);
+        names
+    })
+}
+
+/// Seconds to one of the first column, if it holds times.
+fn time_of(
+    source: &Source<'_>,
+    first: usize,
+    table: &[Vec<f64>],
+    names: Option<&[Name]>,
+) -> Result<Option<f64>, ReadError> {
+    if table.len() < 2 {
+        return Ok(None);
+    }
+    let rises = shape::is_time(&table[0]);
+    let (stated, unit) = match names {
+        Some([Name { holds: Holds::Time, unit, label }, ..]) => {
+            let in_label = label.rsplit([' ', '_', ',', '.']).next().and_then(facts::time_factor);
+            let unit = unit.as_deref();
+            let factor = unit.map(|unit| {
+                facts::time_factor(unit).ok_or_else(|| {
+                    source.damaged(
+                        first,
+                        "a time column in s, ms, us or min",
+                        quoted(unit),
+                        "correct the unit of time in the header",
+                    )
+                })
+            });
+            (true, factor.transpose()?.or(in_label))
+        }
+        // A column that is called something else is no time, however it rises.
+        Some(_) => return Ok(None),
+        None => (false, None),
+    };
+    let steps = (table[0].len() - 1) as f64;
+    let step = (table[0].last().unwrap_or(&0.0) - table[0][0]) / steps;
+    if let Some(factor) = unit {
+        return Ok(Some(factor));
+    }
+    if !stated && (!rises || shape::is_index(&table[0])) {
+        return Ok(None);
+    }
+    if step > LARGEST_BARE_STEP {
+        return Err(source.damaged(
+            first,
+            "a time column whose unit is stated where its steps are no strong motion's in seconds",
+            format!("steps of {step} without a unit"),
+            "name the columns in a line above them, such as \"time (ms), acceleration (g)\"",
+        ));
+    }
+    Ok(Some(1.0))
+}
+
+/// The columns that hold accelerations, and their names; velocities, displacements and all else that is named are
+/// left out with a warning.
+fn accelerations(
+    source: &Source<'_>,
+    line: usize,
+    record: &mut Record,
+    names: Option<Vec<Name>>,
+    table: Vec<Vec<f64>>,
+) -> Result<(Vec<Name>, Vec<Vec<f64>>), ReadError> {
+    let unsure = |names: &Option<Vec<Name>>| {
+        names.as_ref().is_none_or(|names| names.iter().all(|name| name.holds == Holds::Unknown))
+    };
+    if unsure(&names) {
+        let columns: Vec<&[f64]> = table.iter().map(Vec::as_slice).collect();
+        if let Some([of, integral]) = shape::integral(&columns) {
+            return Err(source.not_acceleration(
+                line,
+                "columns of acceleration alone, or names above the columns",
+                format!("unnamed columns of which one is the integral of another ({} of {})", integral + 1, of + 1),
+                "name the columns in a line above them, such as \"time (s), acceleration (g), velocity (cm/s)\"",
+            ));
+        }
+        if names.is_none() && shape::is_one_sided(&table) {
+            return Err(source.not_acceleration(
+                line,
+                "accelerations to both sides",
+                "no value below 0, as in a spectrum",
+                "give the acceleration history; if it is one, name its columns in a line above them, such as \
+                 \"time (s), acceleration (g)\"",
+            ));
+        }
+    }
+    let Some(names) = names.filter(|names| names.len() == table.len()) else {
+        return Ok((Vec::new(), table));
+    };
+    let held: Vec<Holds> = names.iter().map(|name| name.holds).collect();
+    let holds = |wanted: Holds| held.contains(&wanted);
+    let acceleration = Holds::Motion(Quantity::Acceleration);
+    let others = names.iter().any(|name| !matches!(name.holds, Holds::Component | Holds::Unknown));
+    let taken = |name: &Name| match name.holds {
+        Holds::Motion(quantity) => quantity == Quantity::Acceleration,
+        Holds::Component => !holds(acceleration) || name.unit.is_none(),
+        Holds::Unknown => !others && !holds(Holds::Component),
+        Holds::Time | Holds::Index | Holds::Spectrum | Holds::Other => false,
+    };
+    let all: Vec<String> = names.iter().map(Name::shown).collect();
+    let (kept, left): (Vec<_>, Vec<_>) =
+        names.into_iter().zip(table).partition(|(name, _)| taken(name));
+    if kept.is_empty() {
+        return Err(source.not_acceleration(
+            line,
+            "a column of acceleration",
+            all.join(", "),
+            "give the acceleration history",
+        ));
+    }
+    if !left.is_empty() {
+        let left: Vec<String> = left.iter().map(|(name, _)| name.shown()).collect();
+        let text = format!("left out, as their names say no acceleration: {}", left.join(", "));
+        record.warn(line + 1, text);
+    }
+    Ok(kept.into_iter().unzip())
+}
+
+/// The step (s) of columns without times.
+fn step(
+    source: &Source<'_>,
+    first: usize,
+    width: usize,
+    facts: &Facts,
+    hints: &Hints<'_>,
+) -> Result<f64, ReadError> {
+    let stated = facts.step.map(|step| step.value);
+    stated.or_else(|| hints.time_step()).ok_or_else(|| {
+        let remedy = match facts.step_by_duration() {
+            Some(step) => format!(
+                "state the time step (s), by the count and the duration of its header about {step:.4} s"
+            ),
+            None => "state the time step (s)".to_owned(),
+        };
+        source.error(
+            first,
+            Refusal::Missing(Given::Step),
+            "a time column or a time step",
+            format!("{width} column(s) without time"),
+            remedy,
+        )
+    })
+}
+
+/// Refuses a stated step that the time column contradicts.
+fn require_step(source: &Source<'_>, facts: &Facts, step: f64) -> Result<(), ReadError> {
+    match facts.step {
+        Some(stated) if (stated.value / step - 1.0).abs() > 1e-2 => Err(source.damaged(
+            stated.line,
+            format!("a step of {step} s, as the time column has it"),
+            format!("{} s, as stated here", stated.value),
+            "correct the header or the times",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses samples that do not last as long as the header states, with both lengths.
+fn require_duration(
+    source: &Source<'_>,
+    facts: &Facts,
+    time_step: f64,
+    samples: usize,
+    hints: &Hints<'_>,
+) -> Result<(), ReadError> {
+    let Some(Stated { line, value: [stated, resolution] }) = facts.duration else { return Ok(()) };
+    let length = time_step * samples as f64;
+    let tolerance = (1.01 * resolution).max(2.0 * time_step).max(DURATION_TOLERANCE * stated);
+    if (length - stated).abs() <= tolerance {
+        return Ok(());
+    }
+    let given = facts.step.is_none() && hints.time_step() == Some(time_step);
+    let (refusal, remedy) = if given {
+        let step = stated / samples as f64;
+        (Refusal::Options, format!("give the step by which they do, about {step:.4} s"))
+    } else {
+        let remedy =
+            "the file is cut or its header belongs to another; get it again from its source";
+        (Refusal::Damaged, remedy.to_owned())
+    };
+    Err(source.error(
+        line,
+        refusal,
+        format!("samples that last {stated} s, as stated here"),
+        format!("{samples} samples that last {length:.4} s at a step of {time_step} s"),
+        remedy,
+    ))
+}
+
+/// Columns cut to a stated count, which must be that of the samples.
+fn counted(
+    source: &Source<'_>,
+    record: &mut Record,
+    facts: &Facts,
+    on_first_line: bool,
+    found: usize,
+    mut columns: Vec<Vec<f64>>,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let Some(Stated { line, value: stated }) = facts.count else { return Ok(columns) };
+    if !on_first_line && found > stated + 2 {
+        return Err(source.damaged(
+            line,
+            format!("{stated} values as stated here"),
+            format!("{found}"),
+            "the header belongs to another file, or the numbers to several components; get the file \
+             again from its source",
+        ));
+    }
+    let used = crate::format::check_count(source, record, line, stated, found)?;
+    // Interpolated columns have another length than the rows that were counted.
+    if columns[0].len() == found {
+        for column in &mut columns {
+            column.truncate(used);
+        }
+    }
+    Ok(columns)
+}
+
+/// Velocities (m/s) at the first samples, which files of our own state; none in all others.
+fn initial_velocities(
+    source: &Source<'_>,
+    first: usize,
+    channels: usize,
+) -> Result<Vec<f64>, ReadError> {
+    for line in 0..first {
+        if let Some(text) = source.text(line).strip_prefix(INITIAL_VELOCITY) {
+            return crate::format::initial_velocities(source, line, text, channels);
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// SI value of one of the unit of each column: as stated with its name, in the header, or by the caller.
+fn units(
+    source: &Source<'_>,
+    first: usize,
+    names_line: usize,
+    names: &[Name],
+    facts: &Facts,
+    hints: &Hints<'_>,
+    columns: &[Vec<f64>],
+) -> Result<Vec<f64>, ReadError> {
+    let acceleration = |unit: MotionUnit, line: usize, word: String| {
+        if unit.quantity == Quantity::Acceleration {
+            return Ok(unit.factor);
+        }
+        let expected = "a unit of acceleration";
+        Err(source.not_acceleration(line, expected, quoted(&word), "give the acceleration history"))
+    };
+    let missing = |found: String| {
+        source.error(
+            first,
+            Refusal::Missing(Given::Unit),
+            "a unit of acceleration",
+            found,
+            "state the unit (g, m/s2, cm/s2)",
+        )
+    };
+    (0..columns.len())
+        .map(|k| {
+            let name = names.get(k);
+            if let Some(name) = name
+                && let Some(unit) = name.motion_unit()
+            {
+                return acceleration(unit, names_line, name.shown());
+            }
+            let unknown = name.and_then(|name| name.unit.clone());
+            let in_header = facts.unit.filter(|_| unknown.is_none());
+            // Units behind the names of some columns say nothing of the others.
+            let some = names.iter().any(|name| name.motion_unit().is_some());
+            if let Some(stated) = in_header.filter(|_| !some) {
+                return acceleration(stated.value, stated.line, source.text(stated.line));
+            }
+            if let Some(unit) = hints.unit() {
+                return Ok(unit.factor());
+            }
+            let word = unknown.or_else(|| Some(facts.unknown_unit.as_ref()?.value.clone()));
+            if let Some(word) = word {
+                return Err(missing(format!("the unit {}", quoted(&word))));
+            }
+            let peak = columns.iter().map(|column| math::peak(column)).fold(0.0, f64::max);
+            Err(missing(format!("numbers up to {peak:.4} without one")))
+        })
+        .collect()
+}

@@ -1,0 +1,277 @@
+//! Names of columns: a header line is one only if its names say quantities.
+
+use super::facts::time_factor;
+use crate::direction::Direction;
+use crate::format::source::Source;
+use crate::record::Quantity;
+use crate::units::MotionUnit;
+
+/// What a column holds, as far as its name and unit say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Holds {
+    Time,
+    /// Numbers of the rows.
+    Index,
+    Motion(Quantity),
+    /// A direction alone, such as `EW`.
+    Component,
+    /// Period, frequency or a spectral ordinate.
+    Spectrum,
+    /// Something that is named and no motion, such as a force.
+    Other,
+    Unknown,
+}
+
+/// The name of a column.
+#[derive(Clone, Debug)]
+pub(super) struct Name {
+    /// Text without the unit.
+    pub(super) label: String,
+    /// Unit as written, if one is.
+    pub(super) unit: Option<String>,
+    pub(super) holds: Holds,
+}
+
+impl Name {
+    /// Unit of motion, if the stated one is any.
+    pub(super) fn motion_unit(&self) -> Option<MotionUnit> {
+        self.unit.as_deref().and_then(MotionUnit::parse)
+    }
+
+    /// Name and unit as a message shows them.
+    pub(super) fn shown(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{} ({unit})", self.label),
+            None => self.label.clone(),
+        }
+    }
+}
+
+/// The line of names right above a table of `width` columns, and its 0-based line.
+pub(super) fn find(source: &Source<'_>, first: usize, width: usize) -> Option<(usize, Vec<Name>)> {
+    let mut lines = (0..first).rev().filter(|&line| !is_rule(&source.text(line)));
+    let last = lines.next()?;
+    let Some(units) = units_row(&source.text(last), width) else {
+        return Some((last, names(&source.text(last), width)?));
+    };
+    let above = lines.next().and_then(|line| Some((line, names(&source.text(line), width)?)));
+    let (line, mut names) = above.unwrap_or_else(|| {
+        let by_unit = |unit: &String| Name {
+            label: if time_factor(unit).is_some() { "time" } else { "column" }.to_owned(),
+            unit: None,
+            holds: Holds::Unknown,
+        };
+        (last, units.iter().map(by_unit).collect())
+    });
+    for (name, unit) in names.iter_mut().zip(units) {
+        name.unit = name.unit.take().or(Some(unit).filter(|unit| unit != "-"));
+        name.holds = holds(&name.label, name.unit.as_deref());
+    }
+    Some((line, by_company(names)))
+}
+
+/// Whether a line is empty or drawn with signs.
+fn is_rule(text: &str) -> bool {
+    text.chars().all(|c| " -=+|_#*\t,;".contains(c))
+}
+
+fn plain(text: &str) -> &str {
+    text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
+}
+
+/// Parts of a line by each separator that it may be written with; whether the separator is one that prose lacks.
+fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
+    let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
+    let by = |mark: char| text.split(mark).map(tidy).collect::<Vec<_>>();
+    let mut all = Vec::new();
+    for mark in ['\t', ';', '|', ','] {
+        if text.contains(mark) {
+            all.push((true, by(mark)));
+        }
+    }
+    let wide: Vec<String> = text.split("  ").map(tidy).filter(|part| !part.is_empty()).collect();
+    if wide.len() > 1 {
+        all.push((true, wide));
+    }
+    all.push((false, text.split_whitespace().map(tidy).collect()));
+    all
+}
+
+/// A row of units alone, below the names.
+fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
+    let bare = |part: &str| part.trim_matches(['(', ')', '[', ']', '{', '}', ' ']).to_owned();
+    splits(plain(text)).into_iter().find_map(|(_, parts)| {
+        let units: Vec<String> = parts.iter().map(|part| bare(part)).collect();
+        let each = units.iter().all(|unit| is_unit(unit) || unit == "-" || unit == "#");
+        let any = units.iter().any(|unit| is_unit(unit));
+        // A row of names may be "N E" or "S": no unit looks like a direction but "g" and "m".
+        let direction = units.iter().all(|unit| Direction::parse(unit) != Direction::default());
+        (units.len() == width && each && any && !direction).then_some(units)
+    })
+}
+
+fn is_unit(text: &str) -> bool {
+    MotionUnit::parse(text).is_some() || time_factor(text).is_some()
+}
+
+fn names(text: &str, width: usize) -> Option<Vec<Name>> {
+    splits(plain(text)).into_iter().find_map(|(separated, parts)| {
+        let parts = if parts.len() > width { merged(parts) } else { parts };
+        // "0.005" and "#N/A" stand in rows of numbers.
+        let of_a_row = |part: &String| {
+            part.contains('.') && part.parse::<f64>().is_ok() || part.starts_with("#N")
+        };
+        if parts.len() != width || parts.iter().any(|part| part.is_empty() || of_a_row(part)) {
+            return None;
+        }
+        let names = by_company(parts.iter().map(|part| name(part)).collect());
+        says_quantities(&names, separated).then_some(names)
+    })
+}
+
+/// Parts with units that stand for themselves (`Time, s, Acceleration, g`) put to the name before.
+fn merged(parts: Vec<String>) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for part in parts {
+        let bare = part.trim_matches(['(', ')', '[', ']', '{', '}']);
+        let in_brackets = bare.len() < part.len();
+        match out.last_mut() {
+            Some(last) if (in_brackets || is_unit(bare)) && !last.ends_with([')', ']']) => {
+                *last = format!("{last} ({bare})");
+            }
+            _ => out.push(part),
+        }
+    }
+    out
+}
+
+/// Whether names are of a table: all of them say what they hold; where time leads, or a separator is used
+/// that prose lacks, one column may be called anything.
+fn says_quantities(names: &[Name], separated: bool) -> bool {
+    let says = |name: &Name| name.holds != Holds::Unknown;
+    let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);
+    // Time stands first, or the line is a sentence that speaks of it.
+    let time_within = names.iter().skip(1).any(|name| name.holds == Holds::Time);
+    let time_after_index = names[0].holds == Holds::Index
+        && names.get(1).is_some_and(|name| name.holds == Holds::Time);
+    if time_within && !time_after_index {
+        return false;
+    }
+    if names.iter().all(says) {
+        return true;
+    }
+    names.len() > 1 && separated && leads
+}
+
+/// A name with its unit: `Acceleration (g)`, `Accel [cm/s2]`, `acc, g`, `acc_g`, `Acceleration in g`.
+fn name(text: &str) -> Name {
+    let mut label = text.trim();
+    let mut unit = None;
+    if let Some((before, inner)) = label.split_once(['(', '[', '{'])
+        && let Some((inner, after)) = inner.rsplit_once([')', ']', '}'])
+        && !before.trim().is_empty()
+    {
+        // "Acc (EW)" has no unit in its parentheses.
+        let inner = inner.trim();
+        if Direction::parse(inner) == Direction::default() || is_unit(inner) {
+            unit = Some(inner.to_owned());
+            label = if after.trim().is_empty() { before.trim() } else { label };
+        }
+    }
+    if unit.is_none() {
+        for mark in [", ", ",", " in ", ": ", "_", " "] {
+            if let Some((before, last)) = label.rsplit_once(mark)
+                && is_unit(last)
+                && !before.trim().is_empty()
+                // "acc_m" and "UP m" are too little to be sure of; "time s" and "acc g" are not.
+                && MotionUnit::parse(last).is_none_or(|unit| unit.quantity != Quantity::Displacement)
+            {
+                unit = Some(last.trim().to_owned());
+                label = before.trim().trim_end_matches([',', ':']);
+                break;
+            }
+        }
+    }
+    Name { label: label.to_owned(), holds: holds(label, unit.as_deref()), unit }
+}
+
+fn holds(label: &str, unit: Option<&str>) -> Holds {
+    let lower = label.to_lowercase();
+    let words: Vec<&str> =
+        lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let begins = |starts: &[&str]| {
+        words.iter().any(|word| starts.iter().any(|start| word.starts_with(start)))
+    };
+    let is = |exact: &[&str]| words.iter().any(|word| exact.contains(word));
+    let unit_of_motion = unit.and_then(MotionUnit::parse).map(|unit| unit.quantity);
+    if begins(&["spectr", "freq", "period", "psa", "psv", "fourier", "damp"])
+        || is(&["sa", "sv", "sd", "psd", "fas", "per", "hz"])
+    {
+        return Holds::Spectrum;
+    }
+    if begins(&["acc", "acel"]) || is(&["a", "ag", "ax", "ay", "az", "ugdd", "uddg", "ivme"]) {
+        return Holds::Motion(Quantity::Acceleration);
+    }
+    if begins(&["veloc"]) || is(&["vel", "vg", "vx", "vy", "vz", "vels"]) {
+        return Holds::Motion(Quantity::Velocity);
+    }
+    if begins(&["displ", "despl", "depl"]) || is(&["dis", "disp", "dx", "dy", "dz"]) {
+        return Holds::Motion(Quantity::Displacement);
+    }
+    let time_words = [
+        "time", "times", "t", "tiempo", "zaman", "zeit", "temps", "tempo", "sec", "secs",
+        "seconds", "msec",
+    ];
+    if is(&time_words) {
+        return Holds::Time;
+    }
+    if Direction::parse(label) != Direction::default() {
+        return unit_of_motion.map_or(Holds::Component, Holds::Motion);
+    }
+    if is(&[
+        "index", "idx", "sample", "samples", "point", "points", "no", "nr", "row", "i", "step",
+        "id",
+    ]) || label == "#"
+    {
+        return Holds::Index;
+    }
+    let others = [
+        "force", "load", "strain", "stress", "press", "temp", "count", "volt", "angle", "rot",
+        "tilt", "lat", "lon", "moment", "mass", "energy", "arias", "cav", "husid", "error", "std",
+        "sigma", "phase", "imag",
+    ];
+    if begins(&others) {
+        return Holds::Other;
+    }
+    match (unit_of_motion, unit) {
+        (Some(quantity), _) => Holds::Motion(quantity),
+        // A stated unit that is none of motion is that of something else.
+        (None, Some(unit)) if time_factor(unit).is_none() => Holds::Other,
+        _ => Holds::Unknown,
+    }
+}
+
+/// `v`, `d` and `u` beside an acceleration are velocity and displacement; alone they say a direction or
+/// nothing.
+fn by_company(mut names: Vec<Name>) -> Vec<Name> {
+    let acceleration = names.iter().any(|name| name.holds == Holds::Motion(Quantity::Acceleration));
+    let horizontal = names.iter().any(|name| {
+        let direction = Direction::parse(&name.label);
+        name.holds == Holds::Component && direction.azimuth.is_some()
+    });
+    for name in &mut names {
+        let letter =
+            name.label.trim_end_matches(|c: char| c.is_ascii_digit() || "_ ()t".contains(c));
+        let quantity = match letter {
+            "v" | "V" if acceleration && !horizontal => Quantity::Velocity,
+            "d" | "D" | "u" if acceleration && !horizontal => Quantity::Displacement,
+            "v" if !horizontal => Quantity::Velocity,
+            "d" => Quantity::Displacement,
+            _ => continue,
+        };
+        if matches!(name.holds, Holds::Component | Holds::Unknown) {
+            name.holds = Holds::Motion(quantity);
+        }
+    }
+    names
+}

@@ -1,0 +1,222 @@
+//! Rows of numbers: where they begin and end, their width, and what stands among them.
+
+use super::facts::Facts;
+use super::names::Name;
+use super::shape;
+use crate::error::{ReadError, Refusal};
+use crate::format::source::{Source, quoted};
+use crate::record::Record;
+
+/// Header lines searched.
+const MOST_HEADER_LINES: usize = 60;
+/// Anything larger is damage whatever the unit.
+const LIMIT: f64 = 1e12;
+/// Most columns that are taken for components; more are one series in long lines.
+const MOST_COLUMNS: usize = 200;
+/// Fewest numbers that a file of one line may hold.
+const FEWEST_ON_ONE_LINE: usize = 50;
+
+pub(super) fn is_row(source: &Source<'_>, line: usize) -> bool {
+    let mut values = Vec::new();
+    source.tokens(line, f64::INFINITY, &mut values).is_ok() && !values.is_empty()
+}
+
+/// The first line that holds numbers only and is followed by another, or by nothing.
+pub(super) fn first_row(source: &Source<'_>) -> Option<usize> {
+    let end = source.lines.len();
+    (0..end.min(MOST_HEADER_LINES))
+        .find(|&line| is_row(source, line) && (line + 1 == end || is_row(source, line + 1)))
+}
+
+/// The line behind the last row.
+pub(super) fn end(source: &Source<'_>, first: usize) -> usize {
+    let mut end = source.lines.len();
+    while end > first && is_comment(source, end - 1) {
+        end -= 1;
+    }
+    end
+}
+
+/// Refuses a file of one row, unless it is a long one.
+pub(super) fn require_rows(
+    source: &Source<'_>,
+    first: usize,
+    table: &[Vec<f64>],
+) -> Result<(), ReadError> {
+    let (width, rows) = (table.len(), table[0].len());
+    if rows > 1 || width >= FEWEST_ON_ONE_LINE {
+        return Ok(());
+    }
+    Err(source.damaged(
+        first,
+        "at least 2 rows of numbers",
+        "a single row",
+        "this is no history; give the file that holds all its rows",
+    ))
+}
+
+/// Refuses a line above the table that is a row of it but for a number that is none.
+pub(super) fn require_no_lost_row(
+    source: &Source<'_>,
+    first: usize,
+    names_line: Option<usize>,
+    width: usize,
+) -> Result<(), ReadError> {
+    let Some(line) = first.checked_sub(1).filter(|line| Some(*line) != names_line) else {
+        return Ok(());
+    };
+    let text = source.text(line);
+    let words: Vec<&str> =
+        text.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty()).collect();
+    let number = |word: &str| word.parse::<f64>().is_ok();
+    let numbers = words.iter().filter(|word| number(word)).count();
+    let stars = words.iter().any(|word| word.starts_with("**"));
+    if words.len() == width && (numbers == width || numbers + 1 == width && (stars || width > 1)) {
+        source.tokens(line, LIMIT, &mut Vec::new())?;
+    }
+    Ok(())
+}
+
+fn is_comment(source: &Source<'_>, line: usize) -> bool {
+    let text = source.text(line);
+    text.is_empty() || text.starts_with(['#', '%', '!', '/'])
+}
+
+/// Line, count and step (s) of a first line `11800 0.005`, or `0.005 11800`, above rows of another shape.
+pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
+    let (mut row, mut next) = (Vec::new(), Vec::new());
+    source.tokens(first, f64::INFINITY, &mut row).ok()?;
+    source.tokens(first + 1, f64::INFINITY, &mut next).ok()?;
+    let text = source.text(first);
+    let words: Vec<&str> =
+        text.split([' ', ',', '\t', ';']).filter(|word| !word.is_empty()).collect();
+    let [one, two] = *row.as_slice() else { return None };
+    let is_count = |word: &str, value: f64| {
+        value.fract() == 0.0 && (10.0..1e9).contains(&value) && !word.contains('.')
+    };
+    let is_step = |value: f64| value > 0.0 && value < 1.0;
+    let (count, step) = match words.as_slice() {
+        [a, _] if is_count(a, one) && is_step(two) => (one, two),
+        [_, b] if is_count(b, two) && is_step(one) && next.len() != 2 => (two, one),
+        _ => return None,
+    };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "10 to 1e9")]
+    (next.len() != 2 || next[0] < count).then_some((first, count as usize, step))
+}
+
+/// All rows as columns, or one column of very long rows; rows of several values without a common
+/// width are refused with their line, except a short last one.
+pub(super) fn table(
+    source: &Source<'_>,
+    first: usize,
+    end: usize,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let mut row = Vec::new();
+    source.tokens(first, LIMIT, &mut row)?;
+    let width = row.len();
+    if width == 0 {
+        return Err(source.bad_number(first, 0, source.raw(first)));
+    }
+    if width > MOST_COLUMNS {
+        return Ok(vec![source.all_tokens(first, end, LIMIT)?]);
+    }
+    let mut columns: Vec<Vec<f64>> =
+        (0..width).map(|_| Vec::with_capacity(end.saturating_sub(first))).collect();
+    for line in first..end {
+        if source.raw(line).trim_ascii().is_empty() {
+            return Err(source.bad_number(line, 0, source.raw(line)));
+        }
+        row.clear();
+        source.tokens(line, LIMIT, &mut row)?;
+        if row.len() != width {
+            if line + 1 == end && row.len() < width && !shape::is_time(&columns[0]) {
+                continue;
+            }
+            return Err(ragged(source, first, line, width, row.len()));
+        }
+        for (column, value) in columns.iter_mut().zip(&row) {
+            column.push(*value);
+        }
+    }
+    Ok(columns)
+}
+
+/// A row of another width: the first line may be the one that differs, or a cell may be empty.
+fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
+    let text = source.text(line);
+    if [",,", ";;", "\t\t", ", ,"].iter().any(|empty| text.contains(empty)) {
+        return source.damaged(
+            line,
+            format!("{width} numbers"),
+            format!("an empty cell in {}", quoted(&text)),
+            "fill the cell or leave its row out",
+        );
+    }
+    if line == first + 1 {
+        return source.error(
+            first,
+            Refusal::Unrecognized,
+            "rows of one width, or a count and a step above them",
+            format!("{width} numbers in the first row and {found} in the next"),
+            "the first row is no part of the table and says what no reader knows; leave it out and state \
+             step and unit",
+        );
+    }
+    source.ragged(line, width, found)
+}
+
+/// Several values to a line and no time: channels if the header names the columns, one series row by row if
+/// the stated count or the numbers themselves say so, with a warning.
+pub(super) fn without_time(
+    source: &Source<'_>,
+    first: usize,
+    end: usize,
+    table: Vec<Vec<f64>>,
+    names: Option<&[Name]>,
+    facts: &Facts,
+    record: &mut Record,
+) -> Result<Vec<Vec<f64>>, ReadError> {
+    let (width, rows) = (table.len(), table[0].len());
+    if width == 1 {
+        return Ok(vec![without_count(source, first, record, &table[0])]);
+    }
+    if names.is_some_and(|names| names.len() == width) {
+        return Ok(table);
+    }
+    let series = source.all_tokens(first, end, LIMIT)?;
+    let last_is_short = series.len() < width * rows || series.len() > width * rows;
+    let counted = facts.count.is_some_and(|count| count.value.abs_diff(series.len()) <= 2);
+    if !(counted || last_is_short || rows == 1 || shape::is_one_series(&table)) {
+        return Err(source.error(
+            first,
+            Refusal::Unrecognized,
+            "names above the columns, or one value to a line",
+            format!("{width} columns without names that are no single series row by row"),
+            "name the columns in a line above them, such as \"EW NS UD\", or give a file of one component",
+        ));
+    }
+    if !counted {
+        record.warn(
+            first + 1,
+            format!("{width} columns without names or time were read row by row as one series"),
+        );
+    }
+    Ok(vec![series])
+}
+
+/// A single column without a count in its first row, which is the number of rows below it.
+fn without_count(
+    source: &Source<'_>,
+    first: usize,
+    record: &mut Record,
+    column: &[f64],
+) -> Vec<f64> {
+    let count = column[0];
+    let whole = !source.text(first).contains(['.', 'e', 'E']);
+    if whole && count >= 10.0 && count == (column.len() - 1) as f64 {
+        record
+            .warn(first + 1, format!("{count} is the number of values below it and was left out"));
+        return column[1..].to_vec();
+    }
+    column.to_vec()
+}

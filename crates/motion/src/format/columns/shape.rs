@@ -1,0 +1,132 @@
+//! Evidence in the numbers themselves: times, decimal commas, one series in rows, integrals, spectra.
+
+use crate::format::source::{Source, latin1};
+use crate::math;
+
+/// Rows that are looked at for the way numbers are written.
+const ROWS: usize = 200;
+/// Least share of rising steps by which an unnamed first column is taken for times.
+const RISING: f64 = 0.95;
+
+/// Whether a column without a name holds times or numbers of rows: it rises nearly throughout, and no step is ten
+/// times the mean.
+///
+/// Times that repeat or go back are times all the same, to be refused as such.
+pub(super) fn is_time(column: &[f64]) -> bool {
+    if column.len() < 3 {
+        return false;
+    }
+    let steps = column.len() - 1;
+    let mean = (column[steps] - column[0]) / steps as f64;
+    let rising = column.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    let even = column.windows(2).all(|pair| pair[1] - pair[0] < 10.0 * mean);
+    mean > 0.0 && even && (rising == steps || rising as f64 >= RISING * steps as f64)
+}
+
+/// Whether a column counts its rows from 0 or 1.
+pub(super) fn is_index(column: &[f64]) -> bool {
+    matches!(column.first(), Some(0.0 | 1.0))
+        && column.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
+}
+
+/// The first row whose time is that of the row before although the times are printed fine enough to differ.
+pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
+    let steps = column.len().saturating_sub(1);
+    let mean = (column.last()? - column.first()?) / steps.max(1) as f64;
+    if resolution > 0.5 * mean {
+        return None;
+    }
+    (1..column.len()).find(|&row| column[row] == column[row - 1])
+}
+
+/// The coarsest resolution of the printed times: one unit of the most digits shown.
+pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> f64 {
+    let resolution = |line: usize| {
+        let text = latin1(source.raw(line));
+        let word = text.split([' ', '\t', ',', ';']).find(|word| !word.is_empty()).unwrap_or("");
+        crate::format::source::resolution(word)
+    };
+    (first..end.min(first + ROWS)).map(resolution).reduce(f64::min).unwrap_or(1e-6)
+}
+
+/// How a table uses commas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Commas {
+    /// Between numbers, or not at all.
+    Separate,
+    /// As decimal signs.
+    Decimal,
+    /// As both, so that no number is certain.
+    Both,
+}
+
+/// How the rows of a table use commas: as decimal signs where no number has a point and another separator parts
+/// the numbers, or where digits behind commas begin with zeros.
+pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
+    let (mut any, mut zeros, mut one_each, mut other) = (false, false, true, true);
+    for line in first..end.min(first + ROWS) {
+        let row = latin1(source.raw(line));
+        let row = row.trim();
+        if row.contains('.') || row.contains(", ") || row.ends_with(',') {
+            return Commas::Separate;
+        }
+        let fields: Vec<&str> =
+            row.split([';', '\t', ' ']).filter(|field| !field.is_empty()).collect();
+        any |= row.contains(',');
+        other &= fields.len() > 1;
+        one_each &= fields.iter().all(|field| field.matches(',').count() <= 1);
+        zeros |= fields.iter().any(|field| {
+            field.split(',').skip(1).any(|digits| digits.len() > 1 && digits.starts_with('0'))
+        });
+    }
+    match (any, one_each, other, zeros) {
+        (true, true, true, _) | (true, true, false, true) => Commas::Decimal,
+        (true, false, _, true) => Commas::Both,
+        _ => Commas::Separate,
+    }
+}
+
+/// Whether rows of several numbers are one series written row by row: neighbours in a row, and the ends of rows,
+/// are nearer to each other than neighbours in a column.
+pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
+    let (width, rows) = (table.len(), table[0].len());
+    let (mut along, mut down) = (0.0, 0.0);
+    for row in 1..rows {
+        for column in 0..width {
+            let before =
+                if column == 0 { table[width - 1][row - 1] } else { table[column - 1][row] };
+            along += (table[column][row] - before).abs();
+            down += (table[column][row] - table[column][row - 1]).abs();
+        }
+    }
+    along <= down
+}
+
+/// The first pair of columns of which the second is the integral of the first, as velocities are of accelerations.
+pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
+    let pairs = (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| [a, b]));
+    pairs.into_iter().filter(|[a, b]| a != b).find(|[a, b]| {
+        let (of, integral) = (columns[*a], columns[*b]);
+        if of.len() < 8 {
+            return false;
+        }
+        let (mut cross, mut one, mut two) = (0.0, 0.0, 0.0);
+        for row in 1..of.len() - 1 {
+            let rate = integral[row + 1] - integral[row - 1];
+            let value = of[row - 1] + 2.0 * of[row] + of[row + 1];
+            cross += rate * value;
+            one += rate * rate;
+            two += value * value;
+        }
+        cross > 0.95 * (one * two).sqrt() && one > 0.0
+    })
+}
+
+/// Whether no value lies below zero and the first one is not small, as in spectra.
+pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
+    columns.iter().all(|column| {
+        column.len() > 4
+            && column.iter().all(|value| *value >= 0.0)
+            && column.first().is_some_and(|first| *first > 1e-3 * math::peak(column))
+    })
+}
