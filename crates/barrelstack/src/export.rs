@@ -401,20 +401,22 @@ fn forces_csv(run: &Run) -> String {
 
 fn envelopes_csv(run: &Run) -> String {
     let mut text = String::from(
-        "body,x (m),z (m),coordinate (rad or m),stress at rest (N/m),largest stress (N/m)\n",
+        "body,x (m),z (m),coordinate (rad or m),length of boundary (m),stress at rest (N/m),\
+         largest stress until the first loss of seat (N/m),largest stress of the whole run (N/m)\n",
     );
     for envelope in &run.stresses.envelopes {
         let name = csv_field(&run.assembly.parts[envelope.body].name);
-        for ((point, rest), peak) in
-            envelope.points.iter().zip(&envelope.at_rest).zip(&envelope.peak)
-        {
-            let _ = writeln!(
-                text,
-                "{name},{}",
-                [point.position.x, point.position.z, point.coordinate, *rest, *peak]
-                    .map(shortest)
-                    .join(",")
-            );
+        for (at, point) in envelope.points.iter().enumerate() {
+            let values = [
+                point.position.x,
+                point.position.z,
+                point.coordinate,
+                envelope.lengths[at],
+                envelope.at_rest[at],
+                envelope.peak[at],
+                envelope.peak_whole_run[at],
+            ];
+            let _ = writeln!(text, "{name},{}", values.map(shortest).join(","));
         }
     }
     text

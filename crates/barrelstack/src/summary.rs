@@ -6,14 +6,14 @@ use barrelstack_dynamics::EnergySummary;
 use barrelstack_report::described;
 
 use crate::assemble::{Part, PartKind};
-use crate::demand::Demands;
+use crate::demand::{Demands, Span};
 use crate::ground::MotionSummary;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::scenario::View;
 use crate::variants::{Remedy, Spread};
 use crate::verify::Verification;
-use crate::watch::{Fate, Joint, StressEnvelope};
+use crate::watch::{Fate, Joint, PeakForces, StressEnvelope};
 
 pub use devices::{Device, Devices, ElementSummary};
 
@@ -38,9 +38,11 @@ described! {
         pub outcome: OutcomeSummary = outcome(run),
         /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodySummary> = bodies(run),
-        /// Demands on the stack.
-        pub demands: Demands = demands(run),
-        /// Forces between bodies; none where the run is invalid.
+        /// Demands on the stack until the first loss of seat.
+        pub demands: Demands = demands(run, Span::UntilLoss),
+        /// Demands on the stack over the whole run, falls included.
+        pub demands_whole_run: Demands = demands(run, Span::WholeRun),
+        /// Forces between all bodies that have pressed on each other; none where the run is invalid.
         pub interfaces: Vec<JointSummary> = joints(run),
         /// The force elements of every device, where there are any.
         #[serde(flatten)]
@@ -124,27 +126,41 @@ described! {
         pub peak_tilt: Option<f64> as "rad" = (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
         /// Largest normal stress at rest, per meter of boundary.
         pub stress_at_rest: Option<f64> as "N/m" = stress.map(|s| s.at_rest.iter().copied().fold(0.0, f64::max)),
-        /// Largest normal stress while the stack stood, over the largest at rest.
+        /// Largest normal stress until the first loss of seat, over the largest at rest, wherever each of them is.
         pub stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification),
-        /// Average over the loaded boundary of the same ratio.
+        /// The largest normal stresses until the first loss of seat, averaged over the boundary that is loaded at
+        /// rest, over the average at rest.
         pub mean_stress_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::mean_amplification),
+        /// Largest sum of all normal contact forces on the body until the first loss of seat, over that at rest.
+        pub total_force_amplification: Option<f64> as "1" = stress.and_then(StressEnvelope::total_amplification),
+        /// As `stress_amplification`, over the whole run.
+        pub stress_amplification_whole_run: Option<f64> as "1" = stress.and_then(StressEnvelope::amplification_whole_run),
     }
 
-    /// The force between two bodies.
+    /// The force between two bodies: on the upper one, or on the one that is named first where neither leans on the
+    /// other by design. Largest forces are those of any step that are largest in size, in a plane with their sign.
     #[derive(Clone, Debug)]
     pub struct JointSummary {
-        /// Such as "R1 on ground".
+        /// Such as "R1 on ground"; "R1.1 against R1.2" where the two have met while shaken.
         pub name: String,
-        /// Vertical force on the upper body at rest.
+        /// Vertical force at rest.
         pub at_rest: f64 as "N",
-        /// Largest vertical force on the upper body, and when.
+        /// Largest vertical force until the first loss of seat; zero where the two met only later.
         pub peak_vertical: f64 as "N",
         /// When.
         pub peak_vertical_at: f64 as "s",
-        /// Largest horizontal force on the upper body, and when; in a plane with its sign.
+        /// Largest horizontal force until the first loss of seat.
         pub peak_horizontal: f64 as "N",
         /// When.
         pub peak_horizontal_at: f64 as "s",
+        /// Largest vertical force over the whole run, falls included.
+        pub peak_vertical_whole_run: f64 as "N",
+        /// When.
+        pub peak_vertical_whole_run_at: f64 as "s",
+        /// Largest horizontal force over the whole run.
+        pub peak_horizontal_whole_run: f64 as "N",
+        /// When.
+        pub peak_horizontal_whole_run_at: f64 as "s",
     }
 
     /// The energy books at the end (J), relative to the start.
@@ -281,30 +297,34 @@ fn bodies(run: &Run) -> Vec<BodySummary> {
         .collect()
 }
 
-fn demands(run: &Run) -> Demands {
+fn demands(run: &Run, span: Span) -> Demands {
     if !sound(run) {
         return Demands::default();
     }
-    Demands::of(&run.assembly, &run.fates, &run.stresses, run.recording.forces())
+    Demands::of(&run.assembly, &run.fates, &run.stresses, run.recording.forces(), span)
 }
 
 impl JointSummary {
-    /// That of a joint with its name; none where nothing ever leaned on it.
+    /// That of a joint with its name; none where its bodies never pressed on each other.
     pub fn of(name: String, joint: &Joint) -> Option<Self> {
-        let (peak_vertical, peak_vertical_at) = joint.peak_vertical;
-        let (peak_horizontal, peak_horizontal_at) = joint.peak_horizontal;
-        (peak_vertical > 0.0).then_some(Self {
+        let PeakForces { vertical, horizontal } = joint.until_loss;
+        let whole = joint.whole_run;
+        joint.has_met().then_some(Self {
             name,
             at_rest: joint.at_rest,
-            peak_vertical,
-            peak_vertical_at,
-            peak_horizontal,
-            peak_horizontal_at,
+            peak_vertical: vertical.0,
+            peak_vertical_at: vertical.1,
+            peak_horizontal: horizontal.0,
+            peak_horizontal_at: horizontal.1,
+            peak_vertical_whole_run: whole.vertical.0,
+            peak_vertical_whole_run_at: whole.vertical.1,
+            peak_horizontal_whole_run: whole.horizontal.0,
+            peak_horizontal_whole_run_at: whole.horizontal.1,
         })
     }
 }
 
 fn joints(run: &Run) -> Vec<JointSummary> {
-    let joints = run.recording.forces().joints.iter().filter(|_| sound(run));
+    let joints = run.recording.forces().listed().into_iter().filter(|_| sound(run));
     joints.filter_map(|joint| JointSummary::of(joint.name(&run.assembly), joint)).collect()
 }

@@ -75,8 +75,10 @@ fn errors(found: &[CaseResult], exact: &[CaseResult]) -> Errors {
     });
     // The largest of every force at an interface, over the weight that it bears at rest, and of every stress.
     let forces = |result: &CaseResult| {
-        let joints = result.joints.iter().flat_map(|(_, joint)| {
-            [joint.peak_vertical.0, joint.peak_horizontal.0].map(|peak| peak / joint.at_rest)
+        let designed = result.joints.iter().filter(|(_, joint)| joint.by_design);
+        let joints = designed.flat_map(|(_, joint)| {
+            let peaks = joint.until_loss;
+            [peaks.vertical.0, peaks.horizontal.0].map(|peak| peak / joint.at_rest)
         });
         joints.chain(result.demands.stress_amplification).collect::<Vec<f64>>()
     };

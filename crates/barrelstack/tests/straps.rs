@@ -58,7 +58,7 @@ fn a_stack_that_falls_stands_when_all_its_levels_are_strapped_together() {
 
 #[test]
 fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() {
-    let base = |run: &Run| run.recording.joints[0].at_rest;
+    let base = |run: &Run| run.recording.joints[0].joint.at_rest;
     let (bare, loose, tight) = (
         unstrapped(&["stack.strap.levels=0", "stack.strap.ties=\"barrels-to-racks\""]),
         small(&[]),

@@ -80,6 +80,13 @@ pub(crate) fn rows(
     if let Some(amplification) = demands.stress_amplification {
         row("stress amplification", format!("{} × at rest", three_digits(amplification)));
     }
+    if let Some(load) = demands.stave_utilization {
+        let whole = summary.demands_whole_run.stave_utilization.filter(|whole| *whole > load);
+        let falls = whole.map_or_else(String::new, |whole| {
+            format!(" until the first loss of seat, {:.0} % over the whole run", 100.0 * whole)
+        });
+        row("load on staves", format!("{:.0} % of what they bear{falls}", 100.0 * load));
+    }
     if let Some(slip) = demands.base_slip_residual {
         row("slip of the bottom rack", moved(slip));
     }

@@ -9,7 +9,7 @@ use barrelstack::render::{Part, RenderFolder, Rendering};
 use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::verify::Verification;
-use barrelstack::watch::StressEnvelope;
+use barrelstack::watch::{Joint, StressEnvelope};
 use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
 use barrelstack_report::{Format, document_pdf, html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
@@ -32,8 +32,11 @@ pub(crate) struct Run {
     beside: bool,
 }
 
-/// Two bodies and their forces: name, at rest (N), largest vertical (N) and when (s), largest horizontal and when.
-type JointFacts = (String, f64, (f64, f64), (f64, f64));
+/// The largest forces between two bodies: vertical (N) and when (s), horizontal and when.
+type Peaks = ((f64, f64), (f64, f64));
+
+/// Two bodies and their forces: name, at rest (N), largest until the first loss of seat, and over the whole run.
+type JointFacts = (String, f64, Peaks, Peaks);
 
 impl Run {
     pub(crate) fn of(answer: Answer, repeated: Option<Verification>) -> Self {
@@ -132,7 +135,9 @@ impl Run {
     fn joints(&self) -> Vec<JointFacts> {
         let joints = self.run().recording.joints.iter();
         let facts = |joint: &barrelstack::watch::JointForces| {
-            (joint.name.clone(), joint.at_rest, joint.peak_vertical, joint.peak_horizontal)
+            let Joint { at_rest, until_loss, whole_run, .. } = &joint.joint;
+            let peaks = [until_loss, whole_run].map(|peaks| (peaks.vertical, peaks.horizontal));
+            (joint.name.clone(), *at_rest, peaks[0], peaks[1])
         };
         joints.map(facts).collect()
     }
@@ -189,13 +194,15 @@ impl Run {
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
     }
 
-    /// Stresses (N/m) at rest, and the largest while the stack stood.
+    /// Stresses (N/m) at rest, largest until the first loss of seat, and largest over the whole run.
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,
-    ) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
+    ) -> PyResult<(Numbers<'py>, Numbers<'py>, Numbers<'py>)> {
         let envelope = slf.get().envelope(at)?;
-        Ok((view(slf.as_any(), &envelope.at_rest)?, view(slf.as_any(), &envelope.peak)?))
+        let numbers = |values| view(slf.as_any(), values);
+        let peaks = (numbers(&envelope.peak)?, numbers(&envelope.peak_whole_run)?);
+        Ok((numbers(&envelope.at_rest)?, peaks.0, peaks.1))
     }
 
     /// The case as it is stated and its variants, a row each; none where none were run.

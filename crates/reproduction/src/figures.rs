@@ -5,6 +5,7 @@ use std::sync::Arc;
 use barrelstack::assemble::{Assembly, PartKind};
 use barrelstack::report::{scene, standing_range, stress_figure};
 use barrelstack::run::Run;
+use barrelstack::watch::JointForces;
 use barrelstack_report::{
     Arrow, Axis, Block, Cell, Diagram, Figure, Mark, Panel, Player, Plot, Point, Scene, Series,
     Strip, Table,
@@ -237,7 +238,8 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
 
 /// Contactor, target and force at rest (N) of all bodies that lean on each other by design.
 fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
-    run.recording.joints.iter().filter_map(|joint| {
+    let joints = run.recording.joints.iter().map(|history| &history.joint);
+    joints.filter(|joint| joint.by_design).filter_map(|joint| {
         let pair = run.assembly.model.pairs().find(|pair| {
             let between = [pair.contactor, pair.target];
             between == [joint.upper, joint.lower] || between == [joint.lower, joint.upper]
@@ -248,7 +250,10 @@ fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
 
 /// Whether one body lies on the other.
 fn is_above(run: &Run, one: usize, other: usize) -> bool {
-    run.recording.joints.iter().any(|joint| [joint.upper, joint.lower] == [one, other])
+    run.recording
+        .joints
+        .iter()
+        .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
 /// Whether every designed contact of a run is carried by nodes of a rack.

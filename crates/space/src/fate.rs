@@ -71,15 +71,35 @@ pub struct Fate {
     pub moved_at_collapse: Vec3,
     /// Displacement (m) across and along relative to what it stands on, in the mean of all of that, at the end.
     pub residual_slip: [f64; 2],
-    /// Largest horizontal displacement (m) relative to the ground, before the collapse.
-    pub peak_displacement: f64,
     /// Largest displacement (m) across and along relative to what it stands on, in the mean of all of that, before
-    /// the collapse.
+    /// the collapse; of different instants.
     pub peak_slip: [f64; 2],
-    /// Largest tilt (rad) from where it stood, before the collapse.
-    pub peak_tilt: f64,
     /// Largest rise (m) above its place at rest, before the collapse.
     pub peak_uplift: f64,
+    /// Largest motions before the collapse.
+    pub until_loss: PeakMotion,
+    /// Largest motions over the whole run, falls included.
+    pub whole_run: PeakMotion,
+}
+
+/// The largest motions of a body in any step; displacements are horizontal, whatever their direction, and each is that of
+/// one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeakMotion {
+    /// Largest displacement (m) relative to the ground.
+    pub displacement: f64,
+    /// Largest displacement (m) relative to what the body stands on, in the mean of all of that.
+    pub slip: f64,
+    /// Largest tilt (rad) of a rack from where it stood.
+    pub tilt: f64,
+}
+
+impl PeakMotion {
+    fn raise(&mut self, displacement: f64, slip: f64, tilt: f64) {
+        self.displacement = self.displacement.max(displacement);
+        self.slip = self.slip.max(slip);
+        self.tilt = self.tilt.max(tilt);
+    }
 }
 
 /// Follows all bodies through a run; sees every step.
@@ -94,8 +114,6 @@ pub struct Fates<'a> {
     /// How every body is turned in the state that is looked at.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
-    /// Cosine of the largest tilt of every rack.
-    least_up: Vec<f64>,
     /// When (s) the first body left its seat, and which.
     collapse: Option<(f64, BodyId)>,
     /// When (s) the first barrel had fallen.
@@ -118,7 +136,6 @@ impl<'a> Fates<'a> {
             turned: upright.clone(),
             upright,
             all: state.poses.iter().map(fate).collect(),
-            least_up: vec![1.0; state.poses.len()],
             collapse: None,
             first_fall: None,
         }
@@ -182,21 +199,17 @@ impl<'a> Fates<'a> {
             if standing {
                 fate.moved_at_collapse = moved;
             }
-            if self.all[i].left_seat.is_some() && !standing {
-                continue;
-            }
             self.slips(state, i, &mut slips);
             let mean = mean(&slips);
+            // A barrel turns about its axis without end.
+            let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
+            let tilt = if up < 1.0 { math::acos(up.max(-1.0)) } else { 0.0 };
+            let (way, slip) = (level(moved).length(), level(mean).length());
+            let fate = &mut self.all[i];
+            fate.whole_run.raise(way, slip, tilt);
             if standing {
-                // A barrel turns about its axis without end.
-                let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
-                let fate = &mut self.all[i];
-                fate.peak_displacement = fate.peak_displacement.max(level(moved).length());
+                fate.until_loss.raise(way, slip, tilt);
                 fate.peak_uplift = fate.peak_uplift.max(moved.z);
-                if up < self.least_up[i] {
-                    self.least_up[i] = up;
-                    fate.peak_tilt = fate.peak_tilt.max(math::acos(up.max(-1.0)));
-                }
                 fate.peak_slip[0] = fate.peak_slip[0].max(mean.x.abs());
                 fate.peak_slip[1] = fate.peak_slip[1].max(mean.y.abs());
             }

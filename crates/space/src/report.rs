@@ -70,10 +70,14 @@ pub fn document(answer: &Answer) -> Document {
         blocks.push(heading("What became of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
         if !free {
-            blocks.extend([heading("Demands"), Block::Table(demand_table(&summary.demands))]);
+            blocks.extend([
+                heading("Demands"),
+                Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
+            ]);
             let table = interface_table(
-                "Force on the upper body; horizontal forces whatever their direction. All steps of the run count, \
-                 falls too.",
+                "Force on the upper body, or on the one that is named first, largest in size of all steps until the \
+                 first loss of seat, and of all steps of the run, falls included; horizontal forces whatever their \
+                 direction.",
                 &summary.interfaces,
             );
             blocks.extend([heading("What the seats bore"), Block::Table(table)]);
@@ -177,7 +181,8 @@ fn fates(run: &Run) -> Table {
             ("moved across", "cm", &|(_, fate)| length(fate.moved.x)),
             ("along", "cm", &|(_, fate)| length(fate.moved.y)),
             ("up", "cm", &|(_, fate)| length(fate.moved.z)),
-            ("largest slip across", "cm", &|(_, fate)| length(fate.peak_slip[0])),
+            ("largest slip", "cm", &|(_, fate)| length(fate.until_loss.slip)),
+            ("across", "cm", &|(_, fate)| length(fate.peak_slip[0])),
             ("along", "cm", &|(_, fate)| length(fate.peak_slip[1])),
         ],
     )

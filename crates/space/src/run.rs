@@ -311,9 +311,11 @@ impl Observer<Spatial> for Watch<'_> {
         scratch: &Scratch<Spatial>,
         _: &EnergyLedger<Spatial>,
     ) -> ControlFlow<()> {
+        // Until the first loss of seat, the state in which it is found included.
+        let standing = self.fates.collapse().is_none();
         self.fates.observe(state, scratch);
-        self.elements.observe(state, scratch);
-        self.seats.observe(state.time, self.fates.collapse().is_none(), scratch);
+        self.elements.observe(state, standing, scratch);
+        self.seats.observe(state.time, standing, scratch);
         let time = state.time;
         if time >= self.frames.times.len() as f64 * self.every {
             self.frames.times.push(time);

@@ -1,5 +1,6 @@
 //! What seats bear in space, and how hard their contacts press: at rest, and at their largest.
 
+use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
 use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
 
@@ -10,14 +11,26 @@ use crate::stack::Stack;
 struct Press {
     /// At rest (N).
     at_rest: f64,
-    /// At its largest while the stack stood (N).
+    /// At its largest until the first loss of seat (N).
     peak: f64,
+    /// At its largest over the whole run (N).
+    peak_whole_run: f64,
+}
+
+impl Press {
+    fn peak_in(&self, span: Span) -> f64 {
+        match span {
+            Span::UntilLoss => self.peak,
+            Span::WholeRun => self.peak_whole_run,
+        }
+    }
 }
 
 /// Follows both through a run; sees every step.
 #[derive(Clone, Debug)]
 pub struct Seats {
-    /// Every barrel on its rack, every rack on what is below it; horizontal forces are without direction.
+    /// Every barrel on its rack, every rack on what is below it, and other bodies that have met; horizontal forces are
+    /// without direction.
     pub joints: Joints,
     /// The forces (N) on the upper bodies of the joints in the step at hand.
     forces: Vec<Vec3>,
@@ -33,7 +46,7 @@ struct Pair {
     bodies: [BodyId; 2],
     /// The number of its first contact element.
     first: usize,
-    /// The number of its joint, and whether the contactor is the upper body.
+    /// The number of its joint, once its bodies have met, and whether the contactor is the upper body.
     joint: Option<(usize, bool)>,
 }
 
@@ -41,13 +54,12 @@ impl Seats {
     /// Starts with the forces at rest.
     pub fn new(stack: &Stack, time: f64, scratch: &Scratch<Spatial>) -> Self {
         let below = stack.parts.iter();
-        let joints =
-            Joints::between(below.map(|part| leans_on(part.kind, part.carrier, &part.supports)));
+        let below = below.map(|part| leans_on(part.kind, part.carrier, &part.supports));
+        let joints = Joints::between(below, !stack.is_free());
         let (mut pairs, mut count) = (Vec::new(), 0);
         // Nothing in a free scene has a seat, and its pairs may be more than can be listed.
         for pair in stack.model.pairs().take_while(|_| !stack.is_free()) {
-            let joint = joints.of(pair.contactor, pair.target);
-            pairs.push(Pair { bodies: [pair.contactor, pair.target], first: count, joint });
+            pairs.push(Pair { bodies: [pair.contactor, pair.target], first: count, joint: None });
             count += stack.model.bodies()[pair.contactor].nodes[pair.nodes].count();
         }
         let forces = vec![Vec3::default(); joints.joints.len()];
@@ -62,35 +74,38 @@ impl Seats {
         seats
     }
 
-    /// Looks at an accepted step at a time (s), of a stack that stands or does not.
+    /// Looks at an accepted step at a time (s), of a stack that had lost no seat before it or had.
     pub fn observe(&mut self, time: f64, stands: bool, scratch: &Scratch<Spatial>) {
         if self.pairs.is_empty() {
             return;
         }
         self.forces.fill(Vec3::default());
         for pair in &scratch.pair_forces {
-            if let Some((at, upper)) = self.pairs[pair.pair].joint {
+            let known = &mut self.pairs[pair.pair].joint;
+            *known = known.or_else(|| self.joints.meet(pair.contactor, pair.target));
+            self.forces.resize(self.joints.joints.len(), Vec3::default());
+            if let Some((at, upper)) = *known {
                 self.forces[at] += if upper { pair.force } else { -pair.force };
             }
         }
         for (joint, force) in self.joints.joints.iter_mut().zip(&self.forces) {
             joint.force = Vec2::new((force.x * force.x + force.y * force.y).sqrt(), force.z);
-            joint.raise(time);
+            joint.raise(time, stands);
         }
-        if stands {
-            for pressed in &scratch.pressed {
-                let first = self.pairs[pressed.pair].first;
-                let press = &mut self.presses[first + pressed.node as usize];
-                press.peak = press.peak.max(pressed.normal_force);
+        for pressed in &scratch.pressed {
+            let first = self.pairs[pressed.pair].first;
+            let press = &mut self.presses[first + pressed.node as usize];
+            press.peak_whole_run = press.peak_whole_run.max(pressed.normal_force);
+            if stands {
+                press.peak = press.peak_whole_run;
             }
         }
     }
 
     /// The joints of a stack with their names, such as "R1 on ground".
     pub fn named(&self, stack: &Stack) -> impl Iterator<Item = (String, &Joint)> {
-        let name = |body: BodyId| stack.parts[body].name.clone();
-        let named = move |joint: &Joint| format!("{} on {}", name(joint.upper), name(joint.lower));
-        self.joints.joints.iter().map(move |joint| (named(joint), joint))
+        let named = move |joint: &Joint| joint.named(|body| &stack.parts[body].name);
+        self.joints.listed().into_iter().map(move |joint| (named(joint), joint))
     }
 
     /// The contact elements of a body.
@@ -100,20 +115,20 @@ impl Seats {
         own.flat_map(|(pair, end)| &self.presses[pair.first..end])
     }
 
-    /// Largest contact force on a body while the stack stood over the largest at rest: as every element stands for the
-    /// same length of boundary, that of stresses; none where nothing pressed.
-    pub fn amplification(&self, body: BodyId) -> Option<f64> {
-        let most = |of: fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
-        let at_rest = most(|press| press.at_rest);
-        (at_rest > 0.0).then(|| most(|press| press.peak) / at_rest)
+    /// Largest contact force on a body in a span of the run over the largest at rest: as every element stands for the
+    /// same length of boundary, that of stresses; none where nothing pressed at rest.
+    pub fn amplification(&self, body: BodyId, span: Span) -> Option<f64> {
+        let most = |of: &dyn Fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
+        let at_rest = most(&|press| press.at_rest);
+        (at_rest > 0.0).then(|| most(&|press| press.peak_in(span)) / at_rest)
     }
 
     /// The same of the sums over the elements that press at rest.
-    pub fn mean_amplification(&self, body: BodyId) -> Option<f64> {
-        let sum = |of: fn(&Press) -> f64| {
+    pub fn mean_amplification(&self, body: BodyId, span: Span) -> Option<f64> {
+        let sum = |of: &dyn Fn(&Press) -> f64| {
             self.of(body).filter(|press| press.at_rest > 0.0).map(of).sum::<f64>()
         };
-        let at_rest = sum(|press| press.at_rest);
-        (at_rest > 0.0).then(|| sum(|press| press.peak) / at_rest)
+        let at_rest = sum(&|press| press.at_rest);
+        (at_rest > 0.0).then(|| sum(&|press| press.peak_in(span)) / at_rest)
     }
 }

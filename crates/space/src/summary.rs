@@ -1,7 +1,7 @@
 //! The summary of a run in space: one JSON document, the same numbers in print.
 
 use barrelstack::assemble::PartKind;
-use barrelstack::demand::Demands;
+use barrelstack::demand::{Demands, Span};
 use barrelstack::ground::MotionSummary;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
@@ -34,9 +34,11 @@ described! {
         pub outcome: OutcomeInSpace,
         /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodyInSpace>,
-        /// Demands on the stack.
+        /// Demands on the stack until the first loss of seat.
         pub demands: Demands,
-        /// Forces between bodies that lean on each other; none where the run is invalid.
+        /// Demands on the stack over the whole run, falls included.
+        pub demands_whole_run: Demands,
+        /// Forces between all bodies that have pressed on each other; none where the run is invalid.
         pub interfaces: Vec<JointSummary>,
         /// What every element of the devices bore, where there are any.
         #[serde(flatten)]
@@ -138,9 +140,11 @@ described! {
         pub spin: [f64; 3] as "rad/s",
         /// Largest horizontal displacement against the ground while the stack stood.
         pub peak_displacement: f64 as "m",
+        /// Largest horizontal displacement against what it stands on, whatever its direction, while the stack stood.
+        pub peak_slip: f64 as "m",
         /// Largest displacement across the barrels against what it stands on, while the stack stood.
         pub peak_slip_across: f64 as "m",
-        /// The same along the barrels.
+        /// The same along the barrels, of another instant.
         pub peak_slip_along: f64 as "m",
         /// Largest rise above its place at rest while the stack stood.
         pub peak_uplift: f64 as "m",
@@ -209,6 +213,7 @@ impl Summary {
         let sound = !matches!(run.outcome, Outcome::Invalid { .. });
         let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);
         let first = &run.ground.first;
+        let demands_in = |span: Span| if sound { demands(run, span) } else { Demands::default() };
         Self {
             schema: "space/1",
             title: stated.title.clone(),
@@ -218,7 +223,8 @@ impl Summary {
             outcome: outcome(run, sound),
             // Numbers of a run that broke down look like results and are none.
             bodies: if sound { bodies(run) } else { Vec::new() },
-            demands: if sound { demands(run) } else { Demands::default() },
+            demands: demands_in(Span::UntilLoss),
+            demands_whole_run: demands_in(Span::WholeRun),
             interfaces: if sound { interfaces(run) } else { Vec::new() },
             devices: Devices::borne(&run.devices()),
             energy: run.energy.as_ref().map(EnergyBooks::of),
@@ -296,14 +302,15 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             },
             velocity: three(twist.linear),
             spin: three(twist.angular),
-            peak_displacement: fate.peak_displacement,
+            peak_displacement: fate.until_loss.displacement,
+            peak_slip: fate.until_loss.slip,
             peak_slip_across: fate.peak_slip[0],
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
-            peak_tilt: (part.kind == PartKind::Rack).then_some(fate.peak_tilt),
+            peak_tilt: (part.kind == PartKind::Rack).then_some(fate.until_loss.tilt),
             // The ground, which comes first, is left out.
-            stress_amplification: run.seats.amplification(at + 1),
-            mean_stress_amplification: run.seats.mean_amplification(at + 1),
+            stress_amplification: run.seats.amplification(at + 1, Span::UntilLoss),
+            mean_stress_amplification: run.seats.mean_amplification(at + 1, Span::UntilLoss),
         })
         .collect()
 }

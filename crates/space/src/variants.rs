@@ -5,12 +5,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::PartKind;
-use barrelstack::demand::Demands;
+use barrelstack::demand::{Demands, Span};
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::variants::{Advance, Asked, Plane, Spread, planes};
-use barrelstack::watch::{Ending, Joint};
+use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
 
@@ -73,7 +73,8 @@ impl Case {
             falls: barrels.iter().map(fall).collect(),
             fall_heights: run.fallen().map(|body| run.fates[body].drop).collect(),
             fall_forces: run.fallen().map(|body| run.fates[body].fall_force).collect(),
-            demands: demands(run),
+            demands: demands(run, Span::UntilLoss),
+            demands_whole_run: demands(run, Span::WholeRun),
             joints: named.map(|(name, joint)| (name, joint.clone())).collect(),
             residual_displacement: Some(barrels.iter().map(way).fold(0.0, f64::max)),
             ..told
@@ -113,8 +114,8 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
-/// The demands: displacements are horizontal, whatever their direction.
-pub fn demands(run: &Run) -> Demands {
+/// The demands in a span of the run: displacements are horizontal, whatever their direction.
+pub fn demands(run: &Run, span: Span) -> Demands {
     let Run { stack, fates, seats, .. } = run;
     let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
         let bodies = stack.of_kind(kind).filter(|body| on(stack.parts[*body].level));
@@ -123,27 +124,32 @@ pub fn demands(run: &Run) -> Demands {
     let (barrel, rack) = (PartKind::Barrel, PartKind::Rack);
     let (bottom, any) = (|level: u32| level == 1, |_: u32| true);
     let length = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
-    let drift = |body: usize| Some(fates[body].peak_displacement / stack.height);
-    let slip = |body: usize| Some(length(fates[body].peak_slip));
+    let motion = |body: usize| match span {
+        Span::UntilLoss => fates[body].until_loss,
+        Span::WholeRun => fates[body].whole_run,
+    };
+    let drift = |body: usize| Some(motion(body).displacement / stack.height);
+    let slip = |body: usize| Some(motion(body).slip);
     let collapsed = |body: usize| {
         let Vec3 { x, y, .. } = fates[body].moved_at_collapse;
         Some(length([x, y]))
     };
     let load = |body: usize| {
-        let of = |joint: &&Joint| joint.upper == body || joint.lower == body;
-        let loads = seats.joints.joints.iter().filter(of).map(|joint| joint.peak_vertical.0);
-        loads.reduce(f64::max).map(|load| load / stack.stave_capacity)
+        let load = seats.joints.stave_load(body, &|id| stack.parts[id].kind, span);
+        Some(load? / stack.stave_capacity)
     };
     Demands {
         top_drift_ratio: most(barrel, &|level| level == stack.levels, &drift),
-        stress_amplification: most(barrel, &bottom, &|body| seats.amplification(body)),
-        mean_stress_amplification: most(barrel, &bottom, &|body| seats.mean_amplification(body)),
+        stress_amplification: most(barrel, &bottom, &|body| seats.amplification(body, span)),
+        mean_stress_amplification: most(barrel, &bottom, &|body| {
+            seats.mean_amplification(body, span)
+        }),
         stave_utilization: most(barrel, &any, &load),
         base_slip_peak: most(rack, &bottom, &slip),
         base_slip_at_collapse: most(rack, &bottom, &collapsed),
         base_slip_residual: most(rack, &bottom, &|body| Some(length(fates[body].residual_slip))),
         rack_walk_peak: most(rack, &|level| level > 1, &slip),
-        rack_tilt_peak: most(rack, &any, &|body| Some(fates[body].peak_tilt)),
+        rack_tilt_peak: most(rack, &any, &|body| Some(motion(body).tilt)),
     }
 }
 

@@ -23,7 +23,13 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
         Outcome::Stable if run.ending == Ending::Interrupted => {
             format!("This stack stood until the run was stopped at {:.1} s.", run.end_time)
         }
-        Outcome::Stable => "This stack stands.".to_owned(),
+        Outcome::Stable => match summary.demands.stave_utilization.filter(|load| *load > 1.0) {
+            Some(load) => format!(
+                "This stack stands, but staves are crushed: they bear up to {:.0} % of what they are stated to bear.",
+                100.0 * load
+            ),
+            None => "This stack stands.".to_owned(),
+        },
         Outcome::Collapse { time, .. } => format!(
             "This stack falls: it gives way after {time:.1} s, and {} of {barrels} barrels fall.",
             run.fallen().count()

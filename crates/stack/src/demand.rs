@@ -4,7 +4,16 @@ use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
 
 use crate::assemble::{Assembly, PartKind};
-use crate::watch::{Fate, Fates, Joint, Joints, StressEnvelope, Stresses};
+use crate::watch::{Fate, Fates, Joints, PeakMotion, StressEnvelope, Stresses};
+
+/// The part of a run of which demands and largest forces are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// Until the first body leaves its seat; all of the run where none does.
+    UntilLoss,
+    /// The whole run, with all that falls.
+    WholeRun,
+}
 
 /// A demand on a stack.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +49,7 @@ macro_rules! demands {
         $(#[doc = $doc:literal])+
         $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal $decimals:literal, $of:expr;
     )*) => {
-        /// Demands on the stack, while it stood unless said otherwise; all null where the run is invalid.
+        /// Demands on the stack in a [`Span`] of its run; all null where the run is invalid.
         #[derive(Clone, Debug, Default, Serialize)]
         pub struct Demands {
             $($(#[doc = $doc])+ pub $name: Option<f64>,)*
@@ -65,8 +74,9 @@ macro_rules! demands {
                 fates: &Fates,
                 stresses: &Stresses,
                 joints: &Joints,
+                span: Span,
             ) -> Self {
-                let seen = Seen { assembly, fates, stresses, joints };
+                let seen = Seen { assembly, fates, stresses, joints, span };
                 Self { $($name: seen.most($of)),* }
             }
         }
@@ -77,26 +87,32 @@ demands! {
     /// Largest displacement of the top barrels against the ground, over the height of the stack.
     top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |seen, body| {
         let height = seen.assembly.height;
-        let drift = seen.fate(body, PartKind::Barrel, Some(seen.assembly.levels))?.peak_displacement;
+        let drift = seen.motion(body, PartKind::Barrel, Some(seen.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
-    /// Largest normal stress on a bottom-level barrel over the largest at rest.
+    /// Largest normal stress on a barrel of the bottom level over the largest at rest, wherever on it each of them is.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
-        |seen, body| seen.stress(body)?.amplification();
-    /// Average stress amplification over the loaded boundary of the bottom-level barrels.
+        |seen, body| match seen.span {
+            Span::UntilLoss => seen.stress(body)?.amplification(),
+            Span::WholeRun => seen.stress(body)?.amplification_whole_run(),
+        };
+    /// Largest normal stresses on a barrel of the bottom level, averaged over the boundary that is loaded at rest, over
+    /// the average at rest.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
-        |seen, body| seen.stress(body)?.mean_amplification();
+        |seen, body| match seen.span {
+            Span::UntilLoss => seen.stress(body)?.mean_amplification(),
+            Span::WholeRun => seen.stress(body)?.mean_amplification_whole_run(),
+        };
     /// Largest vertical force between a barrel and a rack in any step, over what its staves bear
     /// (`stack.barrel.stave_capacity`).
     stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |seen, body| {
         seen.fate(body, PartKind::Barrel, None)?;
-        let of = |joint: &&Joint| joint.upper == body || joint.lower == body;
-        let loads = seen.joints.joints.iter().filter(of).map(|joint| joint.peak_vertical.0);
-        loads.reduce(f64::max).map(|load| load / seen.assembly.stave_capacity)
+        let load = seen.joints.stave_load(body, &|id| seen.assembly.parts[id].kind, seen.span);
+        Some(load? / seen.assembly.stave_capacity)
     };
     /// Largest slip of the bottom rack on the ground.
     base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
-        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.peak_slip);
+        |seen, body| Some(seen.motion(body, PartKind::Rack, Some(1))?.slip);
     /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
     base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm" 1,
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
@@ -105,12 +121,12 @@ demands! {
         |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.residual_slip);
     /// Largest walk of any rack on the barrels below, or of its foot on the posts of the rack below.
     rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |seen, body| {
-        let fate = seen.fate(body, PartKind::Rack, None)?;
-        (!seen.assembly.parts[body].supports.is_empty()).then_some(fate.peak_slip)
+        let motion = seen.motion(body, PartKind::Rack, None)?;
+        (!seen.assembly.parts[body].supports.is_empty()).then_some(motion.slip)
     };
     /// Largest tilt of any rack.
     rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg" 1,
-        |seen, body| Some(seen.fate(body, PartKind::Rack, None)?.peak_tilt);
+        |seen, body| Some(seen.motion(body, PartKind::Rack, None)?.tilt);
 }
 
 impl Described for Demands {
@@ -124,7 +140,8 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        let meaning = "Demands on the stack, while it stood unless said otherwise.";
+        let meaning = "Demands on the stack, until the first loss of seat or over the whole run as the field says that \
+                       holds them; slips at the collapse and at the end are those of their moments in both.";
         described::object(objects, "Demands", meaning, &fields)
     }
 }
@@ -135,6 +152,7 @@ struct Seen<'a> {
     fates: &'a Fates,
     stresses: &'a Stresses,
     joints: &'a Joints,
+    span: Span,
 }
 
 impl Seen<'_> {
@@ -149,6 +167,15 @@ impl Seen<'_> {
         let part = &self.assembly.parts[body];
         let wanted = part.kind == kind && level.is_none_or(|level| part.level == Some(level));
         wanted.then(|| self.fates.fate(body))
+    }
+
+    /// The largest motions of a body of a kind on a level; none for any other.
+    fn motion(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<PeakMotion> {
+        let fate = self.fate(body, kind, level)?;
+        Some(match self.span {
+            Span::UntilLoss => fate.until_loss(),
+            Span::WholeRun => fate.whole_run,
+        })
     }
 
     /// The stress around a barrel of the bottom level.

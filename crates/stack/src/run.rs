@@ -214,7 +214,8 @@ impl Scenario {
             pace,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
-        let Watch { recording, mut stresses, fates, elements, ending, .. } = watch;
+        let Watch { mut recording, mut stresses, fates, elements, ending, .. } = watch;
+        recording.finish();
         let ending = ending.unwrap_or(Ending::of_time(self));
         let ended = result.map(|totals| Ended::of(&totals));
         let Verdict { outcome, energy, steps, mut warnings, ending } =

@@ -18,12 +18,12 @@ use crate::ground::Ground;
 use crate::scenario::Scenario;
 
 pub use elements::{ElementFate, ElementFates};
-pub use fate::{Fate, Fates, Loss, Thresholds};
-pub use joints::{Joint, Joints, leans_on};
+pub use fate::{Fate, Fates, Loss, PeakMotion, Thresholds};
+pub use joints::{Joint, Joints, PeakForces, leans_on};
 pub use recording::{Channel, Frames, JointForces, Recording};
 pub use rest::{Ending, Rest};
 pub(crate) use stress::StressWatch;
-pub use stress::{BoundaryPoint, StressEnvelope, Stresses};
+pub use stress::{BoundaryPoint, StressEnvelope, Stresses, TotalForce};
 
 /// Everything that watches a run, together.
 pub struct Watch<'a> {
@@ -134,7 +134,7 @@ impl<'a> Watch<'a> {
     ) -> Self {
         Self {
             recording: Recording::new(assembly, state, rates),
-            stresses: StressWatch::new(assembly, scratch),
+            stresses: StressWatch::new(assembly, state, scratch),
             fates: Fates::new(assembly, state, thresholds),
             elements: ElementFates::default(),
             ground,
@@ -160,12 +160,12 @@ impl Observer<Planar> for Watch<'_> {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
+        // Until the first loss of seat, the state in which it is found included.
+        let standing = self.fates.stands();
         self.fates.observe(state, scratch);
-        self.elements.observe(state, scratch);
-        // Envelopes are those of the standing stack: what falling barrels do to each other is another
-        // question.
-        self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
-        self.recording.observe(self.assembly, self.ground, model, state, scratch, energy);
+        self.elements.observe(state, standing, scratch);
+        self.stresses.observe(standing, state, scratch, &|_| Some(model));
+        self.recording.observe(self.assembly, self.ground, standing, state, scratch, energy);
         let due = match self.pace {
             Pace::Time => state.time >= self.next_look,
             Pace::Steps(every) => self.states.is_multiple_of(every.get()),

@@ -89,10 +89,10 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     table
 }
 
-/// Demands on each stack while it stood.
+/// Demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "While each stack stood, unless said otherwise.",
+        "Until the first loss of seat of each stack; what the whole run adds is in the summary of each.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

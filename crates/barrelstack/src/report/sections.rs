@@ -59,7 +59,7 @@ fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
     section(&mut blocks, 3, "Displacements", displacements(run, variants));
-    let table = demand_table(&summary.demands);
+    let table = demand_table(&summary.demands, &summary.demands_whole_run);
     let shown = if table.rows.is_empty() { Vec::new() } else { vec![Block::Table(table)] };
     section(&mut blocks, 3, "Demands", shown);
     section(&mut blocks, 3, "Normal stress on barrels and racks", stresses(run));
@@ -221,8 +221,9 @@ fn stresses(run: &Run) -> Vec<Block> {
     let mut blocks = Vec::new();
     for envelope in &run.stresses.envelopes {
         let part = &run.assembly.parts[envelope.body];
-        let bottom = part.level == Some(1) && part.column == Some(1);
-        if bottom && envelope.amplification().is_some() {
+        let first = part.column == Some(1);
+        let shown = part.level == Some(1) || part.level == Some(run.assembly.levels);
+        if first && shown && envelope.amplification().is_some() {
             blocks.push(Block::Figure(stress_figure(run, envelope)));
         }
     }
@@ -231,7 +232,9 @@ fn stresses(run: &Run) -> Vec<Block> {
             0,
             Block::Paragraph(
                 "Stress is force per meter of boundary in the plane of the model, drawn outward from where \
-                 it acts. Gray: at rest. Behind it: the largest while the stack stood."
+                 it acts. A node bears over half of the way to each of its neighbors, a contact without nodes over \
+                 1 cm at full scale, an assumption: stress there is force over that length. Gray: at rest. Behind \
+                 it: the largest until the first loss of seat."
                     .into(),
             ),
         );
@@ -295,8 +298,8 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
         return Vec::new();
     }
     let table = interface_table(
-        "Force on the upper body; horizontal forces with their sign, positive to the right. All \
-         steps of the run count, falls too.",
+        "Force on the upper body, or on the one that is named first, largest in size of all steps until the first \
+         loss of seat, and of all steps of the run, falls included; positive up and to the right.",
         &summary.interfaces,
     );
     let recording = &run.recording;

@@ -10,17 +10,25 @@ fn kilonewtons(value: f64) -> Cell {
     Cell::Measured(1e-3 * value, 2)
 }
 
-/// The demands on a stack.
-pub fn demand_table(demands: &Demands) -> Table {
+/// The demands on a stack until the first loss of seat, and over the whole run.
+pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
-        "While the stack stood, unless said otherwise.",
-        DEMANDS.iter().filter_map(|demand| Some((demand, demand.shown(demands)?))),
+        "Until the first loss of seat, and over the whole run, falls included.",
+        DEMANDS.iter().filter_map(|demand| {
+            Some((demand, demand.shown(until_loss)?, demand.shown(whole_run)))
+        }),
         &[
-            ("demand", "", &|(demand, _)| Cell::text(demand.label)),
-            ("value", "", &|(demand, value)| Cell::Measured(*value, demand.decimals)),
-            ("unit", "", &|(demand, _)| Cell::text(demand.shown_unit)),
+            ("demand", "", &|(demand, ..)| Cell::text(demand.label)),
+            ("until the loss", "", &|(demand, value, _)| Cell::Measured(*value, demand.decimals)),
+            ("whole run", "", &|(demand, _, value)| Cell::measured(*value, demand.decimals)),
+            ("unit", "", &|(demand, ..)| Cell::text(demand.shown_unit)),
         ],
     )
+}
+
+/// When (s) a force (N) was largest; nothing where there was none.
+fn at(force: f64, time: f64) -> Cell {
+    Cell::measured((force != 0.0).then_some(time), 2)
 }
 
 /// The largest forces at interfaces.
@@ -31,10 +39,18 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
         &[
             ("interface", "", &|joint| Cell::text(&joint.name)),
             ("vertical at rest", "kN", &|joint| kilonewtons(joint.at_rest)),
-            ("vertical, largest", "kN", &|joint| kilonewtons(joint.peak_vertical)),
-            ("at", "s", &|joint| Cell::Measured(joint.peak_vertical_at, 2)),
-            ("horizontal, largest", "kN", &|joint| kilonewtons(joint.peak_horizontal)),
-            ("at", "s", &|joint| Cell::Measured(joint.peak_horizontal_at, 2)),
+            ("vertical, largest until the loss", "kN", &|joint| kilonewtons(joint.peak_vertical)),
+            ("at", "s", &|joint| at(joint.peak_vertical, joint.peak_vertical_at)),
+            ("horizontal", "kN", &|joint| kilonewtons(joint.peak_horizontal)),
+            ("at", "s", &|joint| at(joint.peak_horizontal, joint.peak_horizontal_at)),
+            ("vertical, whole run", "kN", &|joint| kilonewtons(joint.peak_vertical_whole_run)),
+            ("at", "s", &|joint| {
+                at(joint.peak_vertical_whole_run, joint.peak_vertical_whole_run_at)
+            }),
+            ("horizontal", "kN", &|joint| kilonewtons(joint.peak_horizontal_whole_run)),
+            ("at", "s", &|joint| {
+                at(joint.peak_horizontal_whole_run, joint.peak_horizontal_whole_run_at)
+            }),
         ],
     )
 }
@@ -43,16 +59,17 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(
-            "Largest {} of every {} in the whole run. Left and right are those of the picture.",
+            "Largest {} of every {} until the first loss of seat, and over the whole run. Left and right are those of \
+             the picture.",
             words.force, words.one
         ),
         elements,
         &[
             (words.one, "", &|element| Cell::text(&element.name)),
             (&format!("{}, largest", words.force), "kN", &|element| kilonewtons(element.peak)),
-            ("at", "s", &|element| {
-                Cell::measured((element.peak != 0.0).then_some(element.peak_at), 2)
-            }),
+            ("at", "s", &|element| at(element.peak, element.peak_at)),
+            ("whole run", "kN", &|element| kilonewtons(element.peak_whole_run)),
+            ("at", "s", &|element| at(element.peak_whole_run, element.peak_whole_run_at)),
             (words.broken, "s", &|element| Cell::measured(element.broken_at, 2)),
         ],
     );

@@ -24,7 +24,12 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     let until = run.interrupted.then(|| format!("the run was stopped at {:.1} s", run.end_time));
     match (&run.outcome, until) {
-        (Outcome::Stable, None) => "The stack stands.".into(),
+        (Outcome::Stable, None) => match crushed(summary) {
+            Some(load) => format!(
+                "The stack stands, but staves are crushed: they bear up to {load} of what they are stated to bear."
+            ),
+            None => "The stack stands.".into(),
+        },
         (Outcome::Stable, Some(until)) => format!("The stack stood until {until}."),
         (Outcome::NotJudged, None) => "The scene ran to its end.".into(),
         (Outcome::NotJudged, Some(until)) => format!("The scene was seen until {until}."),
@@ -49,6 +54,13 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
             format!("{who}: the stack gives way after {time:.1} s{until}.")
         }
     }
+}
+
+/// The largest load on staves until the first loss of seat, of what they are stated to bear; none where that is less
+/// than all of it.
+fn crushed(summary: &Summary) -> Option<String> {
+    let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
+    Some(format!("{:.0} %", 100.0 * load))
 }
 
 /// Levels in words: "level 3", "levels 2 and 3", "levels 2 to 4".
@@ -88,18 +100,26 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
 pub fn device(Device { words, elements }: &Device) -> Option<String> {
     let strained = elements.iter().max_by(|a, b| a.peak.abs().total_cmp(&b.peak.abs()))?;
     let kilonewtons = significant(1e-3 * strained.peak.abs(), 2);
+    // What falls may pull harder than what stands.
+    let most = elements.iter().map(|element| element.peak_whole_run.abs()).fold(0.0, f64::max);
+    let until = if most > strained.peak.abs() {
+        let later = significant(1e-3 * most, 2);
+        format!(" until the first seat is lost, and up to {later} kN over the whole run")
+    } else {
+        String::new()
+    };
     let broken = elements.iter().filter_map(|element| element.broken_at);
     let first = broken.clone().reduce(f64::min);
     let all = format!("{} {}", elements.len(), words.many);
     let alone = elements.len() == 1;
     Some(match (broken.count(), first) {
         (0, _) | (_, None) if alone => {
-            format!("The {} holds; it bears up to {kilonewtons} kN.", words.one)
+            format!("The {} holds; it bears up to {kilonewtons} kN{until}.", words.one)
         }
         (_, Some(time)) if alone => {
             format!("The {} {}, after {time:.1} s.", words.one, words.breaks)
         }
-        (0, _) | (_, None) => format!("All {all} hold; one bears up to {kilonewtons} kN."),
+        (0, _) | (_, None) => format!("All {all} hold; one bears up to {kilonewtons} kN{until}."),
         (1, Some(time)) => format!("One of {all} {}, after {time:.1} s.", words.breaks),
         (count, Some(time)) => {
             format!("{count} of {all} {}, the first after {time:.1} s.", words.break_all)
@@ -199,6 +219,12 @@ pub(super) fn details(
         }
         Outcome::NotJudged => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
+    }
+    if let Some(load) = crushed(summary) {
+        let sentence = format!(
+            "Before any seat is lost staves bear up to {load} of what they are stated to bear, and are crushed."
+        );
+        sentences.push(behind(&shown(run, summary), &sentence));
     }
     sentences.extend(summary.devices.0.iter().filter_map(device));
     sentences.extend(summary.motion.as_ref().map(shaking));

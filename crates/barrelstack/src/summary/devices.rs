@@ -29,10 +29,14 @@ pub struct ElementSummary {
     words: &'static Words,
     /// Such as "B5.1-R5 left".
     pub name: String,
-    /// The force (N) that is largest in size.
+    /// The force (N) that is largest in size until the first loss of seat.
     pub peak: f64,
     /// When (s).
     pub peak_at: f64,
+    /// The force (N) that is largest in size over the whole run.
+    pub peak_whole_run: f64,
+    /// When (s).
+    pub peak_whole_run_at: f64,
     /// When it broke (s).
     pub broken_at: Option<f64>,
 }
@@ -52,9 +56,16 @@ impl Devices {
         let device = |words: &'static Words| {
             let own = elements.clone().filter(|((_, device), _)| **device == *words);
             let element = |((element, _), fate): ((&Element<S>, _), &ElementFate)| {
-                let ElementFate { peak, broken_at } = *fate;
-                let name = element.link().name.clone();
-                ElementSummary { words, name, peak: peak.0, peak_at: peak.1, broken_at }
+                let ElementFate { peak, peak_whole_run: whole, broken_at } = *fate;
+                ElementSummary {
+                    words,
+                    name: element.link().name.clone(),
+                    peak: peak.0,
+                    peak_at: peak.1,
+                    peak_whole_run: whole.0,
+                    peak_whole_run_at: whole.1,
+                    broken_at,
+                }
             };
             Device { words, elements: own.map(element).collect() }
         };
@@ -80,10 +91,12 @@ impl Serialize for Devices {
 impl Serialize for ElementSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Words { force, broken, .. } = self.words;
-        let mut map = serializer.serialize_map(Some(4))?;
+        let mut map = serializer.serialize_map(Some(6))?;
         map.serialize_entry("name", &self.name)?;
         map.serialize_entry(&format!("peak_{force}"), &self.peak)?;
         map.serialize_entry(&format!("peak_{force}_at"), &self.peak_at)?;
+        map.serialize_entry(&format!("peak_{force}_whole_run"), &self.peak_whole_run)?;
+        map.serialize_entry(&format!("peak_{force}_whole_run_at"), &self.peak_whole_run_at)?;
         map.serialize_entry(&format!("{broken}_at"), &self.broken_at)?;
         map.end()
     }
@@ -98,8 +111,10 @@ impl Described for Devices {
             at["type"] = json!(["number", "null"]);
             let element = json!({
                 "name": { "type": "string", "description": "What it joins, and where." },
-                (format!("peak_{force}")): number("N", &format!("The {force} that is largest in size.")),
+                (format!("peak_{force}")): number("N", &format!("The {force} that is largest in size until the first loss of seat.")),
                 (format!("peak_{force}_at")): number("s", "When."),
+                (format!("peak_{force}_whole_run")): number("N", &format!("The {force} that is largest in size over the whole run.")),
+                (format!("peak_{force}_whole_run_at")): number("s", "When."),
                 (format!("{broken}_at")): at,
             });
             objects.insert(key(one), closed(&format!("One {one}."), &element));

@@ -39,6 +39,11 @@ described! {
         /// The earliest end of a variant that stood while some of the motion was left; null where none was cut
         /// short so.
         pub standing_until: Option<f64> as "s",
+        /// Variants in which staves bear more than they are stated to bear before any seat is lost.
+        pub staves_overloaded: u32,
+        /// The largest load on staves before any seat is lost, over what they are stated to bear, of all variants;
+        /// null where none is known.
+        pub stave_utilization: Option<f64> as "1",
         /// Variants by the mode of their collapse.
         pub modes: BTreeMap<&'static str, u32>,
         /// Variants of those that collapse which fall under their own weight, before they are shaken.
@@ -101,6 +106,7 @@ impl Spread {
         let (count, falls) = (number(judged().count()), number(falling().count()));
         let broken = number(variants.len()) - count;
         let interval = |falls| wilson(falls, count + broken, LEVEL);
+        let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
         Self {
             kind: imperfections.kind.name(),
@@ -116,6 +122,8 @@ impl Spread {
                 .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
                 .filter_map(|result| result.end_time)
                 .reduce(f64::min),
+            staves_overloaded: number(staves().filter(|load| *load > 1.0).count()),
+            stave_utilization: staves().reduce(f64::max),
             modes,
             cannot_stand: number(variants.iter().filter(|one| one.fell_at_rest()).count()),
             broken,

@@ -19,11 +19,30 @@ const UNSAFE: &str = "treat it as not safe";
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     match planes {
         [] => String::new(),
-        [(_, spread)] => before(None, spread) + &alone(spread),
+        [(_, spread)] => before(None, spread) + &alone(spread) + &overloaded("In", spread),
         [(first_view, first), (second_view, second), ..] => {
             let both = together([(*first_view, first), (*second_view, second)]);
-            before(Some(*first_view), first) + &before(Some(*second_view), second) + &both
+            let staves = [(first_view, first), (second_view, second)].map(|(view, spread)| {
+                overloaded(&format!("{}, in", capital(view.words())), spread)
+            });
+            before(Some(*first_view), first)
+                + &before(Some(*second_view), second)
+                + &both
+                + &staves.concat()
         }
+    }
+}
+
+/// What staves bear beyond what they are stated to bear, after the verdict; nothing where they do not.
+fn overloaded(begin: &str, spread: &Spread) -> String {
+    match (spread.staves_overloaded, spread.stave_utilization) {
+        (0, _) | (_, None) => String::new(),
+        (count, Some(load)) => format!(
+            " {begin} {count} of {} variants staves are crushed before any seat is lost: they bear up to {:.0} % of \
+             what they are stated to bear.",
+            spread.variants,
+            100.0 * load
+        ),
     }
 }
 
@@ -294,6 +313,8 @@ mod tests {
         let interval = barrelstack_fragility::wilson(collapsed, variants, 0.95);
         let falls = collapsed > 0;
         Spread {
+            staves_overloaded: 0,
+            stave_utilization: None,
             kind: "both",
             seed: 1,
             variants,

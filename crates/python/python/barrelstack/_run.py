@@ -53,7 +53,7 @@ class Outcome(NamedTuple):
 
 
 class Demands(Mapping[str, "float | None"]):
-    """Demands on the stack while it stood, by name, in SI units; None where one does not apply."""
+    """Demands on the stack in a part of its run, by name, in SI units; None where one does not apply."""
 
     def __init__(self, values: dict[str, float | None]) -> None:
         self._values = values
@@ -135,14 +135,22 @@ class Histories(Mapping[str, "NDArray[np.float64]"]):
 
 
 class Force(NamedTuple):
-    """The force between two bodies of a stack, on the upper one."""
+    """The force between two bodies of a stack, on the upper one.
+
+    Of two bodies of which none leans on the other by design, on the one that is named first. Largest forces are those of
+    any step that are largest in size, with their sign.
+    """
 
     #: Vertical force at rest (N).
     at_rest: float
-    #: Largest vertical force (N), and when (s).
+    #: Largest vertical force (N) until the first loss of seat, and when (s).
     peak_vertical: tuple[float, float]
-    #: Largest horizontal force with its sign (N), and when (s).
+    #: Largest horizontal force (N) until the first loss of seat, and when (s).
     peak_horizontal: tuple[float, float]
+    #: Largest vertical force (N) over the whole run, falls included, and when (s).
+    peak_vertical_whole_run: tuple[float, float]
+    #: Largest horizontal force (N) over the whole run, falls included, and when (s).
+    peak_horizontal_whole_run: tuple[float, float]
     #: Vertical force (N) at the times of the histories: a view without a copy.
     vertical: NDArray[np.float64]
     #: Horizontal force (N) at the times of the histories: a view without a copy.
@@ -156,12 +164,14 @@ class Envelope(NamedTuple):
     points: NDArray[np.float64]
     #: Coordinate along the boundary: angle (rad) from x on a circle, x (m) elsewhere.
     coordinate: NDArray[np.float64]
-    #: Length of boundary (m) that each value holds for.
+    #: Length of boundary (m) that each value holds for; stress at rest times it is the contact force there.
     length: NDArray[np.float64]
     #: Stress at rest (N/m): a view without a copy.
     at_rest: NDArray[np.float64]
-    #: Largest stress while the stack stood (N/m): a view without a copy.
+    #: Largest stress until the first loss of seat (N/m): a view without a copy.
     peak: NDArray[np.float64]
+    #: Largest stress over the whole run (N/m): a view without a copy.
+    peak_whole_run: NDArray[np.float64]
     #: Whether the last point is next to the first.
     closed: bool
 
@@ -175,7 +185,7 @@ class Frames(NamedTuple):
     bodies: list[str]
     #: x (m), z (m) and angle (rad) in the inertial frame, shape (frames, bodies, 3).
     poses: NDArray[np.float64]
-    #: Largest normal stress (N/m) at a node that presses on the body, shape (frames, bodies).
+    #: Largest normal stress (N/m) of a contact of the body, shape (frames, bodies).
     stresses: NDArray[np.float64]
 
 
@@ -218,8 +228,13 @@ class Run:
 
     @property
     def demands(self) -> Demands:
-        """What the motion asked of the stack."""
+        """Demands on the stack until the first loss of seat."""
         return Demands(self.summary["demands"])
+
+    @property
+    def demands_whole_run(self) -> Demands:
+        """Demands on the stack over the whole run, falls included."""
+        return Demands(self.summary["demands_whole_run"])
 
     @cached_property
     def histories(self) -> Histories:
@@ -228,11 +243,14 @@ class Run:
 
     @cached_property
     def forces(self) -> dict[str, Force]:
-        """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``."""
+        """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``.
+
+        And of bodies that met before the first loss of seat, such as ``"R1.1 against R1.2"``.
+        """
         facts = self._native.joints()
         return {
-            name: Force(at_rest, vertical, horizontal, *self._native.joint(at))
-            for at, (name, at_rest, vertical, horizontal) in enumerate(facts)
+            name: Force(at_rest, *until_loss, *whole_run, *self._native.joint(at))
+            for at, (name, at_rest, until_loss, whole_run) in enumerate(facts)
         }
 
     @cached_property

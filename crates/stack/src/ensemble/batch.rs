@@ -118,8 +118,9 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let rest = &standing.state;
         let mut fates = Fates::new(&standing.assembly, rest, thresholds(&run.case.scenario));
         fates.observe(state, scratch);
-        let mut stresses = StressWatch::new(&standing.assembly, &standing.scratch);
-        stresses.observe(fates.collapse_time().is_none(), scratch);
+        let (assembly, model) = (&standing.assembly, &standing.assembly.model);
+        let mut stresses = StressWatch::new(assembly, rest, &standing.scratch);
+        stresses.observe(true, state, scratch, &|_| Some(model));
         let mut joints = Joints::new(&standing.assembly);
         joints.start(state.time, scratch);
         let mut trail = Trail::new(&standing.assembly);
@@ -148,9 +149,15 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         else {
             return R::Mask::default();
         };
+        let standing = fates.stands();
         fates.observe(state, scratch);
-        joints.observe(state.time, scratch);
-        self.stresses.observe(fates.stands(), scratch);
+        joints.observe(state.time, standing, scratch);
+        let (group, stacks, runs) = (self.group, self.stacks, &self.runs);
+        let model = |lane: usize| {
+            let stack = &stacks[group[runs[lane]].stack];
+            stack.standing.as_ref().ok().map(|standing| &standing.assembly.model)
+        };
+        self.stresses.observe(standing, state, scratch, &model);
         let (collapsed, rested) = end.observe(state, fates);
         self.rested = rested;
         let ended = collapsed | rested;

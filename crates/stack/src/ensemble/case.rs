@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::assemble::{Assembly, PartKind};
-use crate::demand::Demands;
+use crate::demand::{Demands, Span};
 use crate::ground::{Ground, GroundError};
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::{CUT, Verdict};
@@ -47,10 +47,12 @@ pub struct CaseResult {
     pub fall_heights: Vec<f64>,
     /// Largest force (N) on each of them since it had fallen.
     pub fall_forces: Vec<f64>,
-    /// Demands on the stack; all none where it could not run or broke down.
+    /// Demands on the stack until the first loss of seat; all none where it could not run or broke down.
     pub demands: Demands,
-    /// Forces between bodies that lean on each other, by name, at rest and at their largest; none where it could
-    /// not run or broke down.
+    /// The same over the whole run.
+    pub demands_whole_run: Demands,
+    /// Forces between bodies that lean on each other or have met, by name, at rest and at their largest; none where
+    /// it could not run or broke down.
     pub joints: Vec<(String, Joint)>,
     /// Largest displacement (m) of a barrel against the ground, left at the end: in a plane that along x, in space the
     /// horizontal one.
@@ -95,6 +97,7 @@ impl CaseResult {
         let fall = |body: &usize| (assembly.parts[*body].name.clone(), fates.fate(*body).fell_at);
         let fallen = || all().filter(|fate| fate.fell_at.is_some());
         let named = |joint: &Joint| (joint.name(assembly), joint.clone());
+        let demands = |span: Span| Demands::of(assembly, fates, stresses, joints, span);
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         let left = ground.end() - time;
@@ -117,8 +120,9 @@ impl CaseResult {
             falls: barrels.iter().map(fall).collect(),
             fall_heights: fallen().map(|fate| fate.drop).collect(),
             fall_forces: fallen().filter_map(|fate| fate.fall_force).collect(),
-            demands: Demands::of(assembly, fates, stresses, joints),
-            joints: joints.joints.iter().map(named).collect(),
+            demands: demands(Span::UntilLoss),
+            demands_whole_run: demands(Span::WholeRun),
+            joints: joints.listed().into_iter().map(named).collect(),
             residual_displacement: (!barrels.is_empty()).then(|| residual.fold(0.0, largest)),
             trail,
             ..told
@@ -178,6 +182,7 @@ impl CaseResult {
             fall_heights: Vec::new(),
             fall_forces: Vec::new(),
             demands: Demands::default(),
+            demands_whole_run: Demands::default(),
             joints: Vec::new(),
             residual_displacement: None,
             ending: None,

@@ -131,26 +131,46 @@ columns! {
     fall_heights "m": Outcome Text |case| Some(list(&case.fall_heights));
     /// largest force on each of these barrels since it had fallen (N), divided by semicolons
     fall_forces "N": Outcome Text |case| Some(list(&case.fall_forces));
-    /// peak displacement of the top over its height, before the collapse
+    /// peak displacement of the top over its height, until the first loss of seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
-    /// largest slip of the bottom rack, before the collapse
+    /// largest slip of the bottom rack, until the first loss of seat
     base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
     /// slip of the bottom rack at the end
     base_slip_residual "m": Demand Number |case| case.demands.base_slip_residual;
-    /// largest tilt of a rack, before the collapse
+    /// largest tilt of a rack, until the first loss of seat
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
-    /// largest way of a rack on what it stands on, before the collapse
+    /// largest walk of a rack on what it stands on, until the first loss of seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
-    /// largest normal stress on a bottom barrel over the largest at rest, before the collapse
+    /// largest normal stress on a bottom barrel over the largest at rest, until the first loss of seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
     /// the same, averaged over the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
-    /// largest vertical force of a barrel on its rack, or of a rack on what it stands on
-    vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_vertical.0);
-    /// largest horizontal force between two of them
-    horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.peak_horizontal.0.abs());
-    /// largest vertical force between a barrel and a rack, over what its staves bear
+    /// largest vertical force between two bodies, until the first loss of seat
+    vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.vertical.0);
+    /// largest horizontal force between two bodies, until the first loss of seat
+    horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.horizontal.0);
+    /// largest vertical force between a barrel and a rack, over what its staves bear, until the first loss of seat
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
+    /// top_drift_ratio over the whole run, falls included
+    top_drift_ratio_whole_run "": Outcome Number |case| case.demands_whole_run.top_drift_ratio;
+    /// base_slip_peak over the whole run
+    base_slip_peak_whole_run "m": Outcome Number |case| case.demands_whole_run.base_slip_peak;
+    /// rack_tilt_peak over the whole run
+    rack_tilt_peak_whole_run "rad": Outcome Number |case| case.demands_whole_run.rack_tilt_peak;
+    /// rack_walk_peak over the whole run
+    rack_walk_peak_whole_run "m": Outcome Number |case| case.demands_whole_run.rack_walk_peak;
+    /// stress_amplification over the whole run
+    stress_amplification_whole_run "": Outcome Number |case| case.demands_whole_run.stress_amplification;
+    /// mean_stress_amplification over the whole run
+    mean_stress_amplification_whole_run "": Outcome Number |case| {
+        case.demands_whole_run.mean_stress_amplification
+    };
+    /// vertical_force_peak over the whole run
+    vertical_force_peak_whole_run "N": Outcome Number |case| force(case, |joint| joint.whole_run.vertical.0);
+    /// horizontal_force_peak over the whole run
+    horizontal_force_peak_whole_run "N": Outcome Number |case| force(case, |joint| joint.whole_run.horizontal.0);
+    /// stave_utilization over the whole run
+    stave_utilization_whole_run "": Outcome Number |case| case.demands_whole_run.stave_utilization;
     /// largest displacement of a barrel at the end
     residual_displacement "m": Demand Number |case| case.residual_displacement;
     /// why the case ended: rest, after-collapse, duration, patience, broken or not-shaken
@@ -177,7 +197,7 @@ fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|number| plain(*number)).collect::<Vec<_>>().join(";")
 }
 
-/// The largest of all forces of a case.
+/// The largest in size of all forces of a case.
 fn force(case: &CaseResult, of: fn(&Joint) -> f64) -> Option<f64> {
-    case.joints.iter().map(|(_, joint)| of(joint)).reduce(f64::max)
+    case.joints.iter().map(|(_, joint)| of(joint).abs()).reduce(f64::max)
 }

@@ -31,7 +31,7 @@ pub(super) fn run(
         };
         let mut watch = Watch {
             fates: Fates::new(&standing.assembly, &state, thresholds(scenario)),
-            stresses: StressWatch::new(&standing.assembly, &scratch),
+            stresses: StressWatch::new(&standing.assembly, &state, &scratch),
             joints: Joints::new(&standing.assembly),
             trail: Trail::new(&standing.assembly),
             started: false,
@@ -77,15 +77,16 @@ struct Watch<'a> {
 impl Observer<Planar> for Watch<'_> {
     fn observe(
         &mut self,
-        _: &Model<Planar>,
+        model: &Model<Planar>,
         state: &State<Planar>,
         scratch: &Scratch<Planar>,
         _: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
+        let standing = self.fates.stands();
         self.fates.observe(state, scratch);
-        self.stresses.observe(self.fates.collapse_time().is_none(), scratch);
+        self.stresses.observe(standing, state, scratch, &|_| Some(model));
         if self.started {
-            self.joints.observe(state.time, scratch);
+            self.joints.observe(state.time, standing, scratch);
         } else {
             self.joints.start(state.time, scratch);
             self.started = true;

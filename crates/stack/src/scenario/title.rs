@@ -39,7 +39,9 @@ impl Scenario {
 }
 
 fn stands(stack: &StackSpec) -> String {
-    let mut barrels = counted(stack.levels * stack.columns, "barrel");
+    // In space barrels stand behind each other, too.
+    let rows = stack.space.map_or(1, |space| space.columns_along);
+    let mut barrels = counted(stack.levels * stack.columns * rows, "barrel");
     barrels[..1].make_ascii_uppercase();
     let levels = counted(stack.levels, "level");
     let view = match stack.view {

@@ -80,6 +80,29 @@ pub struct Fate {
     pub peak_tilt: f64,
     /// Largest rise (m) of a body above its place at rest, before the collapse.
     pub peak_uplift: f64,
+    /// The same peaks over the whole run.
+    pub whole_run: PeakMotion,
+}
+
+/// The largest motions of a body in any step of a run, whatever had become of the stack.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeakMotion<R: Real = f64> {
+    /// Largest displacement (m) along `x` relative to the ground.
+    pub displacement: R,
+    /// Largest displacement (m) relative to what the body stands on.
+    pub slip: R,
+    /// Largest tilt (rad) of a rack.
+    pub tilt: R,
+}
+
+lanewise!(struct PeakMotion<R> { displacement, slip, tilt });
+
+impl Fate {
+    /// The largest motions until the first loss of seat.
+    pub fn until_loss(&self) -> PeakMotion {
+        let Self { peak_displacement, peak_slip, peak_tilt, .. } = *self;
+        PeakMotion { displacement: peak_displacement, slip: peak_slip, tilt: peak_tilt }
+    }
 }
 
 /// Follows all bodies through a run, or through as many runs as there are lanes; sees every step.
@@ -112,7 +135,7 @@ lanewise!(same Place);
 lanewise!(struct Followed<R> {
     place, rest, most_slip, most_tilt, left_seat, loss, fell_at, landed_at, landing_speed, fall_force, drop,
     peak_displacement, residual_displacement, displacement_at_collapse, peak_slip, residual_slip,
-    peak_tilt, peak_uplift
+    peak_tilt, peak_uplift, whole_run
 });
 lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 
@@ -146,6 +169,7 @@ struct Followed<R: Real> {
     residual_slip: R,
     peak_tilt: R,
     peak_uplift: R,
+    whole_run: PeakMotion<R>,
 }
 
 impl Fates {
@@ -192,6 +216,7 @@ impl Fates {
                 residual_slip: 0.0,
                 peak_tilt: 0.0,
                 peak_uplift: 0.0,
+                whole_run: PeakMotion::default(),
             }
         };
         Self {
@@ -225,6 +250,7 @@ impl Fates {
             residual_slip: followed.residual_slip,
             peak_tilt: followed.peak_tilt,
             peak_uplift: followed.peak_uplift,
+            whole_run: followed.whole_run,
         }
     }
 
@@ -276,6 +302,11 @@ impl<R: Real> Fates<R> {
             let slip = self.slip(state, scratch, i);
             let body = &mut self.bodies[i];
             raise(&mut body.drop, -moved.z);
+            raise(&mut body.whole_run.displacement, moved.x.abs());
+            raise(&mut body.whole_run.slip, slip.x.abs());
+            if body.place.kind == PartKind::Rack {
+                raise(&mut body.whole_run.tilt, state.poses[i].orientation.abs());
+            }
             body.residual_displacement = moved.x;
             body.residual_slip = slip.x;
             if standing.any() {

@@ -1,43 +1,111 @@
-//! Forces between bodies that lean on each other by design: at rest, and at their largest.
+//! Forces between bodies of a stack: at rest, at their largest until the first loss of seat, and over the whole run.
 
+use barrelstack_dynamics::lanes::Lanewise;
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{BodyId, Planar, Scratch, Vec2, lanewise};
 
 use crate::assemble::{Assembly, Part, PartKind};
+use crate::demand::Span;
 
-/// Two bodies of a stack that lean on each other, and the force between them.
+/// Two bodies of a stack that press on each other, and the force between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint<R: Real = f64> {
-    /// The upper body.
+    /// The upper body; of two that do not lean on each other by design, the one that is named first.
     pub upper: BodyId,
-    /// The lower body.
+    /// The lower body, or the other one.
     pub lower: BodyId,
+    /// Whether one leans on the other by design; if not, they have met while shaken.
+    pub by_design: bool,
     /// Force (N) on the upper body in the step at hand.
     pub force: Vec2<R>,
     /// Vertical force (N) on the upper body at rest.
     pub at_rest: R,
-    /// Largest vertical force (N) on the upper body in any step, and when (s).
-    pub peak_vertical: (R, R),
-    /// Largest horizontal force (N) on the upper body in any step, with its sign, and when (s).
-    pub peak_horizontal: (R, R),
+    /// Largest forces until the first loss of seat.
+    pub until_loss: PeakForces<R>,
+    /// Largest forces over the whole run, falls included.
+    pub whole_run: PeakForces<R>,
 }
 
-/// Follows all of them through a run, or through as many runs as there are lanes; sees every step.
+/// The largest forces between two bodies in any step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeakForces<R: Real = f64> {
+    /// Vertical force (N) on the upper body that is largest in size, with its sign, and when (s).
+    pub vertical: (R, R),
+    /// The same of the horizontal force.
+    pub horizontal: (R, R),
+}
+
+/// Follows the forces between bodies through a run, or through as many runs as there are lanes; to be shown every step.
 #[derive(Clone, Debug)]
 pub struct Joints<R: Real = f64> {
-    /// Every barrel on its rack, every rack on what is below it.
+    /// Every barrel on its rack, every rack on what is below it; then pairs of bodies in the order in which they met.
     pub joints: Vec<Joint<R>>,
-    /// For every body those below it, each with the number of their joint.
+    /// For every body the others that it meets, each with the number of their joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
+    /// Whether bodies that meet without leaning on each other are followed, too.
+    follows_all: bool,
 }
 
-lanewise!(struct Joint<R> { upper, lower, force, at_rest, peak_vertical, peak_horizontal });
-lanewise!(struct Joints<R> { joints, of_upper });
+lanewise!(struct PeakForces<R> { vertical, horizontal });
+lanewise!(struct Joint<R> { upper, lower, by_design, force, at_rest, until_loss, whole_run });
+
+impl<R: Real> Lanewise for Joints<R> {
+    type Single = Joints;
+
+    fn in_all(single: &Joints) -> Self {
+        let Joints { joints, of_upper, follows_all } = single.clone();
+        Self { joints: Lanewise::in_all(&joints), of_upper, follows_all }
+    }
+
+    fn put(&mut self, lane: usize, single: &Joints) {
+        for joint in &mut self.joints {
+            let same = |one: &&Joint| [one.upper, one.lower] == [joint.upper, joint.lower];
+            let none = || Joint::between(joint.upper, joint.lower, joint.by_design);
+            let own = single.joints.iter().find(same).cloned().unwrap_or_else(none);
+            joint.put(lane, &own);
+        }
+        for own in &single.joints {
+            if self.number(own.upper, own.lower).is_none() {
+                let at = self.add(own.upper, own.lower);
+                self.joints[at].put(lane, own);
+            }
+        }
+    }
+
+    fn of_lane(&self, lane: usize) -> Joints {
+        let Self { joints, of_upper, follows_all } = self;
+        Joints {
+            joints: joints.of_lane(lane),
+            of_upper: of_upper.clone(),
+            follows_all: *follows_all,
+        }
+    }
+}
 
 impl Joint {
-    /// Its name, such as "R1 on ground".
+    /// Its name, such as "R1 on ground", or "R1.1 against R1.2" where none leans on the other by design.
     pub fn name(&self, assembly: &Assembly) -> String {
-        format!("{} on {}", assembly.parts[self.upper].name, assembly.parts[self.lower].name)
+        self.named(|body| &assembly.parts[body].name)
+    }
+
+    /// Its name from those of its bodies.
+    pub fn named<'a>(&self, name: impl Fn(BodyId) -> &'a str) -> String {
+        let between = if self.by_design { "on" } else { "against" };
+        format!("{} {between} {}", name(self.upper), name(self.lower))
+    }
+
+    /// Its largest forces in a span of the run.
+    pub fn peaks(&self, span: Span) -> PeakForces {
+        match span {
+            Span::UntilLoss => self.until_loss,
+            Span::WholeRun => self.whole_run,
+        }
+    }
+
+    /// Whether its bodies have ever pressed on each other.
+    pub fn has_met(&self) -> bool {
+        let PeakForces { vertical, horizontal } = self.whole_run;
+        vertical.0 != 0.0 || horizontal.0 != 0.0
     }
 }
 
@@ -56,51 +124,96 @@ impl Joints {
     /// Those of a stack, before any force is known.
     pub(crate) fn new(assembly: &Assembly) -> Self {
         let below = |part: &Part| leans_on(part.kind, part.carrier, &part.supports);
-        Self::between(assembly.parts.iter().map(below))
+        // The bodies of a free scene may be more than could be listed two by two.
+        Self::between(assembly.parts.iter().map(below), assembly.levels > 0)
     }
 
-    /// Those of every body with each of the ones on which it leans, before any force is known.
-    pub fn between(below: impl Iterator<Item = Vec<BodyId>>) -> Self {
+    /// Those of every body with each of the ones on which it leans, before any force is known; `follows_all` to
+    /// follow other bodies that meet, too.
+    pub fn between(below: impl Iterator<Item = Vec<BodyId>>, follows_all: bool) -> Self {
         let mut joints = Vec::new();
         let mut of_upper = Vec::new();
         for (upper, below) in below.enumerate() {
             of_upper.push(below.iter().copied().zip(joints.len()..).collect());
-            joints.extend(below.into_iter().map(|lower| Joint {
-                upper,
-                lower,
-                force: Vec2::default(),
-                at_rest: 0.0,
-                peak_vertical: (0.0, 0.0),
-                peak_horizontal: (0.0, 0.0),
-            }));
+            joints.extend(below.into_iter().map(|lower| Joint::between(upper, lower, true)));
         }
-        Self { joints, of_upper }
+        Self { joints, of_upper, follows_all }
     }
 
     /// Looks at the state at rest.
     pub(crate) fn start(&mut self, time: f64, scratch: &Scratch<Planar>) {
-        self.observe(time, scratch);
+        self.observe(time, true, scratch);
         for joint in &mut self.joints {
             joint.at_rest = joint.force.z;
         }
     }
+
+    /// Those by design, and those of other bodies that have met, in the order of the bodies.
+    pub fn listed(&self) -> Vec<&Joint> {
+        let mut listed: Vec<&Joint> =
+            self.joints.iter().filter(|joint| joint.by_design || joint.has_met()).collect();
+        listed.sort_by_key(|joint| (!joint.by_design, joint.upper, joint.lower));
+        listed
+    }
+}
+
+impl Joints {
+    /// Largest vertical force (N) in a span of the run between a barrel and any rack; none where the two never met.
+    pub fn stave_load(
+        &self,
+        barrel: BodyId,
+        kind: &impl Fn(BodyId) -> PartKind,
+        span: Span,
+    ) -> Option<f64> {
+        let with_rack = |joint: &&Joint| match [joint.upper, joint.lower] {
+            [one, other] if one == barrel => kind(other) == PartKind::Rack,
+            [one, other] => other == barrel && kind(one) == PartKind::Rack,
+        };
+        let loads = self.joints.iter().filter(with_rack);
+        loads.map(|joint| joint.peaks(span).vertical.0.abs()).reduce(f64::max)
+    }
 }
 
 impl<R: Real> Joint<R> {
-    /// Raises the peaks to the force at hand, at a time (s).
+    /// Between two bodies, before any force is known.
+    fn between(upper: BodyId, lower: BodyId, by_design: bool) -> Self {
+        Self {
+            upper,
+            lower,
+            by_design,
+            force: Vec2::default(),
+            at_rest: R::zero(),
+            until_loss: PeakForces::default(),
+            whole_run: PeakForces::default(),
+        }
+    }
+
+    /// Raises the peaks to the force at hand, at a time (s); those until the first loss of seat in the lanes whose
+    /// stack is `standing`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-    pub fn raise(&mut self, time: R) {
+    pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
-        let (most, when) = self.peak_vertical;
-        let more = most.lt(z);
-        if more.any() {
-            self.peak_vertical = (R::select(more, z, most), R::select(more, time, when));
-        }
-        let (most, when) = self.peak_horizontal;
-        let more = most.abs().lt(x.abs());
-        if more.any() {
-            self.peak_horizontal = (R::select(more, x, most), R::select(more, time, when));
+        let Self { until_loss, whole_run, .. } = self;
+        raise(&mut until_loss.vertical, &mut whole_run.vertical, (z, time), standing);
+        raise(&mut until_loss.horizontal, &mut whole_run.horizontal, (x, time), standing);
+    }
+}
+
+/// Raises two peaks to a force (N) at a time (s), the first in standing lanes only.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+fn raise<R: Real>(
+    until_loss: &mut (R, R),
+    whole_run: &mut (R, R),
+    (force, time): (R, R),
+    standing: R::Mask,
+) {
+    // What has stood until now has had one largest force.
+    let more = whole_run.0.abs().lt(force.abs());
+    if more.any() {
+        for (peak, raised) in [(whole_run, more), (until_loss, more & standing)] {
+            *peak = (R::select(raised, force, peak.0), R::select(raised, time, peak.1));
         }
     }
 }
@@ -109,7 +222,7 @@ impl<R: Real> Joints<R> {
     /// The number of the joint of two bodies, and whether the first of them is the upper one.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-    pub fn of(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
+    fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
         };
@@ -117,20 +230,45 @@ impl<R: Real> Joints<R> {
         upper.or_else(|| joint(other, one).map(|at| (at, false)))
     }
 
-    /// Looks at the forces of an accepted step at a time (s).
+    /// The number of the joint of two bodies that meet, and whether the first of them is the upper one; none where
+    /// such are not followed.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-    pub(crate) fn observe(&mut self, time: R, scratch: &Scratch<Planar<R>>) {
+    pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
+        let known = self.number(one, other);
+        if known.is_some() || !self.follows_all {
+            return known;
+        }
+        // The ground comes last, of other bodies the one that was made first comes first.
+        let first =
+            if one.min(other) == Assembly::GROUND { one.max(other) } else { one.min(other) };
+        let second = if first == one { other } else { one };
+        Some((self.add(first, second), first == one))
+    }
+
+    /// Adds a joint of two bodies that do not lean on each other by design.
+    fn add(&mut self, upper: BodyId, lower: BodyId) -> usize {
+        let at = self.joints.len();
+        self.of_upper[upper].push((lower, at));
+        self.joints.push(Joint::between(upper, lower, false));
+        at
+    }
+
+    /// Looks at the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
+    /// before it.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();
         }
         for pair in &scratch.pair_forces {
-            if let Some((at, upper)) = self.of(pair.contactor, pair.target) {
+            if let Some((at, upper)) = self.meet(pair.contactor, pair.target) {
                 self.joints[at].force += if upper { pair.force } else { -pair.force };
             }
         }
         for joint in &mut self.joints {
-            joint.raise(time);
+            joint.raise(time, standing);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
 
 use barrelstack_dynamics::forces::{contact_force, tributary_length};
-use barrelstack_dynamics::{BodyId, EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
+use barrelstack_dynamics::{EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
@@ -27,8 +27,8 @@ pub struct Frames {
     pub poses: Vec<Vec<[f64; 3]>>,
     /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
     pub forces: Vec<Vec<[f64; 4]>>,
-    /// For every frame and body, the largest normal stress (N/m) at a contact node that presses on it; zero
-    /// where none does.
+    /// For every frame and body, the largest normal stress (N/m) of a contact with another body; zero where it has
+    /// none.
     pub stresses: Vec<Vec<f64>>,
 }
 
@@ -43,21 +43,14 @@ impl Frames {
     }
 }
 
-/// Two bodies of a stack that lean on each other by design, and the force between them.
+/// Two bodies of a stack that lean on each other by design, or have met before the first loss of seat, and the force
+/// between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointForces {
-    /// The upper body.
-    pub upper: BodyId,
-    /// The lower body.
-    pub lower: BodyId,
+    /// The bodies, the force at rest and the largest forces in any step.
+    pub joint: Joint,
     /// Its name, such as "R1 on ground".
     pub name: String,
-    /// Largest vertical force (N) on the upper body in any step, and when (s).
-    pub peak_vertical: (f64, f64),
-    /// Largest horizontal force (N) on the upper body in any step, with its sign, and when (s).
-    pub peak_horizontal: (f64, f64),
-    /// Vertical force (N) on the upper body at rest.
-    pub at_rest: f64,
     /// Vertical force (N) on the upper body at the sample times.
     pub vertical: Vec<f64>,
     /// Horizontal force (N) on the upper body at the sample times.
@@ -79,7 +72,7 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// Ground, displacements and energies.
     pub channels: Vec<Channel>,
-    /// Forces between bodies.
+    /// Forces between bodies: first those by design.
     pub joints: Vec<JointForces>,
     frame_rate: f64,
     history_rate: f64,
@@ -90,7 +83,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// The forces between bodies that lean on each other, at rest and at their largest.
+    /// The forces between all bodies that have pressed on each other, at rest and at their largest.
     pub fn forces(&self) -> &Joints {
         &self.forces
     }
@@ -125,16 +118,7 @@ impl Recording {
             .collect();
         let ground = state.poses[Assembly::GROUND].position;
         let forces = Joints::new(assembly);
-        let named = |joint: &Joint| JointForces {
-            upper: joint.upper,
-            lower: joint.lower,
-            name: joint.name(assembly),
-            peak_vertical: joint.peak_vertical,
-            peak_horizontal: joint.peak_horizontal,
-            at_rest: joint.at_rest,
-            vertical: Vec::new(),
-            horizontal: Vec::new(),
-        };
+        let named = |joint: &Joint| JointForces::new(assembly, joint, 0);
         Self {
             frames: Frames::default(),
             times: Vec::new(),
@@ -170,26 +154,27 @@ impl Recording {
         &mut self,
         assembly: &Assembly,
         ground: &Ground,
-        model: &Model<Planar>,
+        standing: bool,
         state: &State<Planar>,
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) {
         if self.started {
-            self.forces.observe(state.time, scratch);
+            self.forces.observe(state.time, standing, scratch);
         } else {
             self.forces.start(state.time, scratch);
         }
-        for (joint, seen) in self.joints.iter_mut().zip(&self.forces.joints) {
-            joint.at_rest = seen.at_rest;
-            joint.peak_vertical = seen.peak_vertical;
-            joint.peak_horizontal = seen.peak_horizontal;
+        if standing {
+            // Bodies that have met in this step; they did not press on each other until then.
+            let met = self.forces.joints.iter().skip(self.joints.len());
+            self.joints
+                .extend(met.map(|joint| JointForces::new(assembly, joint, self.times.len())));
         }
         self.started = true;
         // A time counts as reached within rounding of the step that reaches it.
         let due = |taken: usize, rate: f64| state.time * rate >= taken as f64 - 1e-6;
         if due(self.frames.times.len(), self.frame_rate) {
-            self.take_frame(model, state, scratch);
+            self.take_frame(&assembly.model, state, scratch);
         }
         if due(self.times.len(), self.history_rate) {
             self.take_sample(assembly, ground, state, energy);
@@ -215,8 +200,9 @@ impl Recording {
             let pair = model.pair(contact.pair);
             let stress =
                 contact.normal_force / tributary_length(model, &pair, contact.node as usize);
-            // As envelopes count them: where nodes of another body press.
-            stresses[pair.target] = stresses[pair.target].max(stress);
+            for body in [pair.contactor, pair.target] {
+                stresses[body] = stresses[body].max(stress);
+            }
             let (force, point) = contact_force(model, state, scratch, contact);
             if contact.pair != last {
                 forces.push([0.0; 4]);
@@ -276,10 +262,28 @@ impl Recording {
         for (channel, value) in self.channels.iter_mut().zip(values) {
             channel.values.push(value);
         }
-        for (joint, seen) in self.joints.iter_mut().zip(&self.forces.joints) {
-            joint.vertical.push(seen.force.z);
-            joint.horizontal.push(seen.force.x);
+        for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
+            history.vertical.push(joint.force.z);
+            history.horizontal.push(joint.force.x);
         }
+    }
+
+    /// Takes over the largest forces once the run is over, and puts the joints into the order of their bodies.
+    pub(crate) fn finish(&mut self) {
+        for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
+            history.joint = joint.clone();
+        }
+        self.joints
+            .sort_by_key(|JointForces { joint, .. }| (!joint.by_design, joint.upper, joint.lower));
+    }
+}
+
+impl JointForces {
+    /// Of a joint that bore nothing in all samples so far.
+    fn new(assembly: &Assembly, joint: &Joint, samples: usize) -> Self {
+        let none = vec![0.0; samples];
+        let name = joint.name(assembly);
+        Self { joint: joint.clone(), name, vertical: none.clone(), horizontal: none }
     }
 }
 

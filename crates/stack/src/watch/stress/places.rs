@@ -1,10 +1,12 @@
-//! Where stresses are told along a boundary, before anything presses.
+//! The points of a boundary at which stresses are stated, and those of them on which a contact presses.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use barrelstack_dynamics::{BodyId, Nodes, Planar, Shape, Vec2, math};
 
-use super::{BoundaryPoint, CELLS, Cells, StressEnvelope};
+use super::follow::Bounds;
+use super::{BoundaryPoint, CELLS, Cells, StressEnvelope, TotalForce};
 
 fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -> StressEnvelope {
     let count = points.len();
@@ -20,11 +22,13 @@ fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -
         closed,
         at_rest: vec![0.0; count],
         peak: vec![0.0; count],
+        peak_whole_run: vec![0.0; count],
+        total: TotalForce::default(),
         cells,
     }
 }
 
-/// Cells along a surface that nodes of other bodies press on.
+/// Cells along the surface of a barrel.
 pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
     match shape {
         Shape::Circle(circle) => {
@@ -83,4 +87,60 @@ pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
         .collect();
     let lengths = nodes().flatten().map(|node| node.tributary_length).collect();
     StressEnvelope { lengths, ..empty(body, points, false, Cells::Nodes) }
+}
+
+impl StressEnvelope {
+    /// The cells on which a contact of a length (m) presses around a point (m) of the body; `bounds` are left to hold
+    /// the points for which they stay the same.
+    pub(super) fn place(&self, point: Vec2, length: f64, bounds: &mut Bounds) -> Range<usize> {
+        match self.cells {
+            Cells::Around(radius) => {
+                let count = self.points.len() as f64;
+                let width = TAU / count;
+                let angle = math::atan2(point.z, point.x).rem_euclid(TAU);
+                let (first, last, from, to) = span(angle, length / radius, width);
+                let direction = |angle: f64| {
+                    let (sin, cos) = math::sin_cos(angle);
+                    Vec2::new(cos, sin)
+                };
+                let first_cell = whole(first.rem_euclid(count));
+                let cells = whole((last - first + 1.0).min(count));
+                (bounds.from, bounds.to) = (direction(from), direction(to));
+                first_cell..first_cell + cells
+            }
+            Cells::Along(half_length) => {
+                let cells = self.points.len() / 2;
+                let most = cells as f64 - 1.0;
+                let width = 2.0 * half_length / cells as f64;
+                let (first, last, from, to) = span(point.x + half_length, length, width);
+                let first = whole(first.clamp(0.0, most));
+                let last = whole(last.clamp(0.0, most));
+                bounds.above = point.z >= 0.0;
+                (bounds.from.x, bounds.to.x) = (from - half_length, to - half_length);
+                let side = if bounds.above { 0 } else { cells };
+                side + first..side + last + 1
+            }
+            Cells::Nodes => 0..0,
+        }
+    }
+}
+
+/// The first and the last cell of a width whose middle is covered by a length about a coordinate (at
+/// least one), and the coordinates from which and up to which that stays so.
+fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
+    let half = 0.5 * length;
+    let first = ((coordinate - half) / width + 0.5).floor();
+    let last = ((coordinate + half) / width - 0.5).floor();
+    let from = ((first - 0.5) * width + half).max((last + 0.5) * width - half);
+    let to = ((first + 0.5) * width + half).min((last + 1.5) * width - half);
+    (first, last.max(first), from, to)
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between zero and the number of cells"
+)]
+fn whole(number: f64) -> usize {
+    number as usize
 }

@@ -1,0 +1,483 @@
+//! Follows the contact stress of a run, or of as many runs as there are lanes, through every step.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use barrelstack_dynamics::forces::tributary_length;
+use barrelstack_dynamics::lanes::{Lanewise, put_truth};
+use barrelstack_dynamics::real::{Mask, Real};
+use barrelstack_dynamics::shape::Surface as _;
+use barrelstack_dynamics::space::Rotation2;
+use barrelstack_dynamics::{BodyId, Model, Nodes, Planar, Scratch, State, Vec2, lanewise};
+
+use super::places::{on_nodes, on_surface};
+use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
+use crate::assemble::{Assembly, PartKind};
+
+/// How hard a contact element has pressed on one of its bodies where it presses now.
+///
+/// As long as the contact stays between the same bounds it presses on the same cells, and the largest of its forces
+/// there is all that counts: most contacts of most steps are done with a few comparisons.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds<R: Real = f64> {
+    /// The first point or direction, and that past the last one.
+    pub(super) from: Vec2<R>,
+    pub(super) to: Vec2<R>,
+    /// Whether the place is above the axis; on a rack, whether it has been found.
+    pub(super) above: R::Mask,
+    /// The largest force (N) there.
+    most: R,
+}
+
+/// Points of a body that are pressed as one.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// All points: a contact element presses on a rack in one place, wherever it first did.
+    Everywhere,
+    /// Those between two directions, counterclockwise.
+    Wedge,
+    /// Those between two values of `x` (m) above the axis, or below it.
+    Strip,
+}
+
+/// A body of a pair that has an envelope.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    body: BodyId,
+    place: Place,
+    /// Whether it is the target of the pair, in the frame of whose surface contacts are stated.
+    is_target: bool,
+}
+
+lanewise!(same Side);
+lanewise!(struct Bounds<R> { from, to, most } masks { above });
+lanewise!(struct Pair<R> { bodies, sides, count, offset, rotation });
+
+/// What all contact elements of a pair have in common.
+#[derive(Clone, Debug)]
+struct Pair<R: Real> {
+    /// The contactor and the target.
+    bodies: [BodyId; 2],
+    /// Those of them that have an envelope.
+    sides: Vec<Side>,
+    /// How many contact elements there are.
+    count: usize,
+    /// Where the surface of the target is in its body (m), and how it is turned.
+    offset: Vec2<R>,
+    rotation: Rotation2<R>,
+}
+
+impl<R: Real> Pair<R> {
+    /// A contact point (m), stated in the frame of the target's surface, in the frame of the body of a side.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn in_body(
+        &self,
+        side: Side,
+        point: Vec2<R>,
+        state: &State<Planar<R>>,
+        scratch: &Scratch<Planar<R>>,
+    ) -> Vec2<R> {
+        let in_target = self.offset + self.rotation.apply(point);
+        if side.is_target {
+            return in_target;
+        }
+        let [contactor, target] = self.bodies;
+        let apart = state.poses[target].position - state.poses[contactor].position;
+        let place = apart + scratch.rotations[target].apply(in_target);
+        scratch.rotations[contactor].unapply(place)
+    }
+}
+
+impl Bounds {
+    /// Those of an element that has not pressed yet, and of which no place holds the point.
+    pub(super) fn none() -> Self {
+        Self { from: Vec2::default(), to: Vec2::default(), above: false, most: 0.0 }
+    }
+}
+
+impl<R: Real> Bounds<R> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
+        let Self { from, to, above, .. } = *self;
+        match place {
+            Place::Everywhere => above,
+            Place::Wedge => {
+                (from.z * point.x).le(from.x * point.z) & (point.z * to.x).lt(point.x * to.z)
+            }
+            Place::Strip => {
+                let upper = R::zero().le(point.z);
+                let side = (upper & above) | (!upper & !above);
+                from.x.le(point.x) & point.x.lt(to.x) & side
+            }
+        }
+    }
+}
+
+/// Where a contact element presses on one of its bodies.
+#[derive(Clone, Debug, Default)]
+struct Pressed {
+    /// Index of the envelope.
+    on: usize,
+    /// Length of boundary (m) that the element stands for.
+    length: f64,
+    /// The points of the envelope; past the last one they go on with the first.
+    points: Range<usize>,
+}
+
+/// One run of those that are followed.
+#[derive(Clone, Debug, Default)]
+struct Lane {
+    stresses: Stresses,
+    /// Where every element presses, in the order of [`StressWatch::bounds`].
+    pressed: Vec<Pressed>,
+    /// The point of a contact on a rack, by pair, contact element and body.
+    on_racks: BTreeMap<(usize, u32, BodyId), usize>,
+}
+
+/// No elements of a pair are followed before it touches.
+const NEVER: usize = usize::MAX;
+
+/// Follows the stresses of a run, or of as many runs as there are lanes; to be shown every step.
+#[derive(Clone, Debug)]
+pub(crate) struct StressWatch<R: Real = f64> {
+    lanes: Vec<Lane>,
+    /// The lanes that have a run.
+    watched: R::Mask,
+    /// Those of them in which the first seat has been lost.
+    lost: R::Mask,
+    pairs: Vec<Pair<R>>,
+    /// The first entry of every pair in `bounds`.
+    first: Vec<usize>,
+    /// One for every contact element and body of every pair that has touched.
+    bounds: Vec<Bounds<R>>,
+    /// Sum of the normal contact forces (N) on every body in the step at hand, and the largest one.
+    totals: Vec<[R; 2]>,
+}
+
+impl StressWatch {
+    /// Starts with the stresses of a state at rest and its `scratch`.
+    pub(crate) fn new(
+        assembly: &Assembly,
+        state: &State<Planar>,
+        scratch: &Scratch<Planar>,
+    ) -> Self {
+        let stresses = empty(assembly);
+        let mut pairs = Vec::new();
+        // As in a free scene, whose pairs may be more than can be listed.
+        let watched = !stresses.envelopes.is_empty();
+        for pair in assembly.model.pairs().take_while(|_| watched) {
+            let side = |(body, is_target): (BodyId, bool)| {
+                let place = match stresses.of(body)?.cells {
+                    Cells::Around(_) => Place::Wedge,
+                    Cells::Along(_) => Place::Strip,
+                    Cells::Nodes => Place::Everywhere,
+                };
+                Some(Side { body, place, is_target })
+            };
+            let body = |id: BodyId| &assembly.model.bodies()[id];
+            let placed = &body(pair.target).surfaces[pair.surface];
+            pairs.push(Pair {
+                bodies: [pair.contactor, pair.target],
+                sides: [(pair.contactor, false), (pair.target, true)]
+                    .into_iter()
+                    .filter_map(side)
+                    .collect(),
+                count: body(pair.contactor).nodes[pair.nodes].count(),
+                offset: placed.offset,
+                rotation: placed.rotation,
+            });
+        }
+        let mut watch = Self {
+            lanes: vec![Lane { stresses, ..Lane::default() }],
+            watched,
+            lost: false,
+            first: vec![NEVER; pairs.len()],
+            pairs,
+            bounds: Vec::new(),
+            totals: vec![[0.0; 2]; assembly.parts.len()],
+        };
+        watch.observe(true, state, scratch, &|_| Some(&assembly.model));
+        watch.rest(scratch);
+        watch
+    }
+
+    /// Takes the forces at hand as those at rest.
+    fn rest(&mut self, scratch: &Scratch<Planar>) {
+        let Some(Lane { stresses, pressed, .. }) = self.lanes.first_mut() else { return };
+        let envelopes = &mut stresses.envelopes;
+        // Force (N) and loaded length (m) of every point of every envelope.
+        let mut loads: Vec<Vec<[f64; 2]>> =
+            envelopes.iter().map(|one| vec![[0.0; 2]; one.points.len()]).collect();
+        for contact in scratch.pressed.iter().take_while(|_| self.watched) {
+            let pair = &self.pairs[contact.pair];
+            for side in 0..pair.sides.len() {
+                let at = self.first[contact.pair] + side * pair.count + contact.node as usize;
+                let Pressed { on, length, points } = &pressed[at];
+                let (load, share) = (&mut loads[*on], 1.0 / points.len() as f64);
+                let count = load.len();
+                for point in points.clone() {
+                    let [force, loaded] = &mut load[point % count];
+                    *force += contact.normal_force * share;
+                    *loaded += length * share;
+                }
+            }
+        }
+        if self.watched {
+            self.raise(0);
+        }
+        let envelopes = &mut self.lanes[0].stresses.envelopes;
+        for (envelope, loads) in envelopes.iter_mut().zip(loads) {
+            for (at, [force, length]) in loads.into_iter().enumerate() {
+                if force > 0.0 {
+                    if !envelope.is_on_nodes() {
+                        envelope.lengths[at] = length;
+                    }
+                    envelope.at_rest[at] = force / envelope.lengths[at];
+                }
+                let peak = envelope.at_rest[at].max(envelope.peak_whole_run[at]);
+                envelope.peak_whole_run[at] = peak;
+            }
+            envelope.peak.clone_from(&envelope.peak_whole_run);
+            envelope.total.at_rest = self.totals[envelope.body][1];
+        }
+    }
+}
+
+/// Envelopes of all barrels and racks on which nothing presses yet.
+fn empty(assembly: &Assembly) -> Stresses {
+    let mut envelopes: Vec<StressEnvelope> = Vec::new();
+    let mut of_body = vec![None; assembly.parts.len()];
+    for (i, part) in assembly.parts.iter().enumerate() {
+        let body = &assembly.model.bodies()[i];
+        let made = match part.kind {
+            PartKind::Barrel => body.surfaces.first().and_then(|placed| {
+                // Most barrels are alike, and so are the cells along their boundaries.
+                let alike = |known: &&StressEnvelope| {
+                    let other = assembly.model.bodies()[known.body].surfaces.first();
+                    !known.is_on_nodes()
+                        && other.is_some_and(|other| other.surface == placed.surface)
+                };
+                match envelopes.iter().rev().find(alike) {
+                    Some(known) => Some(StressEnvelope { body: i, ..known.clone() }),
+                    None => on_surface(i, &placed.surface),
+                }
+            }),
+            PartKind::Rack => Some(on_nodes(i, &body.nodes)),
+            PartKind::Ground | PartKind::Device | PartKind::Wine | PartKind::Body => None,
+        };
+        if let Some(envelope) = made {
+            of_body[i] = Some(envelopes.len());
+            envelopes.push(envelope);
+        }
+    }
+    Stresses { envelopes, of_body }
+}
+
+impl<R: Real> StressWatch<R> {
+    /// Watches nothing yet.
+    pub(crate) fn nothing() -> Self {
+        Self {
+            lanes: vec![Lane::default(); R::LANES],
+            watched: R::Mask::default(),
+            lost: R::Mask::default(),
+            pairs: Vec::new(),
+            first: Vec::new(),
+            bounds: Vec::new(),
+            totals: Vec::new(),
+        }
+    }
+
+    /// Puts a run into a lane; all runs that are watched together are of one topology.
+    pub(crate) fn begin(&mut self, lane: usize, mut single: StressWatch) {
+        if self.pairs.is_empty() {
+            self.pairs = Lanewise::in_all(&single.pairs);
+            self.first = vec![NEVER; single.pairs.len()];
+            self.totals = Lanewise::in_all(&single.totals);
+        } else {
+            self.pairs.put(lane, &single.pairs);
+            self.totals.put(lane, &single.totals);
+        }
+        if single.watched {
+            single.raise(0);
+        }
+        // Where its contacts press is found anew, with what has been found on racks.
+        for bounds in &mut self.bounds {
+            bounds.put(lane, &Bounds::none());
+        }
+        put_truth(&mut self.watched, lane, single.watched);
+        put_truth(&mut self.lost, lane, single.lost);
+        let mut alone = std::mem::take(&mut single.lanes[0]);
+        alone.pressed = vec![Pressed::default(); self.bounds.len()];
+        self.lanes[lane] = alone;
+    }
+
+    /// The stresses of the run of a lane, which is watched no more.
+    pub(crate) fn finish(&mut self, lane: usize) -> Stresses {
+        if self.watched.lane(lane) {
+            self.raise(lane);
+            if !self.lost.lane(lane) {
+                self.keep(lane);
+            }
+            for envelope in &mut self.lanes[lane].stresses.envelopes {
+                envelope.total.peak_whole_run = self.totals[envelope.body][1].lane(lane);
+            }
+        }
+        put_truth(&mut self.watched, lane, false);
+        std::mem::take(&mut self.lanes[lane]).stresses
+    }
+
+    /// Raises the envelopes of a lane to what its contacts have pressed where they are.
+    fn raise(&mut self, lane: usize) {
+        let Lane { stresses, pressed, .. } = &mut self.lanes[lane];
+        for (bounds, pressed) in self.bounds.iter().zip(pressed.iter()) {
+            stresses.raise(pressed, bounds.most.lane(lane));
+        }
+    }
+
+    /// Keeps the envelopes of a lane as those until the first loss of seat.
+    fn keep(&mut self, lane: usize) {
+        for envelope in &mut self.lanes[lane].stresses.envelopes {
+            envelope.peak.clone_from(&envelope.peak_whole_run);
+            envelope.total.peak = self.totals[envelope.body][1].lane(lane);
+        }
+    }
+
+    /// Looks at the contacts of an accepted state; `standing` are the lanes in which no seat had been lost before it,
+    /// and `model` gives the model of a lane.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    pub(crate) fn observe<'a>(
+        &mut self,
+        standing: R::Mask,
+        state: &State<Planar<R>>,
+        scratch: &Scratch<Planar<R>>,
+        model: &impl Fn(usize) -> Option<&'a Model<Planar>>,
+    ) {
+        if !self.watched.any() {
+            return;
+        }
+        let falls = self.watched & !standing & !self.lost;
+        if falls.any() {
+            for lane in (0..R::LANES).filter(|lane| falls.lane(*lane)) {
+                self.raise(lane);
+                self.keep(lane);
+            }
+            self.lost = self.lost | falls;
+        }
+        for total in &mut self.totals {
+            total[0] = R::zero();
+        }
+        for contact in &scratch.pressed {
+            let pair = &self.pairs[contact.pair];
+            let force = R::select(contact.touching, contact.normal_force, R::zero());
+            for body in pair.bodies {
+                self.totals[body][0] += force;
+            }
+            if self.first[contact.pair] == NEVER {
+                self.first[contact.pair] = self.bounds.len();
+                let more = self.bounds.len() + pair.sides.len() * pair.count;
+                self.bounds.resize(more, Bounds::in_all(&Bounds::none()));
+                for lane in &mut self.lanes {
+                    lane.pressed.resize(more, Pressed::default());
+                }
+            }
+            for (number, side) in pair.sides.iter().enumerate() {
+                let at = self.first[contact.pair] + number * pair.count + contact.node as usize;
+                let point = pair.in_body(*side, contact.point, state, scratch);
+                let bounds = &mut self.bounds[at];
+                let presses = self.watched & contact.touching;
+                let here = presses & bounds.hold(side.place, point);
+                let more = here & bounds.most.lt(contact.normal_force);
+                if more.any() {
+                    bounds.most = R::select(more, contact.normal_force, bounds.most);
+                }
+                let leaves = presses & !here;
+                if leaves.any() {
+                    for lane in (0..R::LANES).filter(|lane| leaves.lane(*lane)) {
+                        let one = &mut self.lanes[lane];
+                        one.stresses.raise(&one.pressed[at], bounds.most.lane(lane));
+                        let mut single = Bounds::none();
+                        single.most = contact.normal_force.lane(lane);
+                        let element = (contact.pair, contact.node, side.body);
+                        let [point, touch] = [point, contact.point].map(|p| p.of_lane(lane));
+                        if let Some(model) = model(lane) {
+                            one.pressed[at] = one.find(model, element, point, touch, &mut single);
+                        }
+                        bounds.put(lane, &single);
+                    }
+                }
+            }
+        }
+        for [now, most] in &mut self.totals {
+            *most = R::select(self.watched & most.lt(*now), *now, *most);
+        }
+    }
+}
+
+impl Lane {
+    /// Finds where an element, by its pair, its number and the body at hand, presses at a point (m) of that body, which
+    /// is `touch` (m) in the frame of the target's surface.
+    fn find(
+        &mut self,
+        model: &Model<Planar>,
+        element: (usize, u32, BodyId),
+        point: Vec2,
+        touch: Vec2,
+        bounds: &mut Bounds,
+    ) -> Pressed {
+        let (number, node, body) = element;
+        let pair = model.pair(number);
+        let length = tributary_length(model, &pair, node as usize);
+        let Some(on) = self.stresses.of_body[body] else { return Pressed::default() };
+        let envelope = &mut self.stresses.envelopes[on];
+        if !envelope.is_on_nodes() {
+            return Pressed { on, length, points: envelope.place(point, length, bounds) };
+        }
+        bounds.above = true;
+        let known = self.on_racks.entry(element).or_insert_with(|| {
+            let sets = &model.bodies()[pair.contactor].nodes;
+            let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
+            if body == pair.contactor && fixed(&sets[pair.nodes]) {
+                // The points of a rack are first those of its fixed nodes, set after set.
+                let before = sets[..pair.nodes].iter().filter(|set| fixed(set)).map(Nodes::count);
+                return before.sum::<usize>() + node as usize;
+            }
+            let placed = &model.bodies()[pair.target].surfaces[pair.surface];
+            let normal = placed.rotation.apply(placed.surface.gap(touch).normal);
+            // Racks turn by a few degrees while they stand.
+            let normal = if body == pair.target { normal } else { -normal };
+            envelope.push(BoundaryPoint { position: point, normal, coordinate: point.x }, length);
+            envelope.points.len() - 1
+        });
+        Pressed { on, length, points: *known..*known + 1 }
+    }
+}
+
+impl Stresses {
+    /// Raises an envelope to the stress of a contact that presses with a force (N).
+    fn raise(&mut self, pressed: &Pressed, force: f64) {
+        if force <= 0.0 {
+            return;
+        }
+        let stress = force / pressed.length;
+        let peaks = &mut self.envelopes[pressed.on].peak_whole_run;
+        let count = peaks.len();
+        for point in pressed.points.clone() {
+            let peak = &mut peaks[if point < count { point } else { point - count }];
+            *peak = peak.max(stress);
+        }
+    }
+}
+
+impl StressEnvelope {
+    /// Adds a point that stands for a length (m) and on which nothing has pressed.
+    fn push(&mut self, point: BoundaryPoint, length: f64) {
+        self.points.push(point);
+        self.lengths.push(length);
+        self.at_rest.push(0.0);
+        self.peak.push(0.0);
+        self.peak_whole_run.push(0.0);
+    }
+}
