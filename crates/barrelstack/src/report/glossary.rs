@@ -23,7 +23,7 @@ pub const WORDS: &[Word] = &[
     word("pretension", "the force to which a strap is tightened when it is put on"),
     word(
         "stress amplification",
-        "the largest pressure while the stack stood, over the largest at rest",
+        "the largest pressure until the first loss of seat, over the largest at rest",
     ),
     word("PGA", "peak ground acceleration: the largest acceleration of the ground"),
     word("PGV", "peak ground velocity: the largest speed of the ground"),
