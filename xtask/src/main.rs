@@ -19,7 +19,7 @@ const USAGE: &str = "\
 usage: cargo xtask TASK
 
 tasks:
-  test       formatting, lints, documentation, and all tests in both profiles; stops at the first failure
+  test       formatting, lints, documentation, and all tests; stops at the first failure
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
   web        one page that holds the program, as WebAssembly, and works without a network; says how large it is

@@ -11,8 +11,8 @@ use barrelstack::{Run, Scenario, Summary};
 use barrelstack_dynamics::lanes::Width;
 use common::Random;
 
-/// How many random cases: all of them with optimization, a share of them without.
-const CASES: u64 = if cfg!(debug_assertions) { 64 } else { 1000 };
+/// Number of random cases.
+const CASES: u64 = 1000;
 
 /// Devices of all kinds, or wine that sloshes; for every other stack nothing.
 const DEVICES: [&[&str]; 14] = [
@@ -135,7 +135,7 @@ fn joints_met(run: &Run) -> usize {
 
 #[test]
 fn forces_and_stresses_of_a_case_in_lanes_have_the_bits_of_a_run() {
-    const COUNT: u64 = if cfg!(debug_assertions) { 12 } else { 120 };
+    const COUNT: u64 = 120;
     let cases: Vec<Prepared> = (0..COUNT).map(random_case_of_a_plane).collect();
     let together = results(Width::widest(), &cases);
     let (mut fallen, mut met) = ([0; 2], 0);

@@ -41,7 +41,6 @@ fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "sixteen runs of two minutes; run in release")]
 fn what_rests_has_said_all_that_it_says_in_two_minutes() {
     let by_rest = results(Width::widest(), &shaken(60, &[]));
     let whole = results(Width::widest(), &shaken(120, &["run.until=duration"]));
@@ -73,7 +72,6 @@ fn what_rests_has_said_all_that_it_says_in_two_minutes() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "sixty runs of nine seconds; run in release")]
 fn rest_is_the_same_in_every_lane() {
     let cases = shaken(9, &[]);
     let alone: Vec<String> = cases
@@ -109,4 +107,15 @@ fn a_run_that_is_cut_says_by_how_much() {
     assert_eq!(result.cut, Some(cut.ground.end() - 4.0));
     let warned = result.warnings.iter().any(|warning| warning.contains("run ends at 4.0 s"));
     assert!(warned, "{:?}", result.warnings);
+}
+
+#[test]
+fn a_heap_at_rest_is_followed_with_whole_steps() {
+    let scenario = Scenario::builtin("demo-napa", &[ALONG.to_owned()]).unwrap();
+    let run = scenario.run().unwrap();
+    let divided = run.work.steps as f64 * run.simulation.time_step / run.end_time;
+    println!("{} steps, {divided:.2} of those that are not divided", run.work.steps);
+    // Measured: 1.04. It was 2.25 while a fallen rack that pressed the ground half a millimeter deep divided
+    // every step.
+    assert!(divided < 1.5, "{divided}");
 }

@@ -63,10 +63,6 @@ fn verdicts(collected: &Collected) -> Vec<Option<String>> {
 }
 
 #[test]
-#[cfg_attr(
-    debug_assertions,
-    ignore = "a hundred and twenty runs of up to two minutes; run in release"
-)]
 fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -105,7 +101,6 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere()
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "eighty runs of up to 150 s; run in release")]
 fn the_shipped_example_loses_what_it_loses_without_any_stop() {
     // A part of the motions of the shipped study, which has 240 cases: the least and the most at every level.
     let example = barrelstack_campaign::study::builtin("napa-four-levels").unwrap();

@@ -48,7 +48,6 @@ fn curve(name: &str, found: &Decision) -> (Lognormal, [Interval; 2]) {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "two hundred runs of 20 s; run in release")]
 fn hunts_and_stripes_agree_within_their_bands_on_the_six_barrels() {
     let hunts =
         found("[design]\nkind = \"ida\"\nfirst = \"20 cm/s\"\nstep = \"20 cm/s\"\nruns = 10\n");

@@ -74,7 +74,6 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "forty decisions over ten thousand samples; run in release")]
 fn an_island_among_samples_is_found_with_every_seed_and_none_where_there_is_none() {
     let told = |chance: fn(f64) -> f64| {
         (1..=20).filter(|seed| sampled(10_000, *seed, chance).curves[0].violates_order()).count()

@@ -304,7 +304,6 @@ fn every_number_has_a_unit_and_every_field_a_meaning() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "hundreds of runs, minutes; run in release")]
 fn what_takes_a_minute_has_its_schema() {
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "heights");

@@ -57,6 +57,9 @@ pub struct Substepping<R> {
     /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
     /// they follow any.
     pub whole_step_depth: Vec<R>,
+    /// Penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps still follow where a
+    /// contact is at rest: stability allows more depth than the accuracy of an impact does.
+    pub resting_allowance: R,
     /// What of whole bodies that are fast asks for more; none where nothing does.
     pub fast: Option<Fast<R>>,
 }
@@ -247,8 +250,12 @@ impl<S: Space> Model<S> {
         let alike = alike(&bodies, &reach);
         let inert = bodies.iter().map(Inert::of).collect();
         let whole_step_depth = vec![S::Real::splat(f64::INFINITY); interfaces.len()];
-        let substepping =
-            Substepping { substeps: S::Real::splat(1.0), whole_step_depth, fast: None };
+        let substepping = Substepping {
+            substeps: S::Real::splat(1.0),
+            whole_step_depth,
+            resting_allowance: S::Real::zero(),
+            fast: None,
+        };
         let elements = Vec::new();
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }

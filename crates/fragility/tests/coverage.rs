@@ -39,7 +39,6 @@ fn assert_nominal(shares: [f64; 5], each: std::ops::RangeInclusive<f64>, what: &
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "a thousand campaigns take a minute; run in release")]
 fn profile_bands_of_stripes_hold_the_truth_at_their_level() {
     let shares = coverage(|random| {
         let data = evidence(&draw(&plan(), &TRUTH, random));
@@ -50,7 +49,6 @@ fn profile_bands_of_stripes_hold_the_truth_at_their_level() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "a thousand campaigns take a minute; run in release")]
 fn parametric_bootstrap_bands_of_stripes_hold_the_truth_at_their_level() {
     let shares = coverage(|random| {
         let stripes = draw(&plan(), &TRUTH, random);
@@ -77,7 +75,6 @@ fn campaign(records: usize, correlation: f64, random: &mut Random) -> Vec<Eviden
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "sixteen thousand campaigns take a while; run in release")]
 #[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
 fn bands_over_records_hold_the_truth_however_the_cases_of_a_record_depend_on_each_other() {
     let chances = [0.1, 0.5, 0.9];
@@ -119,7 +116,6 @@ fn bands_over_records_hold_the_truth_however_the_cases_of_a_record_depend_on_eac
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "twelve thousand campaigns; run in release")]
 #[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
 fn intervals_of_a_mean_loss_hold_it_where_nine_in_ten_collapse() {
     for records in [6, 8, 16, 24, 40] {

@@ -28,7 +28,6 @@ const RECORDS: [&str; 8] = [
 ];
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "sixteen matches take a minute; run in release")]
 fn real_records_meet_codes_in_the_frequency_domain() {
     let Some(folder) = shared::shared("peer") else { return };
     let targets = [

@@ -131,7 +131,6 @@ fn every_figure_of_the_paper_is_drawn() {
 }
 
 #[test]
-#[cfg_attr(debug_assertions, ignore = "runs every case a second time; run in release")]
 fn the_page_is_the_same_every_time() {
     let again = reproduce(None, false, &|_, _| ControlFlow::Continue(())).unwrap();
     assert_eq!(html(&again.document), html(&found().document));

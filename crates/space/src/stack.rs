@@ -147,6 +147,7 @@ impl Pace {
     fn of(scenario: &Scenario, spec: &StackSpec) -> Result<Self, RunFailure> {
         let (mut step, mut shortest) = (f64::INFINITY, f64::INFINITY);
         let mut whole_step_depth: Vec<f64> = Vec::new();
+        let mut resting_allowance = f64::INFINITY;
         let mut reach = [0.0; 2];
         for (axis, view) in [View::Transverse, View::Longitudinal].into_iter().enumerate() {
             for cut in cuts(scenario, spec, view) {
@@ -162,11 +163,13 @@ impl Pace {
                 for (depth, own) in whole_step_depth.iter_mut().zip(&divided.whole_step_depth) {
                     *depth = depth.min(*own);
                 }
+                resting_allowance = resting_allowance.min(divided.resting_allowance);
                 reach[axis] = plane.rack_reach;
             }
         }
         let substeps = (step / shortest * (1.0 - 1e-9)).ceil().max(1.0);
-        let substepping = Substepping { substeps, whole_step_depth, fast: Some(FAST) };
+        let substepping =
+            Substepping { substeps, whole_step_depth, resting_allowance, fast: Some(FAST) };
         Ok(Self { step, substepping, reach })
     }
 }

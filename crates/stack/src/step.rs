@@ -29,7 +29,8 @@ const IMPACT_SHARE: f64 = 0.4;
 const WHOLE_STEP: f64 = 0.05;
 
 /// Share of the critical time step at that penetration, sticks included, that is taken at most: what lies
-/// still asks for stability alone.
+/// still requires stability alone. At twice that penetration, to which a contact at rest is followed, it is
+/// 0.83 of the critical time step, since stiffness grows with the root of penetration.
 const WHOLE_STEP_SHARE: f64 = 0.7;
 
 /// Weights of the heaviest body under which the lightest one may lie on contacts for impacts. What they damp
@@ -80,6 +81,7 @@ impl TimeStepping {
         let mut substepping = Substepping {
             substeps,
             whole_step_depth: vec![f64::INFINITY; model.interfaces().len()],
+            resting_allowance: whole_step_depth,
             fast: None,
         };
         model.each_meeting(&mut |pair, _, _| {

@@ -35,7 +35,6 @@ fn noted(seen: &Seen, until: f64, errors: &Errors, random: &mut Random) -> Obser
 /// Every campaign draws its truth from the range, builds three stacks with other placements, notes how
 /// they go, and looks for the parameters with one table of simulations that all campaigns share.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "2700 simulations take many minutes; run in release")]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     const TESTS: usize = 3;
     const TABLE: usize = 800;

@@ -116,6 +116,7 @@ fn touch_by<S: Space>(
             .lt(S::Real::splat(f64::INFINITY))
             .any()
             .then_some(whole_step_depth),
+        resting_allowance: model.substepping.resting_allowance,
         fast: model.substepping.fast,
         lookahead: scratch.lookahead,
         needs_substeps: scratch.needs_substeps,
@@ -200,6 +201,8 @@ fn touch_by<S: Space>(
 struct Press<'a, S: Space, L> {
     /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; none where it is infinite.
     whole_step_depth: Option<S::Real>,
+    /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
+    resting_allowance: S::Real,
     /// [`Substepping::fast`](crate::model::Substepping::fast).
     fast: Option<Fast<S::Real>>,
     /// [`Scratch::lookahead`].
@@ -228,6 +231,10 @@ struct Press<'a, S: Space, L> {
     pressed: &'a mut Vec<Pressed<S>>,
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
+
+/// A contact is at rest if within [`Scratch::lookahead`] its depth changes by less than this share of
+/// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
+const RESTING_SHARE: f64 = 0.01;
 
 /// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
 /// where two corners lie one above the other, one contact is counted and not two or none.
@@ -304,8 +311,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Tells whether a node at `node` (m) will soon be deeper than whole time steps follow, wherever it
-    /// touches or is about to.
+    /// Requests substeps where a node at `node` (m) will soon be deeper than whole time steps follow, wherever
+    /// it touches or is about to.
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
@@ -318,8 +325,11 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
         let approach = -self.meeting.velocity(node).dot(gap.normal);
         let ahead = self.lookahead * approach.max(S::Real::zero());
-        self.needs_substeps =
-            self.needs_substeps | (near & whole_step_depth.lt(ahead - gap.distance));
+        let change = self.lookahead * approach.abs();
+        let rests = change.lt(self.resting_allowance * S::Real::splat(RESTING_SHARE));
+        let allowance = S::Real::select(rests, self.resting_allowance, S::Real::zero());
+        let deep = (whole_step_depth + allowance).lt(ahead - gap.distance);
+        self.needs_substeps = self.needs_substeps | (near & deep);
     }
 
     /// The share with which a corner counts on a side, near whose end the corner of the other body may
