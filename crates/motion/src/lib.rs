@@ -65,6 +65,7 @@ mod changed;
 mod collection;
 mod corners;
 mod direction;
+mod earthquake;
 mod error;
 mod fault_axes;
 mod format;
@@ -102,6 +103,7 @@ pub use collection::{
 };
 pub use corners::{Corners, NoiseCriterion, noise_corners};
 pub use direction::{Direction, Orientation};
+pub use earthquake::Earthquake;
 pub use error::{Given, MotionError, ReadError, ReadFailure, Refusal};
 pub use fault_axes::Turned;
 pub use format::{FORMATS, Format, ReadOptions, read};

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::direction::{Direction, Orientation};
+use crate::earthquake::Earthquake;
 use crate::error::MotionError;
 use crate::format::{self, Printed, Source};
 use crate::ground_motion::GroundMotion;
@@ -206,6 +207,8 @@ pub struct Record {
     pub file: String,
     /// Event as the file states it; empty if it does not.
     pub event: String,
+    /// Magnitude and place of the event, as far as the file states them.
+    pub earthquake: Earthquake,
     /// Station as the file states it; empty if it does not.
     pub station: String,
     /// How far the record was processed.

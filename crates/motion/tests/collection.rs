@@ -2,7 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
-use barrelstack_motion::{Flatfile, group_files, record_sequence_number};
+use std::path::Path;
+
+use barrelstack_motion::{
+    AccelerationUnit, Flatfile, ReadOptions, Record, group_files, record_sequence_number,
+};
+
+fn read(file: &str) -> Record {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(file);
+    let options = ReadOptions { unit: Some(AccelerationUnit::G), ..ReadOptions::default() };
+    barrelstack_motion::read(&std::fs::read(path).unwrap(), file, &options).unwrap()
+}
 
 fn names(files: &[&str]) -> Vec<(String, usize)> {
     let files: Vec<String> = files.iter().map(|file| (*file).to_owned()).collect();
@@ -90,4 +100,51 @@ fn components_are_grouped_by_the_names_that_networks_give_them() {
     // Words that end in these letters are no components, nor are files of other kinds.
     assert_eq!(groups(&["NAPAE.txt", "NAPAN.txt", "news.txt"]), [1, 1, 1]);
     assert_eq!(groups(&["site_E.txt", "site_N.csv"]), [1, 1]);
+}
+
+#[test]
+fn the_flatfile_of_esm_is_found_by_event_and_station() {
+    let table = "event_id;event_time;ML;Mw;EMEC_Mw;es_strike;network_code;station_code;vs30_m_sec;epi_dist;JB_dist;rup_dist\n\
+        MADE-1;2020-01-01;5.9;6.6;6.5;120;TK;9999;400;14.0;9.5;11.2\n\
+        MADE-1;2020-01-01;5.9;;6.5;;TK;1234;;20;;\n\
+        MADE-1;2020-01-01;5.9;6.6;6.5;120;XX;1234;400;14.0;9.5;11.2\n";
+    let flatfile = Flatfile::parse("esm.csv", table).unwrap();
+    assert_eq!(flatfile.len(), 3);
+    let mut record = read("esm/example.ACC.ASC");
+    record.earthquake.id = "made-1".to_owned();
+    let station = |record: &mut Record, name: &str| {
+        for channel in &mut record.channels {
+            name.clone_into(&mut channel.site.station);
+        }
+    };
+    station(&mut record, "9999 Nowhere");
+    let row = flatfile.of_record(&record).unwrap();
+    assert_eq!(
+        (row.magnitude, row.rupture_distance, row.surface_distance),
+        (Some(6.6), Some(11.2), Some(9.5))
+    );
+    assert_eq!((row.vs30, row.strike), (Some(400.0), Some(120.0)));
+    // Two networks have this code: neither is taken, unless the record names one.
+    station(&mut record, "1234");
+    assert_eq!(flatfile.of_record(&record), None);
+    station(&mut record, "TK.1234");
+    assert_eq!(flatfile.of_record(&record).and_then(|row| row.magnitude), Some(6.5));
+    record.earthquake.id = "another".to_owned();
+    assert_eq!(flatfile.of_record(&record), None);
+}
+
+#[test]
+fn headers_state_magnitude_and_distance() {
+    // Magnitude, its scale, and the epicentral distance (km) of the sphere.
+    let of = |file: &str| {
+        let record = read(file);
+        (record.earthquake.magnitude, record.earthquake.scale.clone(), record.epicentral_distance())
+    };
+    let (magnitude, scale, distance) = of("csmnc/example.dat");
+    assert_eq!((magnitude, scale.as_str()), (Some(5.0), "Ms"));
+    // A tenth of a degree north and east at 40°.
+    assert!((distance.unwrap() - 14.0).abs() < 0.1, "{distance:?}");
+    let (magnitude, _, distance) = of("sac-text/example.sac");
+    assert_eq!(magnitude.map(|m| (m * 10.0).round()), Some(66.0));
+    assert!((distance.unwrap() - 14.1).abs() < 0.1, "{distance:?}");
 }

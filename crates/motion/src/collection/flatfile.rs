@@ -1,9 +1,11 @@
-//! The flatfile of NGA-West2: magnitude, distances and site of every record, by its sequence number.
+//! Flatfiles: magnitude, distances and site of every record, by the sequence numbers of NGA-West2 or by the
+//! events and stations of ESM.
 
 use std::collections::BTreeMap;
 
 use crate::error::MotionError;
 use crate::format::shorten;
+use crate::record::Record;
 
 /// What a flatfile says of one record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,29 +26,39 @@ pub struct FlatRow {
     pub strike: Option<f64>,
 }
 
-/// Rows by record sequence number.
+/// Rows by record sequence number, or by event and station.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flatfile {
     rows: BTreeMap<u64, FlatRow>,
+    /// Event, network and station, in small letters.
+    stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
 /// Columns of the published table, which its short forms name as well.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
-const EVENT: &[&str] = &["earthquake name", "event"];
-const STATION: &[&str] = &["station name", "station"];
-const MAGNITUDE: &[&str] = &["earthquake magnitude", "magnitude"];
-const RUPTURE: &[&str] = &["clstd (km)", "rrup (km)", "rrup"];
-const SURFACE: &[&str] = &["joyner-boore dist. (km)", "rjb (km)", "rjb"];
-const VS30: &[&str] = &["vs30 (m/s) selected for analysis", "vs30 (m/s)", "vs30"];
-const STRIKE: &[&str] = &["strike (deg)", "strike"];
+const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
+const STATION: &[&str] = &["station name", "station", "station_code"];
+/// Columns of ESM that stand for a number of the record.
+const ESM_KEY: [&str; 3] = ["event_id", "network_code", "station_code"];
+const MAGNITUDE: &[&str] = &["earthquake magnitude", "magnitude", "mw", "emec_mw", "ml"];
+const RUPTURE: &[&str] = &["clstd (km)", "rrup (km)", "rrup", "rup_dist"];
+const SURFACE: &[&str] = &["joyner-boore dist. (km)", "rjb (km)", "rjb", "jb_dist"];
+const VS30: &[&str] = &["vs30 (m/s) selected for analysis", "vs30 (m/s)", "vs30", "vs30_m_sec"];
+const STRIKE: &[&str] = &["strike (deg)", "strike", "es_strike"];
 
 impl Flatfile {
     /// Reads the table as CSV, its first line the names of the columns; −999 stands for unknown.
     ///
+    /// The flatfile of ESM, with semicolons, has no sequence numbers: its rows are found by event, network
+    /// and station, and its first known magnitude of Mw, EMEC Mw and ML counts.
+    ///
     /// # Errors
-    /// If there is no column of sequence numbers, a number is none, or a sequence number comes twice.
+    /// If there is neither a column of sequence numbers nor those of ESM, a number is none, or a sequence
+    /// number comes twice.
     pub fn parse(file: &str, text: &str) -> Result<Self, MotionError> {
-        let mut lines = rows(text);
+        let head = text.lines().next().unwrap_or_default();
+        let mark = if head.contains(';') && !head.contains(',') { ';' } else { ',' };
+        let mut lines = rows(text, mark);
         let Some((_, head)) = lines.next() else {
             return Err(MotionError::parameter(file, "a table with a line of names", "nothing"));
         };
@@ -55,14 +67,18 @@ impl Flatfile {
             .map(|name| name.trim().trim_start_matches('\u{feff}').to_ascii_lowercase())
             .collect();
         let column = |names: &[&str]| names.iter().find_map(|n| head.iter().position(|h| h == n));
-        let Some(number) = column(NUMBER) else {
-            let expected = "a column \"Record Sequence Number\" or \"RSN\"";
+        let key = ESM_KEY.map(|name| column(&[name]));
+        let number = column(NUMBER);
+        if number.is_none() && key.contains(&None) {
+            let expected = "a column \"Record Sequence Number\" or \"RSN\", or those of ESM, event_id, \
+                 network_code and station_code";
             let found = format!("{} others ({})", head.len(), shorten(&head.join(", ")));
             return Err(MotionError::parameter(file, expected, found));
-        };
+        }
         let texts = [column(EVENT), column(STATION)];
-        let numbers = [MAGNITUDE, RUPTURE, SURFACE, VS30, STRIKE].map(column);
-        let mut found = BTreeMap::new();
+        let numbers = [RUPTURE, SURFACE, VS30, STRIKE].map(column);
+        let magnitudes: Vec<Option<usize>> = MAGNITUDE.iter().map(|name| column(&[name])).collect();
+        let mut all = Self::default();
         for (line, cells) in lines {
             let cell = |at: Option<usize>| at.and_then(|at| cells.get(at)).map_or("", |c| c.trim());
             let refuse = |at: Option<usize>, expected: &str| {
@@ -79,23 +95,29 @@ impl Flatfile {
                     },
                 }
             };
-            let Ok(sequence) = cell(Some(number)).parse::<u64>() else {
-                return Err(refuse(Some(number), "a whole number"));
-            };
             let row = FlatRow {
                 event: cell(texts[0]).to_owned(),
                 station: cell(texts[1]).to_owned(),
-                magnitude: value(numbers[0])?,
-                rupture_distance: value(numbers[1])?,
-                surface_distance: value(numbers[2])?,
-                vs30: value(numbers[3])?,
-                strike: value(numbers[4])?,
+                magnitude: magnitudes.iter().find_map(|at| value(*at).transpose()).transpose()?,
+                rupture_distance: value(numbers[0])?,
+                surface_distance: value(numbers[1])?,
+                vs30: value(numbers[2])?,
+                strike: value(numbers[3])?,
             };
-            if found.insert(sequence, row).is_some() {
-                return Err(refuse(Some(number), "each sequence number once"));
+            if number.is_none() {
+                // Several instruments of one station share what is said here.
+                let [event, network, station] = key.map(|at| cell(at).to_ascii_lowercase());
+                all.stations.entry((event, network, station)).or_insert(row);
+                continue;
+            }
+            let Ok(sequence) = cell(number).parse::<u64>() else {
+                return Err(refuse(number, "a whole number"));
+            };
+            if all.rows.insert(sequence, row).is_some() {
+                return Err(refuse(number, "each sequence number once"));
             }
         }
-        Ok(Self { rows: found })
+        Ok(all)
     }
 
     /// The row of a record.
@@ -103,14 +125,28 @@ impl Flatfile {
         self.rows.get(&number)
     }
 
+    /// The row of a record by the event that its header states and the code of its station; `None` where
+    /// stations of several networks have that code.
+    pub fn of_record(&self, record: &Record) -> Option<&FlatRow> {
+        let event = record.earthquake.id.to_ascii_lowercase();
+        let named = record.channels.first()?.site.station.to_ascii_lowercase();
+        let mut words = named.split_whitespace().next()?.rsplit('.');
+        let (station, network) = (words.next()?, words.next());
+        let mut fitting = self.stations.iter().filter(|((of, net, code), _)| {
+            !event.is_empty() && *of == event && code == station && network.is_none_or(|n| n == net)
+        });
+        let (_, row) = fitting.next()?;
+        fitting.next().is_none().then_some(row)
+    }
+
     /// How many records it holds.
     pub fn len(&self) -> usize {
-        self.rows.len()
+        self.rows.len() + self.stations.len()
     }
 
     /// Whether it holds none.
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.len() == 0
     }
 }
 
@@ -124,7 +160,7 @@ pub fn record_sequence_number(path: &str) -> Option<u64> {
 }
 
 /// Rows of a table (RFC 4180) with the line on which each begins; empty lines are left out.
-fn rows(text: &str) -> impl Iterator<Item = (usize, Vec<String>)> {
+fn rows(text: &str, mark: char) -> impl Iterator<Item = (usize, Vec<String>)> {
     let mut line = 1;
     let mut rest = text;
     std::iter::from_fn(move || {
@@ -140,7 +176,7 @@ fn rows(text: &str) -> impl Iterator<Item = (usize, Vec<String>)> {
                         letters.next();
                     }
                     '"' => quoted = !quoted,
-                    ',' if !quoted => cells.push(std::mem::take(&mut cell)),
+                    other if other == mark && !quoted => cells.push(std::mem::take(&mut cell)),
                     '\n' => {
                         line += 1;
                         if !quoted {

@@ -44,6 +44,8 @@ pub struct MeasuredComponent {
 pub struct MeasuredPair {
     /// `RotD50` of peak acceleration (m/s²) and velocity (m/s).
     pub peaks: [f64; 2],
+    /// `RotD100` of the same.
+    pub largest: [f64; 2],
     /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping.
     pub spectrum: Vec<RotatedPeak>,
     /// Pulse after Shahi and Baker (2014).
@@ -128,9 +130,13 @@ fn component(
 }
 
 fn both(first: &Sampled, second: &Sampled, periods: &[f64]) -> Result<MeasuredPair, MotionError> {
-    let of = |measure| Horizontals::RotD50.of(measure, first, second);
+    let of = |horizontals: Horizontals| -> Result<[f64; 2], MotionError> {
+        let of = |measure| horizontals.of(measure, first, second);
+        Ok([of(IntensityMeasure::Pga)?, of(IntensityMeasure::Pgv)?])
+    };
     Ok(MeasuredPair {
-        peaks: [of(IntensityMeasure::Pga)?, of(IntensityMeasure::Pgv)?],
+        peaks: of(Horizontals::RotD50)?,
+        largest: of(Horizontals::RotD100)?,
         spectrum: rotated_spectrum(
             first.time_step(),
             first.acceleration(),

@@ -7,6 +7,7 @@ use super::source::{
 };
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
@@ -68,6 +69,10 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     }
     let text = |key: &str| field(source, key).map(|(_, text)| text).unwrap_or_default();
     let stated = |key: &str| leading_number(text(key).as_bytes());
+    let magnitude = text("EARTHQUAKE MAGNITUDE");
+    let scale = magnitude.split_whitespace().nth(1).unwrap_or_default();
+    record.earthquake = Earthquake::of_magnitude([(scale, stated("EARTHQUAKE MAGNITUDE"))])
+        .at(position(&text("EPICENTER COORDINATES")), stated("EARTHQUAKE DEPTH"));
     let site = Site {
         elevation: stated("STATION ALTITUDE"),
         vs30: stated("VS30").filter(|speed| *speed > 0.0),

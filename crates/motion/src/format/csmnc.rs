@@ -2,9 +2,10 @@
 //!
 //! Times are those of Beijing (BTM, UTC+8).
 
-use super::source::{LARGEST_ACCELERATION, Source, latin1, quoted};
+use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::{Site, position};
@@ -89,6 +90,11 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     channel.site =
         Site { sensor: point.to_ascii_lowercase(), ..Site::default() }.at(position(&station));
     station.split_whitespace().next().unwrap_or_default().clone_into(&mut record.station);
+    let magnitude = after("MAGNITUDE").unwrap_or_default();
+    let scale = magnitude.split(['(', ')']).nth(1).unwrap_or_default();
+    let depth = line_with(source, "EPICENTER").and_then(|line| source.number_after(line, "DEPTH"));
+    record.earthquake = Earthquake::of_magnitude([(scale, leading_number(magnitude.as_bytes()))])
+        .at(after("EPICENTER").and_then(|text| position(&text)), depth);
     let title = line_with(source, "EPICENTER").and_then(|line| line.checked_sub(1));
     record.event = title.map(|line| source.text(line)).unwrap_or_default();
     record.channels.push(channel);

@@ -9,6 +9,7 @@ use super::source::{
 };
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -116,6 +117,9 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.channels.push(channel);
     }
     let stated = |key: &str| number(source, key).map(|(_, value)| value);
+    let epicenter = stated("#EpicenterLatitude(N):").zip(stated("#EpicenterLongitude(E):"));
+    let magnitudes = [("Mw", stated("#Magnitude(Mw):")), ("ML", stated("#Magnitude(Ml):"))];
+    record.earthquake = Earthquake::of_magnitude(magnitudes).at(epicenter, stated("#Depth(km):"));
     let position = stated("#StationLatitude(N):").zip(stated("#StationLongitude(E):"));
     // Taiwan is eight hours ahead.
     let start = field(source, "#StartTime(GMT+08):")

@@ -7,6 +7,7 @@ use super::source::{
 };
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -90,6 +91,16 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     };
     let mut record = Record::new(FORMAT.name, source.name, stage);
     record.event = text("EVENT_NAME");
+    let stated = |key: &str| leading_number(text(key).as_bytes());
+    record.earthquake = Earthquake {
+        id: text("EVENT_ID"),
+        epicentral_distance: stated("EPICENTRAL_DISTANCE_KM"),
+        ..Earthquake::of_magnitude([("Mw", stated("MAGNITUDE_W")), ("ML", stated("MAGNITUDE_L"))])
+            .at(
+                stated("EVENT_LATITUDE_DEGREE").zip(stated("EVENT_LONGITUDE_DEGREE")),
+                stated("EVENT_DEPTH_KM"),
+            )
+    };
     record.station = format!("{} {}", text("STATION_CODE"), text("STATION_NAME"));
     let limit = LARGEST_ACCELERATION / unit.factor();
     let mut values = Vec::with_capacity(source.lines.len() - end);

@@ -7,6 +7,7 @@
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage};
@@ -86,6 +87,17 @@ fn read_component(
     );
     channel.start = zero.map(|zero| zero.later(-cell(7, 2)));
     channel.site = Site::default().at(position(&source.text(first + 1)));
+    // "Epicentre 42 41 33S 173 01 19E  Bearing S18W  Dist    9km  Depth   15km Mw 7.82".
+    let origin = source.text(first + 8);
+    let place = first + 8;
+    record.earthquake = Earthquake {
+        epicentral_distance: source.number_after(place, "Dist "),
+        ..Earthquake::of_magnitude([
+            ("Mw", source.number_after(place, "Mw ")),
+            ("ML", source.number_after(place, "ML ")),
+        ])
+        .at(origin.split("Bearing").next().and_then(position), source.number_after(place, "Depth "))
+    };
     let mut measured = vec![(Quantity::Acceleration, math::peak(&channel.acceleration))];
     if corrected {
         for (column, quantity) in [(5, Quantity::Velocity), (6, Quantity::Displacement)] {

@@ -9,6 +9,7 @@ use super::source::{
 };
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::math;
 use crate::record::{Channel, Record, Stage};
@@ -86,6 +87,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         ..Site::default()
     }
     .at(number("Station Lat.").zip(number("Station Lon")));
+    record.earthquake = Earthquake::of_magnitude([("MJMA", number("Mag."))])
+        .at(number("Lat.").zip(number("Long.")), number("Depth."));
     let peak = field(source, "Max").and_then(|(_, text)| leading_printed(text.as_bytes()));
     channel.state_peak(peak, GAL);
     record.channels.push(channel);

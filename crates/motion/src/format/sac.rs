@@ -5,6 +5,7 @@
 use super::source::{Source, latin1};
 use super::{Format, Hints, seed};
 use crate::direction::{Direction, Orientation};
+use crate::earthquake::Earthquake;
 use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::SeedName;
 use crate::record::{Channel, Record, Stage};
@@ -179,6 +180,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     // Words 31 to 33: latitude, longitude, elevation; the "hole" is the location code.
     channel.site = Site { sensor: location, elevation: real(33), ..Site::default() }
         .at(real(31).zip(real(32)));
+    // Words 35, 36, 39 and 50: epicenter, magnitude, distance (km); the unit of the depth is not certain.
+    record.earthquake = Earthquake {
+        epicentral_distance: real(50),
+        ..Earthquake::of_magnitude([("", real(39))]).at(real(35).zip(real(36)), None)
+    };
     if let Some(known) = known {
         known.complete(&mut channel.site);
     }

@@ -8,6 +8,7 @@ use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -51,6 +52,14 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     station.split_once('=').map_or("", |(_, name)| name).trim().clone_into(&mut record.station);
     let (integers, line) = source.fixed(TEXT_LINES, 8 * INTEGER_LINES, COLUMNS, f64::INFINITY)?;
     let (reals, line) = source.fixed(line, 5 * REAL_LINES, Columns::new(5, 15), f64::INFINITY)?;
+    // Reals 3 to 8 of the format: epicenter, depth, and magnitudes by moment, surface waves and ML; 17
+    // is the epicentral distance.
+    let stated = |index: usize| reals.get(index).copied().filter(|value| value.abs() < 1e37);
+    record.earthquake = Earthquake {
+        epicentral_distance: stated(16),
+        ..Earthquake::of_magnitude([("Mw", stated(5)), ("Ms", stated(6)), ("ML", stated(7))])
+            .at(stated(2).zip(stated(3)), stated(4))
+    };
     let known = |index: usize| Some(integers[index]).filter(|value| *value != integers[0]);
     let real = |index: usize| Some(reals[index]).filter(|value| value.abs() < 1e37);
     let comments = known(15).unwrap_or(0.0);

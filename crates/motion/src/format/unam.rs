@@ -9,6 +9,7 @@ use super::source::{
 };
 use super::{Format, Hints};
 use crate::direction::Direction;
+use crate::earthquake::Earthquake;
 use crate::error::ReadError;
 use crate::record::{Channel, Record, Stage};
 use crate::site::Site;
@@ -114,6 +115,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         channel.state_peak(peak, GAL);
         record.channels.push(channel);
     }
+    record.earthquake = earthquake(source);
     record.place(start(source), &site(source));
     Ok(record)
 }
@@ -129,14 +131,32 @@ fn start(source: &Source<'_>) -> Option<Utc> {
     Some(if event.since(first) > 0.5 * day { first.later(day) } else { first })
 }
 
+/// Of several magnitudes `/Mb=5.2/Ms=5.8` that by moment, else by surface waves, else the first.
+fn earthquake(source: &Source<'_>) -> Earthquake {
+    let stated = field(source, "MAGNITUD").map(|(_, text)| list(&text)).unwrap_or_default();
+    let all: Vec<(&str, Option<f64>)> = stated
+        .iter()
+        .filter_map(|part| part.split_once('='))
+        .map(|(scale, value)| (scale.trim(), leading_number(value.as_bytes())))
+        .collect();
+    let of = |scale: &'static str| all.iter().find(|(name, _)| name.eq_ignore_ascii_case(scale));
+    let ordered = ["Mw", "Ms"].into_iter().filter_map(of).chain(&all).copied();
+    let depth = field(source, "PROFUNDIDAD FOCAL").and_then(|(_, t)| leading_number(t.as_bytes()));
+    Earthquake::of_magnitude(ordered).at(degrees(source, "COORDENADAS DEL EPICENTRO"), depth)
+}
+
 /// `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
-fn site(source: &Source<'_>) -> Site {
+fn degrees(source: &Source<'_>, key: &str) -> Option<(f64, f64)> {
     let signed = |text: &str| {
         let value = leading_number(text.trim_start_matches(':').as_bytes())?;
         Some(if text.trim_end().ends_with(['S', 'W']) { -value } else { value })
     };
-    let position = field(source, "COORDENADAS DE LA ESTACION")
-        .and_then(|(line, text)| signed(&text).zip(signed(&source.text(line + 1))));
+    let (line, text) = field(source, key)?;
+    signed(&text).zip(signed(&source.text(line + 1)))
+}
+
+fn site(source: &Source<'_>) -> Site {
+    let position = degrees(source, "COORDENADAS DE LA ESTACION");
     let elevation = field(source, "ALTITUD").and_then(|(_, text)| leading_number(text.as_bytes()));
     Site { elevation, ..Site::default() }.at(position)
 }

@@ -74,6 +74,8 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     cells.push(number("pgv_rotd50", "m/s", im, pair.map(|pair| pair.peaks[1])));
     let both = pair.and_then(|pair| pair.pulse.as_ref());
     let why = found.and_then(|f| f.measured.no_pair.clone());
+    cells.push(number("pga_rotd100", "m/s2", im, pair.map(|pair| pair.largest[0])));
+    cells.push(number("pgv_rotd100", "m/s", im, pair.map(|pair| pair.largest[1])));
     cells.push(text("no_rotd50_because", why));
     pulse(&mut cells, "shahi_baker", both);
     let angle = both.map(|pulse| pulse.angle);
@@ -81,6 +83,10 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     for (k, period) in periods.iter().enumerate() {
         let median = pair.and_then(|pair| pair.spectrum.get(k)).map(|peak| peak.median);
         cells.push(number(format!("sa_rotd50_{period}"), "m/s2", im, median));
+    }
+    for (k, period) in periods.iter().enumerate() {
+        let largest = pair.and_then(|pair| pair.spectrum.get(k)).map(|peak| peak.largest);
+        cells.push(number(format!("sa_rotd100_{period}"), "m/s2", im, largest));
     }
     for (k, period) in periods.iter().enumerate() {
         let sa = horizontal(0).and_then(|h1| h1.spectrum.get(k)).copied();
@@ -123,9 +129,21 @@ fn header(found: Option<&Found<'_>>) -> Vec<Cell> {
         number("latitude", "deg", facts, site.and_then(|site| site.latitude)),
         number("longitude", "deg", facts, site.and_then(|site| site.longitude)),
         integer("rsn", found.and_then(|f| f.number).and_then(|n| usize::try_from(n).ok())),
-        number("magnitude", "", facts, flat.and_then(|row| row.magnitude)),
+        number(
+            "magnitude",
+            "",
+            facts,
+            flat.and_then(|row| row.magnitude)
+                .or_else(|| record.and_then(|record| record.earthquake.magnitude)),
+        ),
         number("rupture_distance", "km", facts, flat.and_then(|row| row.rupture_distance)),
         number("surface_distance", "km", facts, flat.and_then(|row| row.surface_distance)),
+        number(
+            "epicentral_distance",
+            "km",
+            facts,
+            record.and_then(barrelstack_motion::Record::epicentral_distance),
+        ),
         number(
             "vs30",
             "m/s",

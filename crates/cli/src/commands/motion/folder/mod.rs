@@ -36,7 +36,8 @@ const NAMED: usize = 5;
 /// What goes with folders.
 #[derive(Debug, clap::Args)]
 pub(super) struct FolderArgs {
-    /// Flatfile of NGA-West2 as CSV; joined by the record sequence number in the names of files.
+    /// Flatfile as CSV: of NGA-West2, joined by the record sequence number in the names of files, or of
+    /// ESM, joined by event and station.
     #[arg(long, value_name = "FILE.csv")]
     pub(super) flatfile: Option<PathBuf>,
     /// Periods of the table's spectra in seconds between commas, or with a unit each.
@@ -306,7 +307,9 @@ fn entry(
             let measured = measure(&worked.record, &worked.before, periods)
                 .map_err(|error| refused(error.to_string(), true))?;
             let number = record_sequence_number(&source.record.files[0]);
-            let flat = flatfile.zip(number).and_then(|((flatfile, _), n)| flatfile.get(n));
+            let flat = flatfile.and_then(|(flatfile, _)| {
+                number.and_then(|n| flatfile.get(n)).or_else(|| flatfile.of_record(&worked.record))
+            });
             let found = Found { source, worked: &worked, measured: &measured, number, flat };
             Ok(cells(Some(&found), periods).into_iter().map(|(_, value)| value).collect())
         });

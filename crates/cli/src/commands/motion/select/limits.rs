@@ -43,10 +43,11 @@ impl FromStr for Range {
 /// Limits that are in force.
 #[derive(Debug, clap::Args)]
 pub(super) struct Limits {
-    /// Magnitudes, from the flatfile.
+    /// Magnitudes, from the flatfile or the header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) magnitude: Option<Range>,
-    /// Distances to the rupture in km, from the flatfile.
+    /// Distances in km: to the rupture, from the flatfile; where it is not known, to the epicenter, from the
+    /// header.
     #[arg(long, value_name = "FROM..TO")]
     pub(super) distance: Option<Range>,
     /// Vs30 in m/s, from the flatfile or the header.
@@ -71,6 +72,8 @@ enum Pulses {
 /// How many records each limit left out, and for how many it could not be told.
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
+    /// Records whose distance is that to the epicenter.
+    by_epicenter: usize,
     counts: Vec<(&'static str, usize, usize)>,
 }
 
@@ -81,9 +84,17 @@ impl Limits {
         let mut left_out = LeftOut::default();
         let numbers = |name: &str| table.numbers(name).unwrap_or_default();
         let integers = |name: &str| table.integers(name).unwrap_or_default();
+        let (rupture, epicenter) = (numbers("rupture_distance"), numbers("epicentral_distance"));
+        let nearest = |(rupture, epicenter): (&Option<f64>, &Option<f64>)| rupture.or(*epicenter);
+        let distances: Vec<Option<f64>> = rupture.iter().zip(epicenter).map(nearest).collect();
+        let by_epicenter = rupture
+            .iter()
+            .zip(&distances)
+            .filter(|(known, used)| known.is_none() && used.is_some());
+        left_out.by_epicenter = self.distance.map_or(0, |_| by_epicenter.count());
         let ranges = [
             ("magnitude", self.magnitude, numbers("magnitude")),
-            ("distance", self.distance, numbers("rupture_distance")),
+            ("distance", self.distance, &distances),
             ("Vs30", self.vs30, numbers("vs30")),
         ];
         for (name, range, values) in ranges {
@@ -138,6 +149,12 @@ impl LeftOut {
         }
         if candidates + lost < all {
             reasons.push(format!("{} without a {spectrum} spectrum", all - candidates - lost));
+        }
+        if self.by_epicenter > 0 {
+            reasons.push(format!(
+                "distances of {} are to the epicenter, as no flatfile states those to the rupture",
+                self.by_epicenter
+            ));
         }
         let why =
             if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };

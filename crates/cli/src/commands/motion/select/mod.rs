@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::study::StudyTable;
-use barrelstack_selection::{Candidate, Choosing, select as choose};
+use barrelstack_motion::MotionError;
+use barrelstack_selection::{Candidate, Choosing, Selection, SelectionTarget, select as choose};
 use clap::ValueEnum;
 
 use super::folder::{self, Batch, FolderArgs, Worked};
@@ -53,9 +54,9 @@ pub(super) struct SelectArgs {
     /// Longest period that counts.
     #[arg(long, value_name = "TIME", default_value = "5 s")]
     longest: String,
-    /// How many records.
-    #[arg(long, value_name = "NUMBER", default_value_t = 30)]
-    count: usize,
+    /// How many records; without it 30, or as many as there are and reach the target.
+    #[arg(long, value_name = "NUMBER")]
+    count: Option<usize>,
     /// Which spectrum of a record counts.
     #[arg(long, value_enum, default_value_t = Spectrum::Rotd50)]
     spectrum: Spectrum,
@@ -85,6 +86,8 @@ pub(super) struct SelectArgs {
 enum Spectrum {
     /// Median over all directions of both horizontals.
     Rotd50,
+    /// Largest over all directions of both horizontals.
+    Rotd100,
     /// First horizontal component.
     H1,
 }
@@ -93,6 +96,7 @@ impl Spectrum {
     fn column(self, period: f64) -> String {
         match self {
             Self::Rotd50 => format!("sa_rotd50_{period}"),
+            Self::Rotd100 => format!("sa_rotd100_{period}"),
             Self::H1 => format!("sa_h1_{period}"),
         }
     }
@@ -100,6 +104,7 @@ impl Spectrum {
     fn name(self) -> &'static str {
         match self {
             Self::Rotd50 => "RotD50",
+            Self::Rotd100 => "RotD100",
             Self::H1 => "first horizontal",
         }
     }
@@ -118,21 +123,49 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     }
     let (rows, left_out) = args.limits.rows(&found.table);
     let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
-    let told = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
-    printer::lines([&told])?;
+    let mut told = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
     let [least, largest] = args.scale.ends();
     let choosing = Choosing {
-        count: args.count,
+        count: args.count.unwrap_or(USUAL_COUNT),
         scale: [least.max(f64::MIN_POSITIVE), largest],
         most_of_group: args.most_of_event,
         seed: args.seed,
     };
-    let selection = choose(&target, &candidates, &choosing)?;
+    let selection = match args.count {
+        Some(_) => choose(&target, &candidates, &choosing),
+        None => as_many_as_there_are(&target, &candidates, &choosing),
+    };
+    let selection = selection.inspect_err(|_| printer::note(&told))?;
+    if args.count.is_none() && selection.chosen.len() < USUAL_COUNT {
+        let few = format!(
+            "; a set has {USUAL_COUNT} where there are as many, this one has the {} that can be \
+             brought to the target",
+            selection.chosen.len()
+        );
+        told.push_str(&few);
+    }
+    printer::lines([&told])?;
     let set = set::Set { args, table: &found.table, rows: &rows, selection: &selection };
     set.write()?;
     page::write(&set, &target, &candidates, &told)?;
     printer::lines(set.summary(&target))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Size of a set where none is asked for.
+const USUAL_COUNT: usize = 30;
+
+/// The largest set of the usual size or less that the candidates give.
+fn as_many_as_there_are(
+    target: &SelectionTarget,
+    candidates: &[Candidate],
+    choosing: &Choosing,
+) -> Result<Selection, MotionError> {
+    let most = candidates.len().clamp(2, choosing.count);
+    let sized = |count| choose(target, candidates, &Choosing { count, ..choosing.clone() });
+    let first = sized(most);
+    let smaller = || (2..most).rev().find_map(|count| sized(count).ok());
+    first.or_else(|error| smaller().ok_or(error))
 }
 
 /// Rows with a whole spectrum, as candidates; records of one event are a group.

@@ -42,7 +42,7 @@ impl Set<'_> {
 
     fn csv(&self) -> String {
         let mut text =
-            "record,files,event,factor,magnitude,rupture_distance (km),vs30 (m/s)\n".to_owned();
+            "record,files,event,factor,magnitude,rupture_distance (km),epicentral_distance (km),vs30 (m/s)\n".to_owned();
         let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         for (row, chosen) in self.chosen() {
             let number = |column: &str| {
@@ -51,13 +51,14 @@ impl Set<'_> {
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{}",
                 quoted(self.text("record", row)),
                 quoted(self.text("files", row)),
                 quoted(self.text("event", row)),
                 chosen.scale,
                 number("magnitude"),
                 number("rupture_distance"),
+                number("epicentral_distance"),
                 number("vs30")
             );
         }
