@@ -34,6 +34,9 @@ pub struct Node<S: Space> {
     pub position: S::Vector,
     /// Length of boundary (m) that the node stands for.
     pub tributary_length: S::Real,
+    /// Unit normal of the boundary there out of the body, in the body frame, at a corner the mean of both
+    /// sides; none where every direction counts.
+    pub outward: Option<S::Vector>,
 }
 
 /// A round piece of a convex boundary: a corner, sharp or rounded, or an arc.

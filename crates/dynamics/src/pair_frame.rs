@@ -121,6 +121,12 @@ impl<S: Space> PairFrame<S> {
         S::unrotate(self.relative, direction)
     }
 
+    /// A direction of the contactor's body frame, in the surface's frame.
+    #[inline(always)]
+    pub(crate) fn direction_to_surface(&self, direction: S::Vector) -> S::Vector {
+        S::rotate(self.relative, direction)
+    }
+
     /// A point of the contactor's body frame, in the surface's frame.
     #[inline(always)]
     pub(crate) fn to_surface(&self, position: S::Vector) -> S::Vector {

@@ -68,6 +68,7 @@ fn cradled(angle: f64, friction: FrictionLaw) -> Scene {
             .map(|side| Node {
                 position: Vec2::new(side * radius * sin, -radius * cos),
                 tributary_length: 1.0,
+                outward: None,
             })
             .to_vec(),
     )];

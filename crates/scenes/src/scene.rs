@@ -92,14 +92,22 @@ pub fn finely_noded_block(
 
 /// Boundary nodes as the nodes of a body whose shape is centered.
 pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
-    let node =
-        |n: &BoundaryNode| Node { position: n.position, tributary_length: n.tributary_length };
+    let node = |n: &BoundaryNode| Node {
+        position: n.position,
+        tributary_length: n.tributary_length,
+        outward: None,
+    };
     Nodes::Fixed(nodes.iter().map(node).collect())
 }
 
 /// Nodes at points (m) of a body.
 pub fn points(points: &[Vec2]) -> Nodes<Planar> {
-    Nodes::Fixed(points.iter().map(|p| Node { position: *p, tributary_length: 1.0 }).collect())
+    Nodes::Fixed(
+        points
+            .iter()
+            .map(|p| Node { position: *p, tributary_length: 1.0, outward: None })
+            .collect(),
+    )
 }
 
 /// An interface with constants per node.

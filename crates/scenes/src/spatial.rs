@@ -51,7 +51,12 @@ pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
 
 /// Points (m) of a body that touch: feet, legs, corners.
 pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
-    Nodes::Fixed(points.iter().map(|p| Node { position: *p, tributary_length: 1.0 }).collect())
+    Nodes::Fixed(
+        points
+            .iter()
+            .map(|p| Node { position: *p, tributary_length: 1.0, outward: None })
+            .collect(),
+    )
 }
 
 /// The four corners (m) of a rectangle of half sides `x` and `y` at the height `z`.

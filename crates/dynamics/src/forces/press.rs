@@ -2,14 +2,15 @@
 
 mod meeting;
 mod patch;
+mod rounds;
 
-use crate::body::{Nodes, Round};
+use crate::body::Nodes;
 use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::contact_elements::{ContactElements, Group};
 use crate::model::{ContactPair, Fast, Model};
 use crate::pair_frame::{AtFace, PairFrame};
 use crate::real::{Mask, Real};
-use crate::shape::{Gap, Nearest, Surface, Whole};
+use crate::shape::{Facing, Gap, Surface, Whole};
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
@@ -139,40 +140,7 @@ fn touch_by<S: Space>(
         pressed: &mut scratch.pressed,
         contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
     };
-    let one = S::Real::splat(1.0);
-    match model.pair_nodes(pair) {
-        Nodes::Fixed(_) => {
-            let nodes = &state.contact_elements.positions[group.first..group.end];
-            surface.penetrated_by(
-                nodes.len(),
-                #[inline(always)]
-                |index| frame.to_surface(nodes[index]),
-                #[inline(always)]
-                |index, node, gap| {
-                    press.look_ahead(node, gap);
-                    press.node(group.first + index, node, gap, one);
-                },
-            );
-        }
-        Nodes::Rounds(rounds) => press.rounds(pair, rounds, group, surface),
-        Nodes::Rolling { center, radius, .. } => {
-            let center = frame.to_surface(*center);
-            let mut gap = surface.gap(center);
-            gap.distance -= *radius;
-            let node = center - gap.normal * *radius;
-            press.look_ahead(node, gap);
-            if gap.distance.lt(S::Real::zero()).any() {
-                press.node(group.first, node, gap, one);
-            }
-        }
-        Nodes::Whole(whole) => whole.meet(
-            surface,
-            frame.contactor,
-            frame.relative,
-            #[inline(always)]
-            |patch| press.patch(group.first + patch.first, &patch),
-        ),
-    }
+    press.nodes(pair, model.pair_nodes(pair), group, surface);
     let Press { meeting, sum, totals, needs_substeps, is_hard, pressed, .. } = press;
     let touches = pressed.len() > others;
     scratch.needs_substeps = needs_substeps;
@@ -236,76 +204,57 @@ struct Press<'a, S: Space, L> {
 /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
 const RESTING_SHARE: f64 = 0.01;
 
-/// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
-/// where two corners lie one above the other, one contact is counted and not two or none.
-const SLACK: f64 = 1e-9;
-
-/// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
-const COMPANION: f64 = 0.01;
-
-/// How far past the limits of a round piece a normal may point, on the way to another round piece.
-const LIMIT: f64 = 2e-7;
-
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// The round pieces of a convex boundary, each with its deepest point.
-    ///
-    /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
-    /// straight; against a round piece it is one if each lies in the limits of the other, and then it
-    /// belongs to the pair whose contactor is the first of the two bodies.
+    /// All contacts of a pair.
     #[inline(always)]
-    fn rounds(
-        &mut self,
-        pair: &ContactPair,
-        rounds: &[Round<S>],
-        group: &Group,
-        surface: &S::Surface,
-    ) {
-        let zero = S::Real::zero();
-        let first = pair.contactor < pair.target;
-        let slack = S::Real::splat(if first { SLACK } else { -SLACK });
-        for element in group.first..group.end {
-            let round = &rounds[self.elements.nodes[element] as usize];
-            let center = self.frame.to_surface(round.center);
-            let nearest = surface.nearest(center, slack);
-            let (mut gap, against_round) = (nearest.gap, nearest.round);
-            gap.distance -= round.radius;
-            let foreseen =
-                S::Real::splat(if self.whole_step_depth.is_some() { LOOKAHEAD_GAP } else { 0.0 });
-            if !gap.distance.lt(foreseen).any() {
-                continue;
+    fn nodes(&mut self, pair: &ContactPair, nodes: &Nodes<S>, group: &Group, surface: &S::Surface) {
+        let one = S::Real::splat(1.0);
+        match nodes {
+            Nodes::Fixed(all) => {
+                let (elements, frame) = (self.elements, self.frame);
+                let places = &elements.positions[group.first..group.end];
+                surface.penetrated_by(
+                    places.len(),
+                    #[inline(always)]
+                    |index| frame.to_surface(places[index]),
+                    #[inline(always)]
+                    |index| {
+                        let node = &all[elements.nodes[group.first + index] as usize];
+                        node.outward.map(
+                            #[inline(always)]
+                            |outward| Facing::outward(frame.direction_to_surface(outward)),
+                        )
+                    },
+                    #[inline(always)]
+                    |index, node, gap| {
+                        self.look_ahead(node, gap);
+                        self.node(group.first + index, node, gap, one);
+                    },
+                );
             }
-            let toward = self.frame.to_contactor(-gap.normal);
-            let mut deepest = !<S::Real as Real>::Mask::default();
-            for limit in round.arc_limits.iter().flatten() {
-                let past = toward.dot(*limit);
-                deepest = deepest & if round.takes_limit { past.le(zero) } else { past.lt(zero) };
+            Nodes::Rounds(rounds) => self.rounds(pair, rounds, group, surface),
+            Nodes::Rolling { center, radius, .. } => {
+                let center = self.frame.to_surface(*center);
+                let mut gap = surface.gap(center);
+                gap.distance -= *radius;
+                let node = center - gap.normal * *radius;
+                self.look_ahead(node, gap);
+                if gap.distance.lt(S::Real::zero()).any() {
+                    self.node(group.first, node, gap, one);
+                }
             }
-            let mut counts = !against_round & deepest;
-            if first {
-                let [a, b] = round.limits;
-                let limit = S::Real::splat(LIMIT);
-                let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
-                counts = counts | (against_round & within);
-            }
-            let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
-            for (outward, distance) in round.sides.iter().flatten() {
-                // The round of the other, about its center, as near to the side as to the arc.
-                let center = round.center + toward * nearest.core;
-                let rounding = nearest.core - nearest.gap.distance;
-                let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
-                counts = counts & !(against_round & nearer);
-            }
-            gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
-            self.look_ahead(center - gap.normal * round.radius, gap);
-            if gap.distance.lt(zero).any() {
-                let share = self.share(round, &nearest, slack);
-                // Both bodies feel the force midway between their boundaries, whichever of them tests.
-                let inset = round.radius - gap.distance * S::Real::splat(0.5);
-                let energy = self.node(element, center - gap.normal * inset, gap, share.value);
-                if zero.lt(share.slope).any() {
-                    let force = nearest.toward_end * (energy * share.slope);
-                    let arm = center - self.frame.contactor;
-                    self.sum.normal += Wrench { force, moment: S::moment(arm, force) };
+            Nodes::Whole(whole) => {
+                let frame = self.frame;
+                if let Some(points) = whole.points(surface, frame.contactor, frame.relative) {
+                    self.points(group.first, &points);
+                } else {
+                    whole.meet(
+                        surface,
+                        frame.contactor,
+                        frame.relative,
+                        #[inline(always)]
+                        |patch| self.patch(group.first + patch.first, &patch),
+                    );
                 }
             }
         }
@@ -330,39 +279,6 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let allowance = S::Real::select(rests, self.resting_allowance, S::Real::zero());
         let deep = (whole_step_depth + allowance).lt(ahead - gap.distance);
         self.needs_substeps = self.needs_substeps | (near & deep);
-    }
-
-    /// The share with which a corner counts on a side, near whose end the corner of the other body may
-    /// itself bear on a side of this one.
-    ///
-    /// Where two faces overlap by little, both corners at the ends of the overlap are inside the other
-    /// body. They are one contact, which becomes two as they part. The corner that is nearer to the end
-    /// of the side before it, and so is the shallower of the two, counts the less the shorter its way
-    /// to that end, the other in full; so none of them begins or ends with a jump, whatever the depth.
-    #[inline(always)]
-    fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
-        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
-        let to_end = nearest.to_end;
-        let near_end = to_end.lt(S::Real::splat(COMPANION));
-        let mut partly = <S::Real as Real>::Mask::default();
-        if near_end.any() {
-            // From this corner to the one at the end of the side before it.
-            let apart = nearest.toward_end * to_end - nearest.gap.normal * nearest.core;
-            let apart = self.frame.to_contactor(apart);
-            for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
-                if arc.is_none() {
-                    partly = partly | to_end.lt(apart.dot(*limit) - slack);
-                }
-            }
-            partly = partly & near_end;
-        }
-        // 3 u² − 2 u³, so that the push begins and ends at zero.
-        let u = to_end.max(zero) * S::Real::splat(1.0 / COMPANION);
-        let slope = S::Real::splat(6.0 / COMPANION) * u * (one - u);
-        Share {
-            value: S::Real::select(partly, u * u * (S::Real::splat(3.0) - u - u), one),
-            slope: S::Real::select(partly, slope, zero),
-        }
     }
 
     /// The moment by which a normal force (N) resists rolling.
@@ -446,14 +362,6 @@ impl<R: Real> RollingPair<R> {
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
         Self { lever: rolling.lever, scale }
     }
-}
-
-/// With which share of its energy a contact counts.
-struct Share<R> {
-    value: R,
-    /// How the share grows with the way (1/m) to the end of the side: what the energy falls by on that
-    /// way pushes toward the end.
-    slope: R,
 }
 
 /// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their

@@ -255,7 +255,7 @@ lanewise!(struct Pose<Planar<R>> { position, orientation });
 lanewise!(struct Twist<Planar<R>> { linear, angular });
 lanewise!(struct Wrench<Planar<R>> { force, moment });
 lanewise!(struct Losses<Planar<R>> { damped, friction });
-lanewise!(struct Node<Planar<R>> { position, tributary_length });
+lanewise!(struct Node<Planar<R>> { position, tributary_length, outward });
 lanewise!(struct Face<Planar<R>> { point, outward, widest });
 lanewise!(struct Placed<Planar<R>> { surface, offset, rotation });
 lanewise!(struct Round<Planar<R>> {

@@ -16,12 +16,16 @@ use crate::body::Round;
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Planar, Space, Vec2};
 
+use polygon::FLUSH;
+
 pub use circle::Circle;
 pub use cradle::Cradle;
 pub use half_plane::HalfPlane;
 pub use polygon::{Polygon, PolygonError};
 pub use profile::BarrelProfile;
-pub use whole::{Axes, NoWhole, Patch, Shares, Slopes, Spread, Touch, Whole};
+pub use whole::{
+    Axes, Bearing, MOST_POINTS, NoWhole, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
+};
 
 /// How far a point is from a surface, and which way is out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +60,54 @@ impl<S: Space> Nearest<S> {
     }
 }
 
+/// In which directions a boundary faces at a point of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing<S: Space> {
+    /// Unit vectors in the frame of the surface that is met, as [`Round::limits`].
+    pub limits: [S::Vector; 2],
+    /// The most that the direction toward a piece of that surface may have of a limit.
+    pub most: f64,
+    /// How far (m) past the pieces that it does not face a point may lie.
+    pub slack: f64,
+}
+
+impl<S: Space> Facing<S> {
+    /// Of a point where a boundary has this outward unit normal, the mean of both at a corner: it bears on
+    /// pieces turned by less than 70° from it, which both sides of a right corner are.
+    #[inline(always)]
+    pub(crate) fn outward(normal: S::Vector) -> Self {
+        Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
+    }
+
+    /// Whether a piece with an outward normal can be borne on.
+    #[inline(always)]
+    pub(crate) fn includes(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
+        let most = S::Real::splat(self.most);
+        let [a, b] = self.limits.map(
+            #[inline(always)]
+            |limit| -normal.dot(limit),
+        );
+        a.le(most) & b.le(most)
+    }
+}
+
+impl<R: Real> Nearest<Planar<R>> {
+    /// This where the mask holds, and the other elsewhere.
+    #[inline(always)]
+    fn where_it(self, holds: R::Mask, other: Self) -> Self {
+        Self {
+            gap: Gap {
+                distance: R::select(holds, self.gap.distance, other.gap.distance),
+                normal: Vec2::select(holds, self.gap.normal, other.gap.normal),
+            },
+            round: (holds & self.round) | (!holds & other.round),
+            to_end: R::select(holds, self.to_end, other.to_end),
+            toward_end: Vec2::select(holds, self.toward_end, other.toward_end),
+            core: R::select(holds, self.core, other.core),
+        }
+    }
+}
+
 /// A surface that nodes can touch; all points are in its own frame.
 pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// Signed distance and outward normal at a point (m).
@@ -67,6 +119,17 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     /// one has a side before it and the other has not, whatever the last digit says.
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
+    /// Where a point lies inside of the core, the nearest of the pieces that it can bear on as a point of the
+    /// boundary of another body; elsewhere what is `nearest`.
+    ///
+    /// Which piece of a boundary is nearest does not tell by itself which of them a point inside presses
+    /// into: a corner of a box that stands flush on an equal box lies on the side of the lower one and below
+    /// its top. The directions in which the boundary of the other body faces at that point decide.
+    #[inline(always)]
+    fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
+        nearest
+    }
+
     /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
     #[inline(always)]
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
@@ -74,12 +137,14 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     }
 
     /// Visits the points (m) that penetrate in at least one lane, in order: which of `count` points it
-    /// is, where, and its gap.
+    /// is, where, and its gap. `facing` returns in which directions their boundary faces there, where that
+    /// is known.
     #[inline(always)]
     fn penetrated_by(
         &self,
         count: usize,
         point: impl Fn(usize) -> S::Vector,
+        _facing: impl Fn(usize) -> Option<Facing<S>>,
         mut visit: impl FnMut(usize, S::Vector, Gap<S>),
     ) {
         for index in 0..count {
@@ -158,6 +223,20 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
     }
 
     #[inline(always)]
+    fn bearing(
+        &self,
+        point: Vec2<R>,
+        facing: &Facing<Planar<R>>,
+        nearest: Nearest<Planar<R>>,
+    ) -> Nearest<Planar<R>> {
+        match self {
+            Self::Polygon(shape) => shape.bearing(point, facing, nearest),
+            Self::BarrelProfile(shape) => shape.bearing(point, facing, nearest),
+            Self::Circle(_) | Self::HalfPlane(_) | Self::Cradle(_) => nearest,
+        }
+    }
+
+    #[inline(always)]
     fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         match self {
             Self::Circle(shape) => shape.may_touch(point),
@@ -173,6 +252,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
         &self,
         count: usize,
         point: impl Fn(usize) -> Vec2<R>,
+        facing: impl Fn(usize) -> Option<Facing<Planar<R>>>,
         mut visit: impl FnMut(usize, Vec2<R>, Gap<Planar<R>>),
     ) {
         let zero = R::zero();
@@ -203,7 +283,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
                 for index in 0..count {
                     let point = point(index);
                     if shape.may_touch(point).any() {
-                        let gap = shape.gap(point);
+                        let gap = self.gap_facing(point, facing(index));
                         if gap.distance.lt(zero).any() {
                             visit(index, point, gap);
                         }
@@ -213,7 +293,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
             Self::Cradle(_) | Self::BarrelProfile(_) => {
                 for index in 0..count {
                     let point = point(index);
-                    let gap = self.gap(point);
+                    let gap = self.gap_facing(point, facing(index));
                     if gap.distance.lt(zero).any() {
                         visit(index, point, gap);
                     }
@@ -233,7 +313,36 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
     }
 }
 
+impl<R: Real> Shape<R> {
+    /// The gap of a point of another body whose boundary faces in known directions there.
+    #[inline(always)]
+    fn gap_facing(&self, point: Vec2<R>, facing: Option<Facing<Planar<R>>>) -> Gap<Planar<R>> {
+        let gap = self.gap(point);
+        match facing {
+            Some(facing) if gap.distance.lt(R::splat(facing.slack)).any() => {
+                self.bearing(point, &facing, Nearest::endless(gap, R::Mask::default())).gap
+            }
+            _ => gap,
+        }
+    }
+}
+
 impl Shape {
+    /// The unit outward normal of the boundary at a point of it (m), at a corner the mean of both sides; none
+    /// for a point that is not on it, and for a cradle, which nothing bears on but what it bears.
+    pub fn outward(&self, point: Vec2) -> Option<Vec2> {
+        let near = 1e-9 * self.reach();
+        let on_it = self.gap(point).distance.abs() < near;
+        on_it
+            .then(|| match self {
+                Self::Polygon(shape) => Some(shape.outward(point, near)),
+                Self::Circle(_) | Self::HalfPlane(_) => Some(self.gap(point).normal),
+                Self::BarrelProfile(shape) => Some(shape.outward(point, near)),
+                Self::Cradle(_) => None,
+            })
+            .flatten()
+    }
+
     /// Nodes along the whole boundary, no further apart than `spacing` (m).
     /// Their tributary lengths add up to the length of the boundary; a half-plane has none.
     pub fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {

@@ -2,12 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
+use super::{BoundaryNode, Facing, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::lanewise;
 use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
+
+/// How far (m) outside of a side a node of a flush body may lie: a nanometer, and not a number that a scene
+/// states, at which nodes would come and go by rounding.
+pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// The most that a part of a rounded corner turns (rad).
 const CORNER_STEP: f64 = TAU / 24.0;
@@ -131,13 +135,45 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
+    /// The nearest of the sides that a point of another body can bear on, for a point inside of the core:
+    /// see [`Surface::bearing`](super::Surface::bearing).
+    #[inline(always)]
+    pub(super) fn bearing(
+        &self,
+        point: Vec2<R>,
+        facing: &Facing<Planar<R>>,
+        nearest: Nearest<Planar<R>>,
+    ) -> Nearest<Planar<R>> {
+        let (zero, none) = (R::zero(), R::splat(f64::NEG_INFINITY));
+        let (mut deepest, mut past) = (none, none);
+        let mut normal = Vec2::default();
+        let (mut to_end, mut toward_end) = (zero, Vec2::default());
+        for side in &self.sides {
+            let offset = point - side.middle;
+            let height = offset.dot(side.outward);
+            let faces = facing.includes(side.outward);
+            past = R::select(faces, past, past.max(height));
+            let higher = faces & deepest.lt(height);
+            deepest = R::select(higher, height, deepest);
+            normal = Vec2::select(higher, side.outward, normal);
+            let along = offset.dot(side.along);
+            to_end = R::select(higher, side.half_length - along.abs(), to_end);
+            let ahead = Vec2::select(along.lt(zero), -side.along, side.along);
+            toward_end = Vec2::select(higher, ahead, toward_end);
+        }
+        let inside = none.lt(deepest) & deepest.lt(zero) & past.lt(R::splat(facing.slack));
+        let gap = Gap { distance: deepest - self.corner_radius, normal };
+        let bearing = Nearest { gap, round: R::Mask::default(), to_end, toward_end, core: deepest };
+        bearing.where_it(inside, nearest)
+    }
+
     #[inline(always)]
     pub(super) fn may_touch(&self, point: Vec2<R>) -> R::Mask {
         let mut highest = R::splat(f64::NEG_INFINITY);
         for side in &self.sides {
             highest = highest.max((point - side.middle).dot(side.outward));
         }
-        highest.lt(self.corner_radius)
+        highest.lt(self.corner_radius + R::splat(FLUSH))
     }
 
     pub(super) fn reach(&self) -> f64 {
@@ -306,6 +342,19 @@ impl Polygon {
 
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
+    }
+
+    /// The mean of the outward normals at a point (m) of the boundary.
+    pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
+        if self.corner_radius > 0.0 {
+            return self.gap(point).normal;
+        }
+        let touching = self
+            .sides
+            .iter()
+            .filter(|side| (point - side.middle).dot(side.outward).abs() < near)
+            .fold(Vec2::default(), |sum, side| sum + side.outward);
+        unit(touching)
     }
 
     /// The corners themselves as nodes, each standing for half of both its sides; a rounded one is

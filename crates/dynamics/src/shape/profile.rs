@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{BoundaryNode, Gap, Nearest, Piece, Section, nodes_along};
+use super::{BoundaryNode, Facing, Gap, Nearest, Piece, Section, nodes_along};
 use crate::body::Round;
 use crate::math;
 use crate::real::Real;
@@ -89,6 +89,45 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
+    /// The nearer of the stave and the head that a point of another body can bear on, for a point inside
+    /// of the core: see [`Surface::bearing`](super::Surface::bearing).
+    #[inline(always)]
+    pub(super) fn bearing(
+        &self,
+        point: Vec2<R>,
+        facing: &Facing<Planar<R>>,
+        nearest: Nearest<Planar<R>>,
+    ) -> Nearest<Planar<R>> {
+        let (zero, one) = (R::zero(), R::splat(1.0));
+        let none = R::splat(f64::NEG_INFINITY);
+        let side = R::select(point.x.lt(zero), -one, one);
+        let up = R::select(point.z.lt(zero), -one, one);
+        let from_center =
+            Vec2::new(point.x, point.z + up * (self.stave_radius - self.bilge_radius));
+        let length = from_center.length();
+        let stave = length - (self.stave_radius - self.rounding);
+        let head = point.x.abs() - (self.half_length - self.rounding);
+        let (of_stave, of_head) = (from_center * (one / length), Vec2::new(side, zero));
+        let (stave_faces, head_faces) = (facing.includes(of_stave), facing.includes(of_head));
+        let depth = |faces, distance| R::select(faces, distance, none);
+        let (by_stave, by_head) = (depth(stave_faces, stave), depth(head_faces, head));
+        let deepest = by_stave.max(by_head);
+        let past = depth(!stave_faces, stave).max(depth(!head_faces, head));
+        let on_head = by_stave.lt(by_head);
+        let inside = none.lt(deepest) & deepest.lt(zero) & past.lt(R::splat(facing.slack));
+        let normal = Vec2::select(on_head, of_head, of_stave);
+        let gap = Gap { distance: deepest - self.rounding, normal };
+        let to_end = self.corner_height - point.z.abs();
+        let bearing = Nearest {
+            gap,
+            round: !on_head,
+            to_end: R::select(on_head, to_end, R::splat(f64::INFINITY)),
+            toward_end: Vec2::new(zero, up),
+            core: deepest,
+        };
+        bearing.where_it(inside, nearest)
+    }
+
     pub(super) fn reach(&self) -> f64 {
         let (a, b) = (self.half_length.largest_lane(), self.bilge_radius.largest_lane());
         (a * a + b * b).sqrt()
@@ -166,6 +205,22 @@ impl BarrelProfile {
         let edges = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let edges = edges.into_iter().map(|(x, z)| edge(x, z));
         edges.chain([1.0, -1.0].map(stave)).collect()
+    }
+
+    /// The outward normal at a point (m) of the boundary; at a sharp edge the mean of those of head and stave.
+    pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
+        let normal = self.gap(point).normal;
+        let head = Vec2::new(point.x.signum(), 0.0);
+        let at_edge = self.rounding == 0.0
+            && (point.x.abs() - self.half_length).abs() < near
+            && (point.z.abs() - self.corner_height).abs() < near;
+        if !at_edge {
+            return normal;
+        }
+        let rise = point.z.signum() * (self.stave_radius - self.bilge_radius);
+        let stave = Vec2::new(point.x, point.z + rise);
+        let sum = head + stave * (1.0 / stave.length());
+        sum * (1.0 / sum.length())
     }
 
     /// Half the angle (rad) over which a stave bends.

@@ -20,6 +20,18 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         visit: impl FnMut(Patch<S>),
     );
 
+    /// The points in which it bears on a surface, where these are several that are known each by itself; all
+    /// as in [`Whole::meet`].
+    #[inline(always)]
+    fn points(
+        &self,
+        _surface: &S::Surface,
+        _position: S::Vector,
+        _rotation: S::Rotation,
+    ) -> Option<Points<S>> {
+        None
+    }
+
     /// How many sticks contacts with one surface may have.
     fn most_sticks(&self) -> usize;
 
@@ -56,6 +68,29 @@ pub struct Patch<S: Space> {
     pub deepest: Touch<S>,
     /// How it extends from there; none where it is a point.
     pub spread: Option<Spread<S>>,
+}
+
+/// Points that bear like springs side by side, their friction at what they bear together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Points<S: Space> {
+    /// Each of them.
+    pub points: [Bearing<S>; MOST_POINTS],
+    /// Unit vectors along the face in which they lie: where their sticks are.
+    pub axes: [S::Vector; 2],
+}
+
+/// How many points bear at a time: the corners of the polygon that two rectangles share, and the deepest.
+pub const MOST_POINTS: usize = 9;
+
+/// A point of [`Points`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bearing<S: Space> {
+    /// Where it touches.
+    pub touch: Touch<S>,
+    /// How many springs it stands for.
+    pub share: S::Real,
+    /// By how much that grows (1/rad) as the contactor turns.
+    pub turning: S::Spin,
 }
 
 /// How a patch extends: how hard it presses is told by the depth of its deepest point, δ, and that of its

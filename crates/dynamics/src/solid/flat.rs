@@ -23,12 +23,12 @@ pub(super) struct Flat {
 }
 
 /// Sine of the angle between two bodies from which on they share nothing.
-const WIDEST: f64 = 0.1;
+pub(super) const WIDEST: f64 = 0.1;
 /// How far (m) from its middle a line or a face extends that counts in full.
 const LONG: f64 = 0.05;
 
 /// `3 u² − 2 u³` between 0 and 1.
-fn smooth(u: f64) -> f64 {
+pub(super) fn smooth(u: f64) -> f64 {
     let u = u.clamp(0.0, 1.0);
     u * u * (3.0 - u - u)
 }
@@ -115,7 +115,7 @@ pub(super) fn shared(
                 ..flat
             })
         }
-        // A face of one may lie on an edge of the other, which no middle of a face tells.
+        // A face of one may lie on an edge of the other, which no middle of a face tells: see `faces`.
         (Hull::Block(_), Hull::Block(_)) => None,
     }
 }

@@ -11,6 +11,7 @@ mod barrel;
 mod block;
 mod closest;
 mod compound;
+mod faces;
 mod flat;
 mod mass;
 mod rounded;

@@ -4,9 +4,11 @@ use super::barrel::Barrel;
 use super::block::{Block, from_block};
 use super::closest::{Closest, along, barrels};
 use super::flat::{shared, slopes};
-use super::{Capsule, Solid};
+use super::{Capsule, Solid, faces};
 use crate::real::Real;
-use crate::shape::{Axes, Gap, Patch, Shares, Slopes, Spread, Touch, Whole};
+use crate::shape::{
+    Axes, Bearing, Gap, MOST_POINTS, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
+};
 use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
 /// What touches as a whole, about the origin, along `x`.
@@ -89,6 +91,26 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
                 visit(patch);
             }
         }
+    }
+
+    #[inline(always)]
+    fn points(
+        &self,
+        surface: &Solid<R>,
+        position: Vec3<R>,
+        rotation: Rotation3<R>,
+    ) -> Option<Points<Spatial<R>>> {
+        let (Hull::Block(block), Solid::Block(target)) = (&self.hull, surface) else { return None };
+        let mut points = block_on_block(
+            block,
+            target,
+            position + rotation.apply(self.center),
+            rotation.after(self.rotation),
+        );
+        for bearing in &mut points.points {
+            bearing.touch = midway(bearing.touch.node, bearing.touch.gap);
+        }
+        Some(points)
     }
 
     fn most_sticks(&self) -> usize {
@@ -199,6 +221,51 @@ fn meeting<R: Real>(
     let middle = midway(middle, middle_gap);
     let spread = Spread { middle, shares, radius, axes, slopes: changes };
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
+}
+
+/// Two blocks, one lane after the other: the corners of what their faces share, and the deepest point.
+#[inline(always)]
+fn block_on_block<R: Real>(
+    block: &Block<R>,
+    surface: &Block<R>,
+    origin: Vec3<R>,
+    frame: Rotation3<R>,
+) -> Points<Spatial<R>> {
+    let gap = Gap { distance: R::splat(1.0), normal: Vec3::default() };
+    let none = Bearing {
+        touch: Touch { node: Vec3::default(), gap },
+        share: R::zero(),
+        turning: Vec3::default(),
+    };
+    let mut points = Points { points: [none; MOST_POINTS], axes: [Vec3::default(); 2] };
+    for lane in 0..R::LANES {
+        let (contactor, target) = (block.lane(lane), surface.lane(lane));
+        let (at, turned) = (origin.lane(lane), frame.lane(lane));
+        let found = closest(&Hull::Block(contactor), &Hull::Block(target), at, turned);
+        let gap = Gap { distance: found.distance, normal: found.normal };
+        let deepest = &mut points.points[MOST_POINTS - 1];
+        put_gap(&mut deepest.touch.gap, lane, gap);
+        put(&mut deepest.touch.node, lane, found.point);
+        deepest.share = deepest.share.with_lane(lane, 1.0);
+        if found.distance >= 0.0 {
+            continue;
+        }
+        let shared = faces::shared(&contactor, &target, at, turned, found.normal);
+        let bears = shared.vertices.iter().flatten().any(|vertex| vertex.gap.distance < 0.0);
+        let flat = if bears { shared.flat } else { 0.0 };
+        deepest.share = deepest.share.with_lane(lane, 1.0 - flat);
+        for (bearing, vertex) in points.points.iter_mut().zip(shared.vertices) {
+            let Some(vertex) = vertex else { continue };
+            put_gap(&mut bearing.touch.gap, lane, vertex.gap);
+            put(&mut bearing.touch.node, lane, vertex.point);
+            put(&mut bearing.turning, lane, vertex.turning * flat);
+            bearing.share = bearing.share.with_lane(lane, vertex.share * flat);
+        }
+        for (axis, single) in points.axes.iter_mut().zip(shared.axes) {
+            put(axis, lane, single);
+        }
+    }
+    points
 }
 
 #[inline(always)]

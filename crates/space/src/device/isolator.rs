@@ -108,7 +108,7 @@ fn bear(
     };
     let position = builder.within(platform, below);
     let nodes = &mut builder.bodies[platform].nodes;
-    nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: TRIBUTARY }]));
+    nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: TRIBUTARY, outward: None }]));
     builder.bearings.push(ContactPair {
         contactor: platform,
         nodes: nodes.len() - 1,

@@ -252,9 +252,17 @@ fn free_body(
             surfaces.push(placed);
         }
         if let scenario::Nodes::At(list) = rule {
-            let node = |node: &scenario::ChosenNode| Node {
-                position: vector(node.at) - center,
-                tributary_length: node.tributary_length * length,
+            let node = |node: &scenario::ChosenNode| {
+                let position = vector(node.at) - center;
+                let outward = |placed: &Placed<Planar>| {
+                    let within = placed.rotation.unapply(position - placed.offset);
+                    placed.surface.outward(within).map(|outward| placed.rotation.apply(outward))
+                };
+                Node {
+                    position,
+                    tributary_length: node.tributary_length * length,
+                    outward: surfaces[first_surface..].iter().find_map(outward),
+                }
             };
             node_sets.push(Nodes::Fixed(list.iter().map(node).collect()));
         }
@@ -352,6 +360,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
     let node = |node: barrelstack_dynamics::shape::BoundaryNode| Node {
         position: placed.offset + placed.rotation.apply(node.position),
         tributary_length: node.tributary_length,
+        outward: shape.outward(node.position).map(|outward| placed.rotation.apply(outward)),
     };
     Some(Nodes::Fixed(boundary.into_iter().map(node).collect()))
 }

@@ -109,6 +109,7 @@ impl Solid {
             let at = |(position, tributary): &(Vec2, f64)| Node {
                 position: (*position - center) * length,
                 tributary_length: tributary * length,
+                outward: None,
             };
             let nodes: Vec<Node<Planar>> = nodes.iter().map(at).collect();
             let point = nodes.first()?.position;

@@ -254,7 +254,7 @@ impl Isolators {
         };
         let nodes = &mut builder.bodies[platform].nodes;
         let position = Vec2::new(end, -center) * length;
-        nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: length }]));
+        nodes.push(Nodes::Fixed(vec![Node { position, tributary_length: length, outward: None }]));
         let nodes = nodes.len() - 1;
         builder.pairs.push(ContactPair {
             contactor: platform,

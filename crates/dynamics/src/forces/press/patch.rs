@@ -3,7 +3,7 @@
 use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
 use crate::real::{Mask, Real};
-use crate::shape::{Gap, Patch, Spread, Touch};
+use crate::shape::{Bearing, Gap, Patch, Points, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
@@ -126,6 +126,81 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             let aside = *axis * spread.radius;
             self.stick(first + 1 + 2 * index, &pressure, aside, part);
             self.stick(first + 2 + 2 * index, &pressure, -aside, part);
+        }
+        self.resist_rolling(normal_force);
+    }
+
+    /// Points that bear together, whose sticks are numbered from `first` in the list of elements.
+    ///
+    /// Friction acts at the center of pressure, as far aside of it as the points lie in the mean of squares:
+    /// so it takes the moment that theirs would, and remembers its sticks whichever points bear.
+    #[inline(always)]
+    pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let meeting = self.meeting;
+        let (mut resultant, mut deepest) = (S::Vector::default(), (zero, zero));
+        // Sums of the forces, and of these times the place and its square.
+        let origin = self.frame.contactor;
+        let (mut whole, mut moment, mut square) = (zero, S::Vector::default(), zero);
+        let mut stiffness = zero;
+        let mut touching = <S::Real as Real>::Mask::default();
+        for Bearing { touch, share, turning } in points.points {
+            let Touch { node, gap } = touch;
+            self.look_ahead(node, gap);
+            self.look_at_speed(node, gap);
+            let presses = gap.distance.lt(zero) & zero.lt(share);
+            if !presses.any() {
+                continue;
+            }
+            let place = touch.companion();
+            let depth = S::Real::select(presses, -gap.distance, zero);
+            let rate = -meeting.velocity(place).dot(gap.normal);
+            let normal = self.law(depth, rate);
+            let each = S::Real::select(presses, self.elements.weights[first], zero);
+            let weight = each * share;
+            let total = normal.total * weight;
+            let damped = total - normal.elastic * weight;
+            self.totals.elastic += normal.energy * weight;
+            let lever = S::moment(place - self.frame.contactor, gap.normal);
+            self.sum.normal += Wrench { force: gap.normal * total, moment: lever * total };
+            self.sum.damped += Wrench { force: gap.normal * damped, moment: lever * damped };
+            let turned = turning * -(normal.energy * each);
+            self.sum.normal += Wrench { force: S::Vector::default(), moment: turned };
+            let apart = place - origin;
+            resultant += gap.normal * total;
+            whole += total;
+            moment += apart * total;
+            square += apart.dot(apart) * total;
+            stiffness += depth * weight;
+            let deeper = deepest.0.lt(depth);
+            deepest.0 = S::Real::select(deeper, depth, deepest.0);
+            deepest.1 = S::Real::select(deeper, rate, deepest.1);
+            touching = touching | presses;
+        }
+        if !touching.any() {
+            return;
+        }
+        let normal_force = resultant.dot(resultant).sqrt();
+        let presses = zero.lt(normal_force);
+        let normal = resultant * (one / S::Real::select(presses, normal_force, one));
+        let safe = S::Real::select(zero.lt(whole), whole, one);
+        let lean = moment * (one / safe);
+        let radius = (square / safe - lean.dot(lean)).max(zero).sqrt();
+        let (depth, rate) = deepest;
+        let pressure = Pressure {
+            touching: touching & presses,
+            center: origin + lean,
+            normal,
+            normal_force,
+            stiffness: stiffness / S::Real::select(zero.lt(depth), depth, one),
+            depth,
+            rate,
+        };
+        let part = S::Real::splat(0.25);
+        for (index, axis) in points.axes.iter().enumerate() {
+            let aside = *axis * radius;
+            self.stick(first + 2 * index, &pressure, aside, part);
+            self.stick(first + 1 + 2 * index, &pressure, -aside, part);
         }
         self.resist_rolling(normal_force);
     }

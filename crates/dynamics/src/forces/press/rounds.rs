@@ -1,0 +1,164 @@
+//! The contacts of the round pieces of a convex boundary: corners, rounded or sharp, and arcs.
+
+use super::{Group, Laws, Press};
+use crate::body::Round;
+use crate::forces::LOOKAHEAD_GAP;
+use crate::model::ContactPair;
+use crate::real::{Mask, Real};
+use crate::shape::{Facing, Nearest, Surface};
+use crate::space::{Linear, Space, Wrench};
+
+/// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
+/// where two corners lie one above the other, one contact is counted and not two or none.
+const SLACK: f64 = 1e-9;
+
+/// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
+const COMPANION: f64 = 0.01;
+
+/// Sine of the angle past the limits of a round piece up to which it faces a side: 45°.
+const FACES: f64 = 0.7;
+
+/// How far (m) outside of a core the center of a round piece may lie for the sides that it faces to count:
+/// where two bodies are flush, that of one of two corners does that nearly coincide.
+const NEARLY_INSIDE: f64 = 1e-5;
+
+/// How far past the limits of a round piece a normal may point, on the way to another round piece.
+const LIMIT: f64 = 2e-7;
+
+impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
+    /// The round pieces of a convex boundary, each with its deepest point.
+    ///
+    /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
+    /// straight; against a round piece it is one if each lies in the limits of the other, and then it
+    /// belongs to the pair whose contactor is the first of the two bodies.
+    #[inline(always)]
+    pub(super) fn rounds(
+        &mut self,
+        pair: &ContactPair,
+        rounds: &[Round<S>],
+        group: &Group,
+        surface: &S::Surface,
+    ) {
+        let zero = S::Real::zero();
+        let first = pair.contactor < pair.target;
+        let slack = S::Real::splat(if first { SLACK } else { -SLACK });
+        for element in group.first..group.end {
+            let round = &rounds[self.elements.nodes[element] as usize];
+            let center = self.frame.to_surface(round.center);
+            let nearest = self.nearest(surface, round, center, slack);
+            let (mut gap, against_round) = (nearest.gap, nearest.round);
+            gap.distance -= round.radius;
+            let foreseen =
+                S::Real::splat(if self.whole_step_depth.is_some() { LOOKAHEAD_GAP } else { 0.0 });
+            if !gap.distance.lt(foreseen).any() {
+                continue;
+            }
+            let toward = self.frame.to_contactor(-gap.normal);
+            let mut deepest = !<S::Real as Real>::Mask::default();
+            for limit in round.arc_limits.iter().flatten() {
+                let past = toward.dot(*limit);
+                deepest = deepest & if round.takes_limit { past.le(zero) } else { past.lt(zero) };
+            }
+            // A side that the piece does not face bears nothing, however near it is.
+            let [a, b] = round.limits;
+            let most = S::Real::splat(FACES);
+            let faces = toward.dot(a).le(most) & toward.dot(b).le(most);
+            let endless = !nearest.to_end.lt(S::Real::splat(f64::INFINITY));
+            let mut counts = !against_round & deepest & (faces | endless);
+            if first {
+                let limit = S::Real::splat(LIMIT);
+                let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
+                counts = counts | (against_round & within);
+            }
+            let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
+            for (outward, distance) in round.sides.iter().flatten() {
+                // The round of the other, about its center, as near to the side as to the arc.
+                let center = round.center + toward * nearest.core;
+                let rounding = nearest.core - nearest.gap.distance;
+                let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
+                counts = counts & !(against_round & nearer);
+            }
+            gap.distance = S::Real::select(counts, gap.distance, S::Real::splat(1.0));
+            self.look_ahead(center - gap.normal * round.radius, gap);
+            if gap.distance.lt(zero).any() {
+                let share = self.share(round, &nearest, slack);
+                // Both bodies feel the force midway between their boundaries, whichever of them tests.
+                let inset = round.radius - gap.distance * S::Real::splat(0.5);
+                let energy = self.node(element, center - gap.normal * inset, gap, share.value);
+                if zero.lt(share.slope).any() {
+                    let force = nearest.toward_end * (energy * share.slope);
+                    let arm = center - self.frame.contactor;
+                    self.sum.normal += Wrench { force, moment: S::moment(arm, force) };
+                }
+            }
+        }
+    }
+
+    /// What of a surface is nearest to the center (m) of a round piece; of a core that the center is inside of,
+    /// the nearest piece that it can bear on.
+    #[inline(always)]
+    fn nearest(
+        &self,
+        surface: &S::Surface,
+        round: &Round<S>,
+        center: S::Vector,
+        slack: S::Real,
+    ) -> Nearest<S> {
+        let nearest = surface.nearest(center, slack);
+        if !nearest.core.lt(S::Real::splat(NEARLY_INSIDE)).any() {
+            return nearest;
+        }
+        let limits = round.limits.map(
+            #[inline(always)]
+            |limit| self.frame.direction_to_surface(limit),
+        );
+        let facing = Facing { limits, most: FACES, slack: NEARLY_INSIDE };
+        surface.bearing(center, &facing, nearest)
+    }
+
+    /// The share with which a corner counts on a side, near whose end the corner of the other body may
+    /// itself bear on a side of this one.
+    ///
+    /// Where two faces overlap by little, both corners at the ends of the overlap are inside the other
+    /// body. They are one contact, which becomes two as they part. The corner that is nearer to the end
+    /// of the side before it, and so is the shallower of the two, counts the less the shorter its way
+    /// to that end, the other in full; so none of them begins or ends with a jump, whatever the depth.
+    /// Where two faces end together, one beyond the other by less than rounding, their corners coincide, and
+    /// that which lies further inside of the other face is the contact; of none that does, the first body's.
+    #[inline(always)]
+    fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
+        let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
+        let to_end = nearest.to_end;
+        let near_end = to_end.lt(S::Real::splat(COMPANION));
+        let mut partly = <S::Real as Real>::Mask::default();
+        if near_end.any() {
+            // From this corner to the one at the end of the side before it.
+            let apart = nearest.toward_end * to_end - nearest.gap.normal * nearest.core;
+            let apart = self.frame.to_contactor(apart);
+            let toward = self.frame.to_contactor(-nearest.gap.normal);
+            for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
+                // Of the sides of this body that which lies along the other.
+                if arc.is_none() {
+                    let along = S::Real::splat(-FACES).lt(toward.dot(*limit));
+                    partly = partly | (along & to_end.lt(apart.dot(*limit) - slack));
+                }
+            }
+            partly = partly & near_end;
+        }
+        // 3 u² − 2 u³, so that the push begins and ends at zero.
+        let u = to_end.max(zero) * S::Real::splat(1.0 / COMPANION);
+        let slope = S::Real::splat(6.0 / COMPANION) * u * (one - u);
+        Share {
+            value: S::Real::select(partly, u * u * (S::Real::splat(3.0) - u - u), one),
+            slope: S::Real::select(partly, slope, zero),
+        }
+    }
+}
+
+/// With which share of its energy a contact counts.
+struct Share<R> {
+    value: R,
+    /// How the share grows with the way (1/m) to the end of the side: what the energy falls by on that
+    /// way pushes toward the end.
+    slope: R,
+}

@@ -1,0 +1,236 @@
+//! Faces of two blocks on each other: the polygon that they share, and what each of its corners bears.
+//!
+//! As [`closest`](super::closest), all is single numbers.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::block::Block;
+use super::flat::{WIDEST, smooth};
+use crate::math;
+use crate::shape::Gap;
+use crate::space::{Linear, Rotation3, Spatial, Vec2, Vec3};
+
+/// Corners of the polygon that two rectangles share.
+pub(super) const MOST: usize = 8;
+
+/// How far (m) outside of a face a corner counts as one inside: corners of flush blocks coincide.
+const FLUSH: f64 = 1e-9;
+
+/// A corner of a shared polygon, in the frame of the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Vertex {
+    /// The point (m) of the contactor's surface.
+    pub(super) point: Vec3,
+    pub(super) gap: Gap<Spatial>,
+    /// How many springs it stands for.
+    pub(super) share: f64,
+    /// By how much that grows (1/rad) as the contactor turns.
+    pub(super) turning: Vec3,
+}
+
+/// What two blocks share.
+pub(super) struct Shared {
+    pub(super) vertices: [Option<Vertex>; MOST],
+    /// How much of the contact the polygon bears: all where a face of either block is what meets the other,
+    /// none where an edge lies across an edge.
+    pub(super) flat: f64,
+    /// Unit vectors along the face of the target.
+    pub(super) axes: [Vec3; 2],
+}
+
+/// A side of the polygon: one of the contactor's face, or of the target's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Side {
+    Contactor(usize),
+    Target(usize),
+}
+
+/// Corners, each with the side that leaves it counterclockwise.
+#[derive(Clone, Copy)]
+struct Chain {
+    corners: [(Vec2, Side); 2 * MOST],
+    count: usize,
+}
+
+impl Chain {
+    fn push(&mut self, corner: (Vec2, Side)) {
+        if self.count < self.corners.len() {
+            self.corners[self.count] = corner;
+            self.count += 1;
+        }
+    }
+
+    /// What of it lies before a line at a distance (m) along a unit normal: a side of the target.
+    fn cut(&self, normal: Vec2, distance: f64, side: usize) -> Self {
+        let mut kept = Self { count: 0, ..*self };
+        let past = |corner: Vec2| corner.x * normal.x + corner.z * normal.z - distance;
+        for i in 0..self.count {
+            let (from, along) = self.corners[i];
+            let (to, _) = self.corners[(i + 1) % self.count];
+            let (here, there) = (past(from), past(to));
+            if here <= FLUSH {
+                kept.push((from, along));
+            }
+            if (here <= FLUSH) != (there <= FLUSH) {
+                let place = (here / (here - there)).clamp(0.0, 1.0);
+                let next = if here <= FLUSH { Side::Target(side) } else { along };
+                kept.push((from + (to - from) * place, next));
+            }
+        }
+        kept
+    }
+}
+
+/// The sides of a rectangle counterclockwise, the first from the corner of least coordinates: unit vectors
+/// along them and out of them.
+const SIDES: [(Vec2, Vec2); 4] = [
+    (Vec2::new(1.0, 0.0), Vec2::new(0.0, -1.0)),
+    (Vec2::new(0.0, 1.0), Vec2::new(1.0, 0.0)),
+    (Vec2::new(-1.0, 0.0), Vec2::new(0.0, 1.0)),
+    (Vec2::new(0.0, -1.0), Vec2::new(-1.0, 0.0)),
+];
+
+/// A face of a block in the frame of the target: its middle (m), two unit vectors along it and one out of
+/// it, and half its sides (m).
+struct Face {
+    middle: Vec3,
+    along: [Vec3; 2],
+    outward: Vec3,
+    half: [f64; 2],
+}
+
+impl Face {
+    /// The face of a block that a direction of its own frame leaves, `u × v` of its axes along `up` of the
+    /// target's frame, to which `frame` leads from `at`.
+    fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
+        let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
+        let halves = [block.half.x, block.half.y, block.half.z];
+        let [x, y, z] =
+            [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+        let axes = [x, y, z];
+        let first = usize::from(steep[1] > steep[0]);
+        let axis = if steep[2] > steep[first] { 2 } else { first };
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        let away = if direction.dot(axes[axis]) < 0.0 { -1.0 } else { 1.0 };
+        let outward = frame.apply(axes[axis] * away);
+        let mut along = [frame.apply(axes[next]), frame.apply(axes[last])];
+        if along[0].cross(along[1]).dot(up.unwrap_or(outward)) < 0.0 {
+            along[1] = -along[1];
+        }
+        let middle = at + outward * halves[axis];
+        Self { middle, along, outward, half: [halves[next], halves[last]] }
+    }
+
+    /// The corner (m) at which a side begins.
+    fn corner(&self, side: usize) -> Vec3 {
+        let ends = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let (u, v) = ends[side % 4];
+        self.middle + self.along[0] * (u * self.half[0]) + self.along[1] * (v * self.half[1])
+    }
+
+    /// The unit vector along a side.
+    fn side(&self, side: usize) -> Vec3 {
+        let along = SIDES[side % 4].0;
+        self.along[0] * along.x + self.along[1] * along.z
+    }
+}
+
+/// What a block with its origin at `at` (m) shares with a target, in the frame of the target, to which
+/// `frame` leads from that of the contactor; `normal` points out of the target where they are closest.
+///
+/// The two faces that meet there overlap in a polygon as seen across that of the target. Each corner of it
+/// bears like as many springs as right angles by which the polygon turns there, so the whole always bears
+/// like four: a corner of a block on the other's face is one, and where twisted blocks cross their edges two
+/// corners take the place of one. All of it is continuous in the pose, since the turn of a convex boundary
+/// is; what is flush need not be told from what is nearly so.
+pub(super) fn shared(
+    contactor: &Block,
+    target: &Block,
+    at: Vec3,
+    frame: Rotation3,
+    normal: Vec3,
+) -> Shared {
+    let bearing = Face::of(target, normal, Vec3::default(), Rotation3::identity(), None);
+    let up = bearing.outward;
+    let resting = Face::of(contactor, frame.unapply(-normal), at, frame, Some(up));
+    let down = resting.outward;
+    let cosine = up.dot(normal).max(-down.dot(normal)).min(1.0);
+    let flat = smooth(1.0 - (1.0 - cosine * cosine) / (WIDEST * WIDEST));
+    let seen = |v: Vec3| Vec2::new(v.dot(bearing.along[0]), v.dot(bearing.along[1]));
+    let mut chain = Chain { corners: [(Vec2::default(), Side::Contactor(0)); 2 * MOST], count: 0 };
+    for side in 0..4 {
+        chain.push((seen(resting.corner(side)), Side::Contactor(side)));
+    }
+    for (side, (_, outward)) in SIDES.into_iter().enumerate() {
+        let half = if outward.x == 0.0 { bearing.half[1] } else { bearing.half[0] };
+        chain = chain.cut(outward, half, side);
+    }
+    let grown = contactor.rounding + target.rounding;
+    let direction = |side: Side| match side {
+        Side::Contactor(side) => seen(resting.side(side)),
+        Side::Target(side) => SIDES[side].0,
+    };
+    let mut vertices = [None; MOST];
+    for (i, vertex) in vertices.iter_mut().enumerate().take(chain.count) {
+        let (_, leaving) = chain.corners[i];
+        let (_, coming) = chain.corners[(i + chain.count - 1) % chain.count];
+        let found = match (coming, leaving) {
+            (Side::Contactor(_), Side::Contactor(side)) => {
+                let corner = resting.corner(side);
+                let distance = (corner - bearing.middle).dot(up);
+                Some((corner, up, distance, 1.0, Vec3::default()))
+            }
+            (Side::Target(_), Side::Target(side)) => {
+                let corner = bearing.corner(side);
+                let distance = (corner - resting.middle).dot(down);
+                Some((corner - down * distance, -down, distance, 1.0, Vec3::default()))
+            }
+            (Side::Contactor(own), Side::Target(other))
+            | (Side::Target(other), Side::Contactor(own)) => {
+                let (before, after) = (direction(coming), direction(leaving));
+                let turn = math::atan2(
+                    before.x * after.z - before.z * after.x,
+                    before.x * after.x + before.z * after.z,
+                );
+                let sense = if matches!(leaving, Side::Contactor(_)) { 1.0 } else { -1.0 };
+                crossing(&resting, own, &bearing, other).map(
+                    |(point, normal, distance, upright)| {
+                        let share = upright * turn.max(0.0) / FRAC_PI_2;
+                        (point, normal, distance, share, up * (sense * upright / FRAC_PI_2))
+                    },
+                )
+            }
+        };
+        *vertex = found.map(|(core, normal, distance, share, turning)| Vertex {
+            point: core - normal * contactor.rounding,
+            gap: Gap { distance: distance - grown, normal },
+            share,
+            turning,
+        });
+    }
+    Shared { vertices, flat, axes: bearing.along }
+}
+
+/// Where a side of the contactor's face crosses one of the target's: the point (m) of the former, the unit
+/// normal of both out of the target, their distance (m) along it, and how much that counts as one of the
+/// faces: sides that are nearly parallel pass each other beside the faces.
+fn crossing(
+    resting: &Face,
+    own: usize,
+    bearing: &Face,
+    other: usize,
+) -> Option<(Vec3, Vec3, f64, f64)> {
+    let (a, b) = (resting.side(own), bearing.side(other));
+    let apart = resting.corner(own) - bearing.corner(other);
+    let across = a.cross(b);
+    let square = across.dot(across);
+    if square < 1e-16 {
+        return None;
+    }
+    let normal = across * (1.0 / square.sqrt());
+    let normal = if normal.dot(bearing.outward) < 0.0 { -normal } else { normal };
+    let upright = smooth((normal.dot(bearing.outward) - 0.7) / 0.2);
+    let place = -apart.cross(b).dot(across) / square;
+    let point = resting.corner(own) + a * place;
+    Some((point, normal, apart.dot(normal), upright))
+}
