@@ -203,12 +203,12 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
 fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(source))
     else {
-        source.require_text()?;
+        let first_line = || format!("\"{}\" as first line", shorten(&source.text(0)));
         return Err(source.error(
             (),
             Refusal::Unrecognized,
             format!("one of {}", names()),
-            format!("\"{}\" as first line", shorten(&source.text(0))),
+            quoted::binary(source.bytes).unwrap_or_else(first_line),
             "convert the file to plain columns, one value or time and value to a line",
         ));
     };

@@ -18,3 +18,12 @@ pub(crate) fn shorten(text: &str) -> String {
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shorten(text))
 }
+
+/// States how a file that is no text begins; nothing for text with a stray byte further down.
+pub(crate) fn binary(bytes: &[u8]) -> Option<String> {
+    let head = bytes.get(..512).unwrap_or(bytes);
+    let odd = head.iter().filter(|&&b| b < 0x09 || (0x0E..0x20).contains(&b)).count();
+    let first: Vec<String> = head.iter().take(4).map(|b| format!("{b:02X}")).collect();
+    (20 * odd > head.len())
+        .then(|| format!("a binary file of an unknown format that begins with {}", first.join(" ")))
+}
