@@ -2,17 +2,22 @@
 
 mod labels;
 mod page;
+mod paired;
 mod tables;
+
+use std::ops::ControlFlow;
 
 use barrelstack_report::described;
 
-use crate::run::Run;
-use crate::scenario::Scenario;
+use crate::ensemble::CaseResult;
+use crate::run::{Run, RunFailure};
+use crate::scenario::{Scenario, View};
 use crate::summary::Summary;
-use crate::variants::{Answer, Spread};
+use crate::variants::{Advance, Answer, Shown, Spread, common_number};
 
 pub use labels::labels;
 pub use page::document;
+pub use paired::Paired;
 
 /// One run among others.
 #[derive(Clone, Debug)]
@@ -25,6 +30,32 @@ pub struct Side {
     pub summary: Summary,
     /// What all variants of the other plane say, where the scenario looks at both.
     pub other: Option<Spread>,
+    /// Whether each variant collapses, by their numbers, in each plane, the one that is shown first; none of those
+    /// without a verdict.
+    pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
+}
+
+/// Has all answers show the same variant, under the same component of their motion: the one that is most like all
+/// others of all of them.
+///
+/// Runs that show another one are run anew, before an observer, who may stop them. Answers without variants stay as they
+/// are.
+///
+/// # Errors
+/// When one of them cannot be run.
+pub fn aligned(
+    answers: Vec<(String, Answer)>,
+    observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+) -> Result<Vec<(String, Answer)>, RunFailure> {
+    let all: Vec<&Answer> = answers.iter().map(|(_, answer)| answer).collect();
+    let Some(number) = common_number(&all)? else { return Ok(answers) };
+    let align = |(name, answer): (String, Answer)| {
+        if answer.decides.summary.variant == number {
+            return Ok((name, answer));
+        }
+        Ok((name, answer.with_variant(number, observer)?))
+    };
+    answers.into_iter().map(align).collect()
 }
 
 /// Runs of answers with their names, all in one plane where all have it: the one in which the worst of them
@@ -40,13 +71,18 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     let plane = worst.and_then(|answer| answer.decides.run.assembly.view);
     let side = |(name, answer): (String, Answer)| {
         let Answer { decides, other, .. } = answer;
+        let collapsed = |shown: &Shown| {
+            let results = shown.variants.as_ref()?.results.get(1..)?;
+            Some((shown.run.assembly.view, results.iter().map(CaseResult::collapsed).collect()))
+        };
         let (shown, other) = match other {
             Some(other) if other.run.assembly.view == plane => (other, Some(decides)),
             other => (decides, other),
         };
+        let collapsed = std::iter::once(&shown).chain(&other).filter_map(collapsed).collect();
         let summary = Summary { other_plane: None, ..shown.summary };
         let other = other.and_then(|other| other.summary.ensemble);
-        Side { name, run: shown.run, summary, other }
+        Side { name, run: shown.run, summary, other, collapsed }
     };
     answers.into_iter().map(side).collect()
 }
@@ -105,6 +141,8 @@ described! {
         pub schema: &'static str ["comparison/1"] = "comparison/1",
         /// The runs, in order.
         pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
+        /// The first run beside each other one, variant by variant, in the plane that is shown and then in the other.
+        pub paired: Vec<Paired> = pairs(sides),
         /// The inputs that differ.
         pub differences: Vec<Difference> = differences(sides.iter().map(|side| &*side.run.stated)),
     }
@@ -151,6 +189,12 @@ pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec
     }
     list.retain(|one| one.values.iter().any(|value| *value != one.values[0]));
     list
+}
+
+/// The first run beside each other one, in every plane.
+fn pairs(sides: &[Side]) -> Vec<Paired> {
+    let Some((first, others)) = sides.split_first() else { return Vec::new() };
+    others.iter().flat_map(|other| Paired::of(first, other)).collect()
 }
 
 /// The letter of a run: A for the first.

@@ -17,7 +17,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 fn side(name: &str, scenario: &Scenario) -> Side {
     let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
-    Side { name: name.into(), run, summary, other: None }
+    Side { name: name.into(), run, summary, other: None, collapsed: Vec::new() }
 }
 
 /// The rows of the table under a heading, as text.

@@ -35,7 +35,7 @@ fn alone(base: &[&str], tried: &Tried) -> (u32, u32) {
     let changes: Vec<&str> =
         base.iter().copied().chain(tried.changes.iter().map(String::as_str)).collect();
     let spread = answered(&scenario(&changes)).decides.summary.ensemble.unwrap();
-    (spread.collapsed + spread.broken + spread.cannot_stand, spread.run())
+    (spread.collapsed + spread.broken, spread.run())
 }
 
 #[test]
@@ -49,7 +49,15 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
             let (failed, run) = alone(base, one);
             assert_eq!((failed, run), (one.failed, one.variants), "{one:?}");
             assert!(one.suffices && run == 8 && failed == 0, "{one:?}");
+            // Of two levels and five pretensions, in one plane, at 1 − 0.05/7: 1 − (0.025/7)^(1/8).
+            assert_eq!((one.share, found.candidates), (Some(0.0), 7));
+            let [low, high] = one.interval.unwrap();
+            assert!(low == 0.0 && (high - 0.505_6).abs() < 1e-3, "{high}");
             kinds.push(one.kind);
+        }
+        // A rejected change has counts of its first variants and no share.
+        for one in found.tried.iter().filter(|one| one.variants < 8) {
+            assert!(!one.suffices && one.share.is_none() && one.interval.is_none(), "{one:?}");
         }
         // What does not suffice was not dropped for less than it may fail.
         for one in found.tried.iter().filter(|one| !one.suffices && one.variants == 8) {
@@ -100,14 +108,23 @@ fn sentences_say_what_suffices_and_what_does_not() {
         suffices: failed < 4,
         variants: 64,
         failed,
-        interval: [0.0, 1.0],
+        share: Some(f64::from(failed) / 64.0),
+        interval: Some([0.0, 0.09 + 0.03 * f64::from(failed)]),
     };
     let height = |failed| tried("height", 3, None, failed);
     let straps = |failed| tried("straps", 5, Some(4e3), failed);
     let said = |height: Option<Tried>, straps: Option<Tried>, all: &[Tried]| {
         let (tried, comparison) = (all.to_vec(), None);
-        Remedy { required_share: 0.95, height, straps, tried, complete: true, comparison }
-            .sentence()
+        Remedy {
+            required_share: 0.95,
+            height,
+            straps,
+            candidates: 9,
+            tried,
+            complete: true,
+            comparison,
+        }
+        .sentence()
     };
     let both = [height(1), straps(1)];
     for (height, straps, all, words) in [
@@ -115,34 +132,38 @@ fn sentences_say_what_suffices_and_what_does_not() {
             Some(height(1)),
             Some(straps(1)),
             &both[..],
-            "Three levels, or five levels strapped together at 4 kN, would have stood in 63 of 64 variants.",
+            "Three levels, or five levels strapped together at 4 kN, would have stood in 63 of 64 variants. \
+             At most 12 % of either would fall (95 % confidence, the choice among 9 changes counted).",
         ),
         (
             Some(height(1)),
             Some(straps(0)),
             &both,
             "Three levels would have stood in 63 of 64 variants, five levels strapped together at 4 kN in all 64 \
-             variants.",
+             variants. At most 12 % of the former and 9 % of the latter would fall (95 % confidence, the choice among 9 \
+             changes counted).",
         ),
         (
             Some(height(0)),
             None,
             &both,
-            "Three levels would have stood in all 64 variants; straps tightened to at most 5 kN would not suffice.",
+            "Three levels would have stood in all 64 variants; straps tightened to 4 kN would not suffice. At most 9 % of \
+             such stacks would fall (95 % confidence, the choice among 9 changes counted).",
         ),
         (
             None,
             Some(straps(0)),
             &both,
             "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without them \
-             would not suffice.",
+             would not suffice. At most 9 % of such stacks would fall (95 % confidence, the choice among 9 changes \
+             counted).",
         ),
         (
             None,
             None,
             &both,
             "Nothing that was tried would have kept it up: neither fewer levels, down to one, nor straps tightened \
-             to at most 5 kN.",
+             to 4 kN.",
         ),
     ] {
         assert_eq!(said(height, straps, all), words);

@@ -192,6 +192,10 @@ impl Ranking {
             }
             answers.push((name.to_owned(), answer));
         }
+        let answers = compare::aligned(answers, tell)?;
+        if answers.iter().any(|(_, answer)| answer.decides.run.interrupted) {
+            return Ok(false);
+        }
         let compared = compare::document(&compare::sides(answers));
         let players = compared.blocks.into_iter().filter(|one| matches!(one, Block::Players(_)));
         self.document = page::document(self, players.collect());

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use barrelstack::RunFailure;
-use barrelstack::compare::{Comparison, check, document, labels, sides};
+use barrelstack::compare::{Comparison, aligned, check, document, labels, sides};
 use barrelstack::variants::{self, Asked};
 use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::heights::{
@@ -54,6 +54,8 @@ pub(crate) fn compare(
                 break;
             }
         }
+        let answers =
+            aligned(answers, &mut |now| told(hear, now)).map_err(|failure| (failure, 0))?;
         Ok(sides(answers))
     })?;
     let compared =

@@ -6,11 +6,11 @@ use barrelstack_report::{
     Verdict, capital, listed, significant,
 };
 
-use super::{Difference, Side, differences, letter, tables};
+use super::{Difference, Paired, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
 use crate::report;
-use crate::scenario::title;
+use crate::scenario::{View, title};
 use crate::variants::{Spread, words};
 
 /// The comparison as a document, free of any output format.
@@ -81,8 +81,109 @@ fn stands(side: &Side) -> bool {
     }
 }
 
+/// The cause of a difference where the first run has straps and the other has none.
+const WITHOUT: &str = "Leaving straps off";
+
+/// The effect on the share that collapses, variant by variant; none where one of them has no variants.
+fn effect(sides: &[Side]) -> Option<String> {
+    let (first, others) = sides.split_first()?;
+    let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
+    if pairs.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let [second] = others else {
+        // In the plane that is shown.
+        let of = pairs.iter().map(|planes| &planes[0]);
+        let all = of.clone().map(Paired::pairs).min()?;
+        if of.clone().any(|pair| pair.pairs() != all || pair.without_verdict > 0) {
+            return None;
+        }
+        let base = format!("{} of {all} variants with {}", pairs[0][0].collapsed()[0], first.name);
+        let rest = of
+            .zip(others)
+            .map(|(pair, other)| format!("{} with {}", pair.collapsed()[1], other.name));
+        let place = place(first, &pairs[0][0]);
+        return Some(format!("Collapse{place}: {}.", listed(std::iter::once(base).chain(rest))));
+    };
+    let straps = |side: &Side| side.run.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
+    let levels = |side: &Side| side.run.stated.stack().map(|stack| stack.levels);
+    let cause = match (levels(first) == levels(second), straps(first), straps(second)) {
+        (true, false, true) => "Straps".to_owned(),
+        (true, true, false) => WITHOUT.to_owned(),
+        _ => format!("{} in place of {}", capital(&second.name), first.name),
+    };
+    let clause = |pair: &Paired| {
+        let ([from, to], of) = (pair.collapsed(), pair.pairs());
+        let place = place(first, pair);
+        let unproven = match (from == to, pair.is_clear()) {
+            (false, false) => ", which so few variants do not prove",
+            _ => "",
+        };
+        let verb = match (&*cause, from == to, to < from) {
+            ("Straps", true, _) => " leave",
+            ("Straps", false, true) => " cut",
+            ("Straps", false, false) => " raise",
+            (WITHOUT, true, _) => " leaves",
+            (WITHOUT, false, true) => " cuts",
+            (WITHOUT, false, false) => " raises",
+            _ => ":",
+        };
+        if from == to {
+            format!("{verb} collapse{place} at {to} of {of} variants")
+        } else {
+            format!("{verb} collapse{place} from {from} to {to} of {of} variants{unproven}")
+        }
+    };
+    // The other plane is named where something collapses in it.
+    let told =
+        pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
+    let clauses: Vec<String> = told.map(|(_, pair)| clause(pair)).collect();
+    Some(format!("{cause}{}.", clauses.join(";")))
+}
+
+/// The plane of a pair, where the stacks are looked at in both: " across the barrels".
+fn place(side: &Side, pair: &Paired) -> String {
+    let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
+    let both = view.filter(|_| side.other.is_some());
+    both.map_or_else(String::new, |view| format!(" {}", view.words()))
+}
+
+/// The differences behind the headline, with their intervals.
+fn differences_in(sides: &[Side]) -> Vec<String> {
+    let Some((first, others)) = sides.split_first() else { return Vec::new() };
+    let of = |(at, other): (usize, &Side)| {
+        let second = letter(at + 1);
+        let sentence = move |pair: &Paired| {
+            let points = |share: f64| format!("{:.0}", 100.0 * share);
+            let [low, high] = pair.interval;
+            let lost = match pair.without_verdict {
+                0 => String::new(),
+                some => format!(" Of {some} more variants one of the two has no verdict."),
+            };
+            let clear = if pair.is_clear() { "" } else { ", so they do not prove a difference" };
+            format!(
+                "Of the same {} variants under the same motions{} {} collapse in both, {} with A only and {} with \
+                 {second} only: the share of {second} is {} points lower (95 % interval {} to {}{clear}).{lost}",
+                pair.pairs(),
+                place(first, pair),
+                pair.both,
+                pair.only_first,
+                pair.only_second,
+                points(pair.reduction),
+                points(low),
+                points(high),
+            )
+        };
+        Paired::of(first, other).iter().map(sentence).collect::<Vec<_>>()
+    };
+    others.iter().enumerate().flat_map(of).collect()
+}
+
 /// What the difference comes to, in one sentence.
 fn headline(sides: &[Side]) -> String {
+    if let Some(effect) = effect(sides) {
+        return by_themselves(sides) + &effect;
+    }
     let judged = |side: &Side| {
         share(side).is_some()
             || matches!(side.run.outcome, Outcome::Stable | Outcome::Collapse { .. })
@@ -118,12 +219,30 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
+/// Those whose variants fall under their own weight, before they are shaken.
+fn by_themselves(sides: &[Side]) -> String {
+    let fallen = |side: &Side| {
+        let spreads = side.summary.ensemble.iter().chain(&side.other);
+        let worst = spreads.max_by_key(|spread| spread.cannot_stand)?;
+        let (some, all) = (worst.cannot_stand, worst.run());
+        (some > 0).then(|| format!("{some} of {all} variants with {}", side.name))
+    };
+    let all: Vec<String> = sides.iter().filter_map(fallen).collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    capital(&format!("{} fall before being shaken, under their own weight. ", listed(all)))
+}
+
 /// What became of one of them, with the interval of its share, and how far what stands still sways.
 fn told(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
-    let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
+    let Some(spread) = &side.summary.ensemble else { return format!("{name}: {}.", fate(side)) };
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
+    if spread.share.is_none() {
+        return format!("{name}: {}.", fate(side));
+    }
     let told = format!(
         "{name}: falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
     );
@@ -144,9 +263,7 @@ fn number(count: usize) -> String {
 fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let mut sentences: Vec<String> =
         sides.iter().enumerate().map(|(at, side)| told(at, side)).collect();
-    if sides.iter().any(|side| side.other.is_some()) {
-        sentences.push("Of both planes the worse one counts.".to_owned());
-    }
+    sentences.extend(differences_in(sides));
     let mut fine = Vec::new();
     fine.push(match differing {
         [one] => format!(
@@ -168,7 +285,20 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
         ));
     }
     fine.push(if sides.iter().all(|side| side.summary.ensemble.is_some()) {
-        "The run of each that is shown is the most typical of its variants.".into()
+        {
+            let shown = sides[0].summary.variant;
+            let one = sides.iter().all(|side| side.summary.variant == shown);
+            match shown {
+                0 if one => "Each is shown as it is stated.".to_owned(),
+                _ if one => format!(
+                    "Each is shown in variant {shown}, the most typical of all of them together{}.",
+                    if one_motion(sides) { ", under the same component of the motion" } else { "" }
+                ),
+                _ => {
+                    "The run of each that is shown is the most typical of its variants.".to_owned()
+                }
+            }
+        }
     } else {
         "Each is one run: small changes of friction or gaps can change what falls when, so judge a \
          difference by many runs."
@@ -206,7 +336,7 @@ fn players(sides: &[Side]) -> Players {
 /// Whether one motion shakes all; a length scale of the run stretches its time.
 fn one_motion(sides: &[Side]) -> bool {
     let asked = |side: &Side| {
-        let scenario = &side.run.stated;
+        let scenario = &side.run.scenario;
         (scenario.motion.clone(), scenario.run.similitude)
     };
     sides.iter().all(|side| asked(side) == asked(&sides[0]))

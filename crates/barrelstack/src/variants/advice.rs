@@ -1,8 +1,8 @@
 //! What would have kept a stack up, in a sentence and as a table.
 
-use barrelstack_report::{Cell, Table, capital};
+use barrelstack_report::{Cell, Table, capital, listed};
 
-use super::remedy::{PRETENSIONS, Remedy, Tried};
+use super::remedy::{Remedy, Tried};
 use super::words::percent;
 use crate::scenario::title::{counted, number};
 
@@ -10,7 +10,7 @@ impl Remedy {
     /// What would have kept the stack up, or that nothing of what was tried would.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
-        let most = 1e-3 * PRETENSIONS[PRETENSIONS.len() - 1];
+        let straps = self.pretensions();
         let sentence = match (&self.height, &self.straps) {
             (Some(height), Some(straps)) if share(height) == share(straps) => {
                 format!(
@@ -28,7 +28,7 @@ impl Remedy {
                 share(straps)
             ),
             (Some(height), None) if self.complete && any("straps") => format!(
-                "{} would have stood in {}; straps tightened to at most {most} kN would not suffice",
+                "{} would have stood in {}; straps tightened to {straps} would not suffice",
                 name(height),
                 share(height)
             ),
@@ -47,25 +47,57 @@ impl Remedy {
             (None, None) => {
                 let tried = match (any("height"), any("straps")) {
                     (true, true) => format!(
-                        "neither fewer levels, down to one, nor straps tightened to at most {most} kN"
+                        "neither fewer levels, down to one, nor straps tightened to {straps}"
                     ),
                     (true, false) => "fewer levels, down to one".to_owned(),
-                    (false, _) => format!("straps tightened to at most {most} kN"),
+                    (false, _) => format!("straps tightened to {straps}"),
                 };
                 return format!("Nothing that was tried would have kept it up: {tried}.");
             }
         };
         let stopped = if self.complete { "" } else { " The search for more was stopped." };
-        format!("{}.{stopped}", capital(&sentence))
+        format!("{}.{}{stopped}", capital(&sentence), self.confidence())
+    }
+
+    /// How sure what suffices is, the choice among all changes counted.
+    fn confidence(&self) -> String {
+        let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
+        let most = match (&self.height, &self.straps) {
+            (Some(height), Some(straps)) => match (at_most(height), at_most(straps)) {
+                (Some(height), Some(straps)) if height == straps => format!("{height} of either"),
+                (Some(height), Some(straps)) => {
+                    format!("{height} of the former and {straps} of the latter")
+                }
+                _ => return String::new(),
+            },
+            (Some(one), None) | (None, Some(one)) => match at_most(one) {
+                Some(most) => format!("{most} of such stacks"),
+                None => return String::new(),
+            },
+            (None, None) => return String::new(),
+        };
+        let choice = match self.candidates {
+            0 | 1 => String::new(),
+            many => format!(", the choice among {many} changes counted"),
+        };
+        format!(" At most {most} would fall (95 % confidence{choice}).")
+    }
+
+    /// Pretensions of the straps that were tried: "3, 4 and 5 kN".
+    fn pretensions(&self) -> String {
+        let tried = self.tried.iter().filter_map(|one| one.pretension);
+        format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
     }
 
     /// Every change that was tried.
     pub(crate) fn table(&self) -> Table {
         let caption = format!(
-            "Changes that were tried, each in variants of its own; one suffices when at least {:.0} % of \
-             all stand in every plane, and is dropped as soon as too many have failed. Straps do not \
-             slip on what they tie.",
-            100.0 * self.required_share
+            "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all stand \
+             in every plane. One that more fail than may is dropped after the block of variants by which they have, so \
+             its share is not known. Intervals hold together, with 95 %, for all {} changes that may be tried, in every \
+             plane. Straps do not slip on what they tie.",
+            100.0 * self.required_share,
+            self.candidates
         );
         let verdict = |one: &Tried| match (one.suffices, self.complete) {
             (true, _) => "yes",
@@ -77,10 +109,11 @@ impl Remedy {
             &self.tried,
             &[
                 ("change", "", &|one| Cell::text(name(one))),
-                ("variants run", "", &|one| Cell::Measured(f64::from(one.variants), 0)),
-                ("of these fall", "", &|one| Cell::Measured(f64::from(one.failed), 0)),
-                ("share that falls, 95 % interval", "", &|one| {
-                    Cell::text(one.interval.map(percent).join(" to "))
+                ("fall", "", &|one| Cell::text(falls(one))),
+                ("share that falls, interval", "", &|one| {
+                    Cell::maybe(one.share.zip(one.interval).map(|(share, interval)| {
+                        format!("{} ({})", percent(share), interval.map(percent).join(" to "))
+                    }))
                 }),
                 ("suffices", "", &|one| Cell::text(verdict(one))),
             ],
@@ -99,6 +132,16 @@ pub(super) fn name(tried: &Tried) -> String {
         Some(pretension) => {
             format!("{} levels strapped together at {} kN", number(tried.levels), 1e-3 * pretension)
         }
+    }
+}
+
+/// How many fall: "1 of 64 variants", "at least 4 of the first 8 variants".
+fn falls(tried: &Tried) -> String {
+    let Tried { variants, failed, share, suffices, .. } = tried;
+    match share {
+        Some(_) => format!("{failed} of {variants} variants"),
+        None if *suffices || *variants == 0 => "not known".to_owned(),
+        None => format!("at least {failed} of the first {variants} variants"),
     }
 }
 

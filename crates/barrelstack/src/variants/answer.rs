@@ -3,13 +3,15 @@
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
+use super::typical::typical;
 use super::{Plane, Spread, Variants, planes, run, together};
 use crate::check::check;
 use crate::ensemble::CaseResult;
+use crate::ground::GroundError;
 use crate::pool;
 use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, View};
 use crate::summary::Summary;
 
 /// How far the work is.
@@ -53,6 +55,59 @@ impl Answer {
     pub fn headline(&self) -> String {
         headline(&self.decides.run, &self.decides.summary)
     }
+}
+
+impl Answer {
+    /// The planes, the one that decides first.
+    fn shown(&self) -> impl Iterator<Item = &Shown> {
+        std::iter::once(&self.decides).chain(&self.other)
+    }
+
+    /// The same with another variant shown, which is run before an observer.
+    ///
+    /// # Errors
+    /// When it cannot be run.
+    pub(crate) fn with_variant(
+        &self,
+        number: u32,
+        observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+    ) -> Result<Self, RunFailure> {
+        let of = |view: Option<View>| {
+            let shown = self.shown().find(|shown| shown.run.assembly.view == view)?;
+            Some(shown.variants.as_ref()?.results.clone())
+        };
+        let results = planes(&self.scenario)?.iter().map(|plane| of(plane.view())).collect();
+        answered(&self.scenario, Asked::Number(number), results, observer)
+    }
+}
+
+/// The variant that is most like all others of all answers in all planes, of those that the same component of the motion
+/// shakes in all of them; none where one of them has no variants.
+pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundError> {
+    let results = |shown: &'_ Shown| Some(shown.variants.as_ref()?.results.clone());
+    let all: Option<Vec<Vec<CaseResult>>> =
+        answers.iter().flat_map(|answer| answer.shown()).map(results).collect();
+    let Some(all) = all else { return Ok(None) };
+    let mut found: Vec<Vec<Plane>> = Vec::new();
+    for answer in answers {
+        found.push(planes(&answer.scenario)?);
+    }
+    // The component by number and view, of the scenarios that look at the plane.
+    let components = |number: u32, view: Option<View>| {
+        let planes = found.iter().flatten().filter(move |plane| plane.view() == view);
+        planes.map(move |plane| plane.component(number).map(str::to_owned))
+    };
+    let same = |number: u32| {
+        [Some(View::Transverse), Some(View::Longitudinal), None].iter().all(|view| {
+            let mut all = components(number, *view);
+            all.next().is_none_or(|first| all.all(|other| other == first))
+        })
+    };
+    // Where the components themselves are compared no number is the same for all.
+    let differ = !same(0);
+    let allowed = |at: usize| differ || u32::try_from(at).is_ok_and(same);
+    let all: Vec<&[CaseResult]> = all.iter().map(Vec::as_slice).collect();
+    Ok(Some(typical(&all, &allowed)))
 }
 
 /// One plane of an answer.

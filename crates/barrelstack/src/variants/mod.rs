@@ -35,8 +35,8 @@ use crate::ensemble::{CaseResult, Ensemble, Prepared};
 use crate::ground::{Ground, GroundError, from_disk, other_component};
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, View};
 
-pub(crate) use answer::run_together;
 pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
+pub(crate) use answer::{common_number, run_together};
 pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Tried, remedy};
 pub use spread::{LEVEL, Range, Spread};
 
@@ -102,10 +102,22 @@ impl Plane {
             return self.scenario.clone();
         }
         let mut variant = draw::variant(&self.scenario, number);
-        if let Some(motion) = self.exchanged.as_ref().filter(|_| self.is_exchanged(number)) {
-            variant.motion = motion.clone();
-        }
+        variant.motion = self.motion(number).clone();
         variant
+    }
+
+    /// The motion of a variant.
+    fn motion(&self, number: u32) -> &MotionSpec {
+        let exchanged = self.exchanged.as_ref().filter(|_| self.is_exchanged(number));
+        exchanged.unwrap_or(&self.scenario.motion)
+    }
+
+    /// The horizontal component of the record that shakes a variant; none for the first, and for what is no record.
+    fn component(&self, number: u32) -> Option<&str> {
+        match &self.motion(number).source {
+            MotionSource::Record(record) => record.component.as_deref(),
+            MotionSource::Sine(_) | MotionSource::Pulse(_) | MotionSource::None => None,
+        }
     }
 
     /// Whether a variant is of the second half, whose components are exchanged.
@@ -203,7 +215,7 @@ pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>
         found.push(Variants { view: plane.view(), results, spread });
     }
     let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();
-    let typical = typical::typical(&all);
+    let typical = typical::typical(&all, &|_| true);
     let number = |place: u32| numbers.get(place as usize).copied().unwrap_or(place);
     for Variants { spread, .. } in &mut found {
         spread.typical = number(typical);

@@ -1,17 +1,18 @@
 //! What would have kept a stack up that falls: the smallest change among fewer levels and straps.
 //!
-//! A change suffices when enough of its variants stand in every plane, of at least as many as the verdict
-//! has.
-//! Nothing is guessed: one is dropped only when more have failed than may, so a few variants decide most of
-//! them, and one that is said to suffice has run all.
+//! A change suffices when enough of its variants stand in every plane, of as many as the verdict has; these are the
+//! same variants by their numbers.
+//! Which are tried, and what their counts say, is in `remedy/search.rs`; here they are run.
 
-use std::ops::ControlFlow;
+mod search;
+
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
-use barrelstack_fragility::wilson;
 use barrelstack_report::described;
 
-use super::spread::{LEVEL, collapsed, judged};
+use self::search::{Counts, Failed, Plan};
+use super::spread::{collapsed, judged};
 use super::{Answer, Plane, planes};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
@@ -20,18 +21,14 @@ use crate::pool;
 use crate::run::CUT;
 use crate::scenario::{Scenario, Scene, Setting, Source};
 
-/// Share (%) of variants that must stand in every plane.
-pub const ENOUGH: u32 = 95;
+pub use self::search::ENOUGH;
 
 /// Pretensions (N) of straps that are tried; by hand a ratchet for webbing of 50 mm tightens to no more than
 /// 5 kN, an assumption: some 500 daN stand on the labels of long-handled ratchets (their STF, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
-/// Variants of a change that are run first: those of one bundle of lanes.
-const SCOUTS: u32 = 8;
-
-/// Variants that a thread takes at once.
-const BATCH: usize = 16;
+/// Variants that a thread takes at once: those of one bundle of lanes.
+const BATCH: usize = 8;
 
 described! {
     /// What would have kept the stack up, as far as it was looked for.
@@ -43,7 +40,9 @@ described! {
         pub height: Option<Tried>,
         /// The loosest straps that suffice; null where none of those tried does.
         pub straps: Option<Tried>,
-        /// Every change that was tried, in this order.
+        /// Changes that may have been tried, each in every plane: intervals hold for all of them together.
+        pub candidates: u32,
+        /// Every change that was tried, changes of height first.
         pub tried: Vec<Tried>,
         /// Whether all was tried; false where it was stopped.
         pub complete: bool,
@@ -65,23 +64,26 @@ described! {
         pub changes: Vec<String>,
         /// Whether enough variants stand.
         pub suffices: bool,
-        /// Variants that were run, in the plane in which most fail; no further ones were run once too many had
-        /// failed.
+        /// Variants that were counted: all of them, or the first so many by their numbers where these have rejected it.
         pub variants: u32,
-        /// Those of them that collapse, or have no verdict.
+        /// Those of them that collapse, or have no verdict, in the plane in which most do.
         pub failed: u32,
-        /// Wilson's interval of the share that fails, 95 %.
-        pub interval: [f64; 2] as "1",
+        /// The share that fails; null where the change was rejected, or the search stopped, before all variants were
+        /// counted.
+        pub share: Option<f64> as "1",
+        /// Interval of that share which holds for all changes and planes of the search together with 95 % (Clopper and
+        /// Pearson, Bonferroni); null as the share.
+        pub interval: Option<[f64; 2]> as "1",
     }
 }
 
-/// Who hears from several threads how many runs of the change at hand are done, and may stop it.
+/// Progress callback: called from several threads with the count of finished runs of the change at hand; may cancel.
 type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Looks for the smallest change of height, and of straps, that would have kept a stack up which falls in more
 /// variants than may fall.
 ///
-/// An observer hears from several threads how many runs of the change at hand are done, and may stop it.
+/// `observer` is called from several threads with the count of finished runs of the change at hand, and may cancel.
 ///
 /// There is none to look for where the stack stands, has no variants, or its runs end before the motion.
 ///
@@ -103,8 +105,7 @@ pub fn remedy(
         return Ok(None);
     }
     let mut found = Remedy { required_share: f64::from(ENOUGH) / 100.0, ..Remedy::default() };
-    let searched = search(scenario, observer, &mut found)?;
-    found.complete = searched.is_continue();
+    look(scenario, observer, &mut found)?;
     Ok(Some(found))
 }
 
@@ -113,69 +114,48 @@ fn enough(share: f64) -> bool {
     100.0 * share <= f64::from(100 - ENOUGH)
 }
 
-fn search(
+/// Tries the changes of a scenario.
+fn look(
     scenario: &Scenario,
     observer: Observer<'_>,
     found: &mut Remedy,
-) -> Result<ControlFlow<()>, GroundError> {
-    let Some(stack) = scenario.stack() else { return Ok(ControlFlow::Continue(())) };
-    for levels in (1..stack.levels).rev() {
-        let Some(mut trial) = lower(scenario, levels).map(Trial::new).transpose()? else {
-            continue;
-        };
-        let ran = trial.run(u32::MAX, observer);
-        found.tried.push(trial.told());
-        if ran.is_break() {
-            return Ok(ran);
-        }
-        if trial.suffices() {
-            found.height = Some(trial.told());
-            break;
-        }
-    }
-    let strapped: Vec<Change> =
-        PRETENSIONS.iter().filter_map(|pretension| strapped(scenario, *pretension)).collect();
-    let mut trials: Vec<Option<Trial>> = strapped.iter().map(|_| None).collect();
-    let ran = loosest(&strapped, &mut trials, observer)?;
-    found.tried.extend(trials.iter().flatten().map(Trial::told));
-    found.straps = trials.iter().flatten().find(|trial| trial.suffices()).map(Trial::told);
-    Ok(ran)
-}
-
-/// Tries straps from loose to tight until some suffice: from the loosest on whose first variants do not rule it
-/// out, which is found by halving.
-fn loosest(
-    changes: &[Change],
-    trials: &mut [Option<Trial>],
-    observer: Observer<'_>,
-) -> Result<ControlFlow<()>, GroundError> {
-    let mut trial = |at: usize, until: u32| -> Result<(ControlFlow<()>, bool, bool), GroundError> {
-        let trial = match &mut trials[at] {
-            Some(trial) => trial,
-            none => none.insert(Trial::new(changes[at].clone())?),
-        };
-        Ok((trial.run(until, observer), trial.failed(), trial.suffices()))
+) -> Result<(), GroundError> {
+    let Some(stack) = scenario.stack() else { return Ok(()) };
+    let mut changes: Vec<Change> =
+        (1..stack.levels).rev().filter_map(|levels| lower(scenario, levels)).collect();
+    let heights = changes.len();
+    changes.extend(PRETENSIONS.iter().filter_map(|pretension| strapped(scenario, *pretension)));
+    let planes = planes(scenario)?;
+    let plan = Plan {
+        heights,
+        straps: changes.len() - heights,
+        variants: planes.iter().map(Plane::count).max().unwrap_or(0),
+        planes: planes.len(),
     };
-    let (mut from, mut to) = (0, changes.len());
-    while from < to {
-        let middle = usize::midpoint(from, to);
-        let (ran, failed, _) = trial(middle, SCOUTS)?;
-        if ran.is_break() {
-            return Ok(ran);
-        }
-        if failed { from = middle + 1 } else { to = middle }
-    }
-    for at in from..changes.len() {
-        let (ran, _, suffices) = trial(at, u32::MAX)?;
-        if ran.is_break() || suffices {
-            return Ok(ran);
-        }
-    }
-    Ok(ControlFlow::Continue(()))
+    let mut trials: Vec<Option<Trial>> = changes.iter().map(|_| None).collect();
+    let mut run = |change: usize, block: Range<u32>| {
+        let trial = match &mut trials[change] {
+            Some(trial) => trial,
+            none => none.insert(Trial::new(&changes[change])?),
+        };
+        Ok(trial.run(block, observer))
+    };
+    let search::Found { counts, complete } = search::search::<GroundError>(&plan, &mut run)?;
+    let told: Vec<Option<Tried>> = changes
+        .iter()
+        .zip(&counts)
+        .map(|(change, counts)| Some(change.told(counts.as_ref()?, &plan)))
+        .collect();
+    let (lower, strapped) = told.split_at(heights);
+    let first = |of: &[Option<Tried>]| of.iter().flatten().find(|tried| tried.suffices).cloned();
+    (found.height, found.straps) = (first(lower), first(strapped));
+    found.tried = told.into_iter().flatten().collect();
+    found.candidates = u32::try_from(plan.changes()).unwrap_or(u32::MAX);
+    found.complete = complete;
+    Ok(())
 }
 
 /// A change, and the scenario that it makes.
-#[derive(Clone)]
 struct Change {
     kind: &'static str,
     levels: u32,
@@ -238,133 +218,80 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     own.filter_map(field).collect()
 }
 
-/// A change that is being tried.
-struct Trial {
-    change: Change,
-    planes: Vec<Plane>,
-    /// The stack and its variants in every plane, ready to run.
-    cases: Vec<Vec<Prepared>>,
-    /// Variants of every plane that were run, and those that failed.
-    counts: Vec<[AtomicU32; 2]>,
-    /// Variants that are behind it.
-    until: u32,
-}
-
-impl Trial {
-    fn new(mut change: Change) -> Result<Self, GroundError> {
-        // What follows a collapse says nothing about whether there is one.
-        change.scenario.run.stop_after_collapse = Some(0.0);
-        let planes = planes(&change.scenario)?;
-        let cases = planes
-            .iter()
-            .map(|plane| plane.prepared(&plane.numbers()))
-            .collect::<Result<_, _>>()?;
-        let counts = planes.iter().map(|_| [AtomicU32::new(0), AtomicU32::new(0)]).collect();
-        Ok(Self { change, planes, cases, counts, until: 0 })
-    }
-
-    /// Variants in a plane.
-    fn count(&self) -> u32 {
-        self.planes.iter().map(Plane::count).max().unwrap_or(0)
-    }
-
-    /// Whether so many failed in a plane that no others can make up for them.
-    fn failed(&self) -> bool {
-        self.counts
-            .iter()
-            .any(|[_, failed]| !may_fail(failed.load(Ordering::Relaxed), self.count()))
-    }
-
-    fn ran(&self) -> u32 {
-        self.counts.iter().map(|[ran, _]| ran.load(Ordering::Relaxed)).min().unwrap_or(0)
-    }
-
-    fn suffices(&self) -> bool {
-        self.count() > 0 && self.ran() == self.count() && !self.failed()
-    }
-
-    /// Runs variants until so many are behind it, or too many have failed.
-    fn run(&mut self, until: u32, observer: Observer<'_>) -> ControlFlow<()> {
-        let count = self.count();
-        let order = order(count);
-        let stages = [SCOUTS.min(count), count].map(|stage| stage.min(until.max(self.until)));
-        for stage in stages {
-            let numbers = order.get(self.until as usize..stage as usize).unwrap_or_default();
-            if numbers.is_empty() || self.failed() {
-                continue;
-            }
-            self.until = stage;
-            self.stage(numbers, observer)?;
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn stage(&self, numbers: &[u32], observer: Observer<'_>) -> ControlFlow<()> {
-        let done = AtomicUsize::new(
-            self.counts.iter().map(|[ran, _]| ran.load(Ordering::Relaxed) as usize).sum(),
-        );
-        let stopped = AtomicBool::new(false);
-        let asked = || {
-            if observer(done.load(Ordering::Relaxed)).is_break() {
-                stopped.store(true, Ordering::Relaxed);
-            }
-            stopped.load(Ordering::Relaxed) || self.failed()
-        };
-        let batches: Vec<(usize, &[u32])> = numbers
-            .chunks(BATCH)
-            .flat_map(|numbers| (0..self.planes.len()).map(move |plane| (plane, numbers)))
-            .collect();
-        let work = |(plane, numbers): &(usize, &[u32])| {
-            if asked() {
-                return;
-            }
-            let cases: Vec<Prepared> =
-                numbers.iter().map(|number| self.cases[*plane][*number as usize].clone()).collect();
-            let [ran, failed] = &self.counts[*plane];
-            let mut tell = |result: &CaseResult| {
-                if collapsed(result) || !judged(result) {
-                    failed.fetch_add(1, Ordering::Relaxed);
-                }
-                ran.fetch_add(1, Ordering::Relaxed);
-                done.fetch_add(1, Ordering::Relaxed);
-            };
-            // What was told counts, also of those that are then stopped.
-            let _ = simulate(&cases, &mut Audience { tell: &mut tell, stop: &asked });
-        };
-        pool::map(&batches, work, &|_| ());
-        if stopped.into_inner() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-
-    /// What came of it, in the plane in which most failed.
-    fn told(&self) -> Tried {
-        let counts = self
-            .counts
-            .iter()
-            .map(|counts| counts.each_ref().map(|one| one.load(Ordering::Relaxed)));
-        let [variants, failed] =
-            counts.max_by_key(|[ran, failed]| (*failed, *ran)).unwrap_or([0, 0]);
-        let interval = wilson(failed, variants, LEVEL);
-        let Change { kind, levels, pretension, changes, .. } = &self.change;
+impl Change {
+    /// What its counts say.
+    fn told(&self, counts: &Counts, plan: &Plan) -> Tried {
+        let Self { kind, levels, pretension, changes, .. } = self;
+        let whole = counts.whole(plan);
         Tried {
             kind,
             levels: *levels,
             pretension: *pretension,
             changes: changes.clone(),
-            suffices: self.suffices(),
-            variants,
-            failed,
-            interval: [interval.low, interval.high],
+            suffices: counts.suffices(plan),
+            variants: counts.ran,
+            failed: counts.failed,
+            share: whole.then(|| f64::from(counts.failed) / f64::from(counts.ran)),
+            interval: counts.interval(plan).map(|interval| [interval.low, interval.high]),
         }
     }
 }
 
-/// Whether so many of a number may fail.
-fn may_fail(failed: u32, of: u32) -> bool {
-    u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
+/// A change that is being tried.
+struct Trial {
+    /// The stack and its variants in every plane, ready to run; the case as it is stated comes first.
+    cases: Vec<Vec<Prepared>>,
+    /// Runs that are done.
+    done: AtomicUsize,
 }
 
-/// The numbers of all variants, some from everywhere first.
-fn order(count: u32) -> Vec<u32> {
-    let stride = count.div_ceil(SCOUTS).max(1);
-    (0..stride).flat_map(|from| (1 + from..=count).step_by(stride as usize)).collect()
+impl Trial {
+    fn new(change: &Change) -> Result<Self, GroundError> {
+        let mut scenario = change.scenario.clone();
+        // What follows a collapse says nothing about whether there is one.
+        scenario.run.stop_after_collapse = Some(0.0);
+        let planes = planes(&scenario)?;
+        let cases = planes
+            .iter()
+            .map(|plane| plane.prepared(&plane.numbers()))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { cases, done: AtomicUsize::new(0) })
+    }
+
+    /// Runs a block of variants, counted from zero, in every plane; how many fail in each, once all are done.
+    fn run(&self, block: Range<u32>, observer: Observer<'_>) -> Failed {
+        let stopped = AtomicBool::new(false);
+        let asked = || {
+            if observer(self.done.load(Ordering::Relaxed)).is_break() {
+                stopped.store(true, Ordering::Relaxed);
+            }
+            stopped.load(Ordering::Relaxed)
+        };
+        let failed: Vec<AtomicU32> = self.cases.iter().map(|_| AtomicU32::new(0)).collect();
+        let places = block.start as usize + 1..block.end as usize + 1;
+        let batches: Vec<(usize, &[Prepared])> = self
+            .cases
+            .iter()
+            .enumerate()
+            .flat_map(|(plane, cases)| {
+                let block = cases.get(places.clone()).unwrap_or_default();
+                block.chunks(BATCH).map(move |batch| (plane, batch))
+            })
+            .collect();
+        let work = |(plane, cases): &(usize, &[Prepared])| {
+            let mut tell = |result: &CaseResult| {
+                if collapsed(result) || !judged(result) {
+                    failed[*plane].fetch_add(1, Ordering::Relaxed);
+                }
+                self.done.fetch_add(1, Ordering::Relaxed);
+            };
+            // Where it is stopped nothing of the block counts.
+            let _ = simulate(cases, &mut Audience { tell: &mut tell, stop: &asked });
+        };
+        pool::map(&batches, work, &|_| ());
+        if stopped.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(failed.into_iter().map(AtomicU32::into_inner).collect())
+    }
 }

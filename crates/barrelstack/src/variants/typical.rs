@@ -21,7 +21,7 @@ impl Order {
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
         let severity = |a: &&usize, b: &&usize| severity(&results[**a], &results[**b]);
         Self {
-            typical: typical(&[results]),
+            typical: typical(&[results], &|_| true),
             // Of equals the first.
             gentlest: number(shown.iter().min_by(severity)),
             worst: number(shown.iter().rev().max_by(severity)),
@@ -41,12 +41,12 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
 }
 
 /// The number of the run that is least far from all others (the medoid), summed over planes, since a variant
-/// is one stack in all of them; of equals the first, and 0 where none has a verdict in all.
-pub(super) fn typical(planes: &[&[CaseResult]]) -> u32 {
+/// is one stack in all of them; of equals the first, and 0 where none of those that are allowed has a verdict in all.
+pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);
     let sum = |at: usize| sums.iter().map(|plane| plane[at]).sum::<Option<f64>>();
-    let known = (0..count).filter_map(|at| Some((at, sum(at)?)));
+    let known = (0..count).filter(|at| allowed(*at)).filter_map(|at| Some((at, sum(at)?)));
     let least = known.min_by(|a, b| a.1.total_cmp(&b.1));
     least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
 }
@@ -145,7 +145,7 @@ mod tests {
         // Together with another plane that has no verdict on the third.
         let mut other = vec![stands(0.1); 7];
         other[3] = CaseResult::failed("no".into());
-        assert_eq!(typical(&[&results, &other]), 2);
+        assert_eq!(typical(&[&results, &other], &|_| true), 2);
         let none = [CaseResult::failed("no".into())];
         assert_eq!(Order::of(&none), Order { typical: 0, gentlest: 0, worst: 0 });
     }

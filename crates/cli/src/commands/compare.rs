@@ -11,7 +11,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::variants::Asked;
 
 use crate::args::{ScenarioArgs, VariantArgs};
-use crate::interrupt::Stopped;
+use crate::interrupt::{Interrupt, Stopped};
 use crate::printer;
 
 /// What the help of `compare` ends with.
@@ -105,6 +105,9 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         let (done, all) = (answers.len(), scenarios.len());
         printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
+    // A stop in this last part leaves what is shown so far.
+    let interrupt = Interrupt::listen();
+    let answers = compare::aligned(answers, &mut |_| interrupt.flow())?;
     let sides = compare::sides(answers);
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());

@@ -167,6 +167,15 @@ impl CaseResult {
         }
     }
 
+    /// Whether it collapsed; none without a verdict.
+    pub fn collapsed(&self) -> Option<bool> {
+        match self.outcome {
+            Ok(Outcome::Stable) => Some(false),
+            Ok(Outcome::Collapse { .. }) => Some(true),
+            Ok(Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+        }
+    }
+
     /// Whether its stack fell under its own weight, before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         self.outcome.as_ref().is_ok_and(Outcome::fell_at_rest)

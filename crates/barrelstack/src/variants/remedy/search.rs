@@ -1,0 +1,318 @@
+//! In which order changes are tried, and what their counts say: apart from the runs, so that whole searches can be
+//! simulated.
+//!
+//! Variants are counted in whole blocks, in the order of their numbers, whatever finishes first: runs that collapse end
+//! early, so a count of finished runs would hold too many of them.
+//! A change is rejected after the first block by which more have failed than may; its share is then unknown, since the
+//! search went on until they had.
+//! Of a change that ran all its variants the share is stated, with an interval that holds for all changes and planes of
+//! the search together (Bonferroni), so that choosing among them does not spoil it.
+
+use std::ops::{ControlFlow, Range};
+
+use barrelstack_fragility::{Interval, clopper_pearson};
+
+use super::super::spread::LEVEL;
+
+/// Share (%) of variants that must stand in every plane.
+pub const ENOUGH: u32 = 95;
+
+/// Variants of the first block of a change: those of one bundle of lanes.
+const FIRST: u32 = 8;
+
+/// Variants of every later block.
+const BLOCK: u32 = 16;
+
+/// What a search may try, and in how many variants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plan {
+    /// Changes of height, the highest first; of these the first that suffices ends the search.
+    pub(super) heights: usize,
+    /// Straps from loose to tight, numbered after the heights.
+    pub(super) straps: usize,
+    /// Variants of every change.
+    pub(super) variants: u32,
+    /// Planes in each of which enough have to stand.
+    pub(super) planes: usize,
+}
+
+impl Plan {
+    /// Changes that may be tried.
+    pub(super) fn changes(&self) -> usize {
+        self.heights + self.straps
+    }
+
+    /// Level of each interval with which all of them hold together at [`LEVEL`].
+    pub(super) fn level(&self) -> f64 {
+        1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
+    }
+
+    /// The variants of the next block, counted from zero.
+    fn block(&self, ran: u32) -> Range<u32> {
+        let size = if ran == 0 { FIRST } else { BLOCK };
+        ran..ran.saturating_add(size).min(self.variants)
+    }
+}
+
+/// What is known of a change.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Counts {
+    /// Variants that were counted: the first by their numbers.
+    pub(super) ran: u32,
+    /// Those of them that failed, in the plane in which most did.
+    pub(super) failed: u32,
+    by_plane: Vec<u32>,
+}
+
+impl Counts {
+    fn new(planes: usize) -> Self {
+        Self { ran: 0, failed: 0, by_plane: vec![0; planes] }
+    }
+
+    fn add(&mut self, block: &Range<u32>, failed: &[u32]) {
+        self.ran = block.end;
+        for (sum, more) in self.by_plane.iter_mut().zip(failed) {
+            *sum += more;
+        }
+        self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
+    }
+
+    /// Whether so many failed that no other variants can make up for them.
+    fn rejected(&self, plan: &Plan) -> bool {
+        !may_fail(self.failed, plan.variants)
+    }
+
+    /// Whether all variants were counted, so that their share is one of a sample that nobody chose.
+    pub(super) fn whole(&self, plan: &Plan) -> bool {
+        plan.variants > 0 && self.ran == plan.variants
+    }
+
+    pub(super) fn suffices(&self, plan: &Plan) -> bool {
+        self.whole(plan) && !self.rejected(plan)
+    }
+
+    /// The interval of the share that fails in the worse plane; none where the search stopped before all variants.
+    pub(super) fn interval(&self, plan: &Plan) -> Option<Interval> {
+        self.whole(plan).then(|| clopper_pearson(self.failed, self.ran, plan.level()))
+    }
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// What is known of every change of the plan; none of those that were not tried.
+    pub(super) counts: Vec<Option<Counts>>,
+    /// Whether it went to its end.
+    pub(super) complete: bool,
+}
+
+/// How many variants of a block fail in each plane, or that the search is broken off.
+pub(super) type Failed = ControlFlow<(), Vec<u32>>;
+
+/// Runs a block of variants, counted from zero, of a change.
+type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
+
+/// Tries changes until the highest stack and the loosest straps that suffice are found.
+pub(super) fn search<E>(plan: &Plan, run: &mut RunBlock<'_, E>) -> Result<Found, E> {
+    let mut all = Search { plan, counts: vec![None; plan.changes()], run };
+    let complete = all.heights()?.is_continue() && all.straps()?.is_continue();
+    Ok(Found { counts: all.counts, complete })
+}
+
+struct Search<'a, 'b, E> {
+    plan: &'a Plan,
+    counts: Vec<Option<Counts>>,
+    run: &'a mut RunBlock<'b, E>,
+}
+
+impl<E> Search<'_, '_, E> {
+    /// Runs blocks of a change until so many variants are counted or it is rejected.
+    fn try_change(&mut self, change: usize, until: u32) -> Result<ControlFlow<(), Counts>, E> {
+        let mut counts =
+            self.counts[change].take().unwrap_or_else(|| Counts::new(self.plan.planes));
+        while counts.ran < until.min(self.plan.variants) && !counts.rejected(self.plan) {
+            let block = self.plan.block(counts.ran);
+            match (self.run)(change, block.clone())? {
+                ControlFlow::Continue(failed) => counts.add(&block, &failed),
+                // What was begun of the block does not count.
+                ControlFlow::Break(()) => {
+                    self.counts[change] = Some(counts);
+                    return Ok(ControlFlow::Break(()));
+                }
+            }
+        }
+        self.counts[change] = Some(counts.clone());
+        Ok(ControlFlow::Continue(counts))
+    }
+
+    /// Tries changes in their order until one suffices.
+    fn first_of(&mut self, changes: Range<usize>) -> Result<ControlFlow<()>, E> {
+        for change in changes {
+            match self.try_change(change, u32::MAX)? {
+                ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+                ControlFlow::Continue(counts) if counts.suffices(self.plan) => break,
+                ControlFlow::Continue(_) => {}
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn heights(&mut self) -> Result<ControlFlow<()>, E> {
+        self.first_of(0..self.plan.heights)
+    }
+
+    /// Tries straps from the loosest on whose first block does not reject them, which is found by halving.
+    fn straps(&mut self) -> Result<ControlFlow<()>, E> {
+        let (mut from, mut to) = (self.plan.heights, self.plan.changes());
+        while from < to {
+            let middle = usize::midpoint(from, to);
+            let ControlFlow::Continue(counts) = self.try_change(middle, FIRST)? else {
+                return Ok(ControlFlow::Break(()));
+            };
+            if counts.rejected(self.plan) { from = middle + 1 } else { to = middle }
+        }
+        self.first_of(from..self.plan.changes())
+    }
+}
+
+/// Whether so many of a number may fail.
+fn may_fail(failed: u32, of: u32) -> bool {
+    u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use barrelstack_motion::Random;
+
+    use super::*;
+
+    /// Searches in which a variant of a change fails with a chance that is known.
+    struct Simulated {
+        stated: u32,
+        covered: u32,
+        searches_covered: u32,
+        chosen: u32,
+        chosen_covered: u32,
+        /// Changes that are said to suffice though of all such stacks more fall than may.
+        too_many_fall: u32,
+    }
+
+    /// Draws the chance with which a change fails in a plane.
+    type Chance = dyn Fn(&mut Random) -> f64;
+
+    fn simulate(searches: u32, chance: &Chance) -> Simulated {
+        let plan = Plan { heights: 4, straps: 5, variants: 64, planes: 2 };
+        let mut found = Simulated {
+            stated: 0,
+            covered: 0,
+            searches_covered: 0,
+            chosen: 0,
+            chosen_covered: 0,
+            too_many_fall: 0,
+        };
+        for seed in 0..searches {
+            let mut random = Random::new(u64::from(seed) + 1);
+            let mut chances: Vec<[f64; 2]> =
+                (0..plan.changes()).map(|_| [chance(&mut random), chance(&mut random)]).collect();
+            // Lower stacks and tighter straps fall less.
+            for part in [0..plan.heights, plan.heights..plan.changes()] {
+                chances[part].sort_by(|a, b| b[0].max(b[1]).total_cmp(&a[0].max(a[1])));
+            }
+            let mut run = |change: usize, block: Range<u32>| {
+                let planes: [f64; 2] = chances[change];
+                let failed = planes.map(|chance| {
+                    let fails = block.clone().filter(|_| random.uniform() < chance).count();
+                    u32::try_from(fails).unwrap_or(u32::MAX)
+                });
+                Ok::<_, Infallible>(ControlFlow::Continue(failed.to_vec()))
+            };
+            let Ok(all) = search(&plan, &mut run);
+            assert!(all.complete);
+            let mut whole = true;
+            for (counts, chance) in all.counts.iter().zip(&chances) {
+                let Some(counts) = counts else { continue };
+                let Some(interval) = counts.interval(&plan) else { continue };
+                let truth = chance[0].max(chance[1]);
+                let covers = interval.low <= truth && truth <= interval.high;
+                whole &= covers;
+                found.stated += 1;
+                found.covered += u32::from(covers);
+                if counts.suffices(&plan) {
+                    found.chosen += 1;
+                    found.chosen_covered += u32::from(covers);
+                    found.too_many_fall +=
+                        u32::from(100.0 * truth > f64::from(100 - ENOUGH) + 1e-9);
+                }
+            }
+            found.searches_covered += u32::from(whole);
+        }
+        found
+    }
+
+    /// The table of `validation/mitigation.md`.
+    #[test]
+    #[expect(clippy::print_stdout, reason = "the rows of the table")]
+    fn stated_shares_cover_the_truth_as_often_as_their_intervals_say() {
+        let cases: [(&str, &Chance); 4] = [
+            ("0 to 100 %, half of them below 13 %", &|random| {
+                let x = random.uniform();
+                x * x * x
+            }),
+            ("0 to 20 %", &|random| 0.2 * random.uniform()),
+            ("all 5 %", &|_| 0.05),
+            ("all 10 %", &|_| 0.10),
+        ];
+        for (name, chance) in cases {
+            let found = simulate(2000, chance);
+            let share = |of: u32, all: u32| 100.0 * f64::from(of) / f64::from(all.max(1));
+            println!(
+                "| {name} | {} | {:.1} % | {} | {:.1} % | {:.1} % | {} |",
+                found.stated,
+                share(found.covered, found.stated),
+                found.chosen,
+                share(found.chosen_covered, found.chosen),
+                share(found.searches_covered, 2000),
+                found.too_many_fall
+            );
+            assert!(found.stated > 100, "{name}");
+            assert!(share(found.covered, found.stated) >= 95.0, "{name}");
+            assert!(share(found.chosen_covered, found.chosen) >= 95.0, "{name}");
+            assert!(share(found.searches_covered, 2000) >= 95.0, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_rejected_change_has_counts_of_whole_blocks_and_no_share() {
+        let plan = Plan { heights: 1, straps: 0, variants: 64, planes: 2 };
+        let mut blocks = Vec::new();
+        let mut run = |_, block: Range<u32>| {
+            blocks.push(block);
+            Ok::<_, Infallible>(ControlFlow::Continue(vec![1, 2]))
+        };
+        let Ok(found) = search(&plan, &mut run);
+        let counts = found.counts[0].clone().unwrap_or_else(|| panic!("it was tried"));
+        assert_eq!(blocks, [0..8, 8..24]);
+        assert_eq!((counts.ran, counts.failed, counts.interval(&plan)), (24, 4, None));
+        assert!(!counts.suffices(&plan));
+    }
+
+    #[test]
+    fn a_block_that_is_broken_off_does_not_count() {
+        let plan = Plan { heights: 0, straps: 2, variants: 64, planes: 1 };
+        let mut run = |_, block: Range<u32>| {
+            let over = block.start > 0;
+            Ok::<_, Infallible>(if over {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(vec![0])
+            })
+        };
+        let Ok(found) = search(&plan, &mut run);
+        assert!(!found.complete);
+        assert!(
+            found.counts.iter().flatten().all(|counts| counts.ran == 8 && !counts.suffices(&plan))
+        );
+    }
+}
