@@ -1,7 +1,10 @@
-//! Stacks that fall under their own weight: they count as collapsed in a study.
+//! Which stacks a study runs: those that fall under their own weight count as collapsed, those of both planes are refused
+//! with the stacks that they are in each.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+use barrelstack::Scenario;
+use barrelstack::variants::planes;
 use barrelstack_campaign::Study;
 use barrelstack_campaign::study::Tally;
 
@@ -54,4 +57,26 @@ fn what_does_not_stand_by_itself_counts_as_collapsed_in_a_study() {
     }
     let tally = Tally::of(&table);
     assert_eq!((tally.cases, tally.judged, tally.collapsed), (3, 3, 2));
+}
+
+#[test]
+fn the_advice_for_both_planes_makes_the_same_stacks() {
+    let study = |stack: &str| {
+        let text = format!(
+            "schema = 1\n[base]\nextends = \"demo-napa\"\n{stack}\n[design]\nkind = \"full-factorial\"\n"
+        );
+        Study::parse("study.toml", &text)
+    };
+    let refused = study("stack.levels = 3").unwrap_err().to_string();
+    let base = Scenario::builtin("demo-napa", &["stack.levels=3".to_owned()]).unwrap();
+    for plane in planes(&base).unwrap() {
+        let stack = plane.scenario.stack().unwrap();
+        let view = format!("base.stack.view = \"{}\"", stack.view.name());
+        let columns = format!("base.stack.columns = {}", stack.columns);
+        assert!(refused.contains(&format!("`{view}` and `{columns}`")), "{refused}");
+        let advice = format!("stack.levels = 3\n{view}\n{columns}").replace("base.", "");
+        let table = study(&advice).unwrap().table().unwrap();
+        let barrels = i64::from(stack.levels * stack.columns);
+        assert_eq!(table.integers("barrels").unwrap(), [Some(barrels)]);
+    }
 }

@@ -377,8 +377,8 @@ impl CaseError {
         match self {
             Self::Scenario(error) => error.sentence(),
             Self::Planes => {
-                "a table of cases looks at one plane: set stack.view to \"transverse\" or to \
-                             \"longitudinal\""
+                "a table of cases looks at one plane: leave stack.columns_along out and set stack.view to \
+                 \"transverse\", or to \"longitudinal\" with stack.columns as many as stack.columns_along"
                     .to_owned()
             }
             Self::Record(name) => format!("no record of the name \"{name}\" was given"),

@@ -253,13 +253,22 @@ impl Study {
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {
-            "a study runs stacks, and free scenes of the plane: take a base that is no free scene in space"
+            "a study runs stacks, and free scenes of the plane: take a base that is no free scene \
+             in space"
+                .to_owned()
         }
-        (_, Some(stack)) if stack.columns_along.is_some() => {
-            "a study looks at one plane, or at the stack in space: set `base.stack.view` to \"transverse\" or to \
-             \"longitudinal\", in a study for each, or to \"spatial\""
+        (_, Some(stack)) => {
+            let Some(along) = stack.columns_along else { return Ok(()) };
+            format!(
+                "a study looks at one plane, or at the stack in space. Leave `base.stack.columns_along` out and make a \
+                 study for each plane of this stack: one with `base.stack.view = \"transverse\"` and \
+                 `base.stack.columns = {}`, the other with `base.stack.view = \"longitudinal\"` and \
+                 `base.stack.columns = {along}`, shaken by the other horizontal component of each record; or set \
+                 `base.stack.view` to \"spatial\"",
+                stack.columns
+            )
         }
         _ => return Ok(()),
     };
-    Err(top.inconsistent("base", message.to_owned()))
+    Err(top.inconsistent("base", message))
 }
