@@ -1,6 +1,7 @@
 //! The files of a run, in one folder.
 
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -22,6 +23,9 @@ use barrelstack_input::system;
 const FILES: [&str; 4] = ["summary.json", "scenario.toml", "variants.csv", "report.html"];
 const FILES_OF_PLANE: [&str; 5] =
     ["histories.csv", "histories.npz", "forces.csv", "envelopes.csv", "frames.csv"];
+
+/// Largest summary (bytes) that is read.
+const SUMMARY_LIMIT: usize = 256 << 20;
 
 /// Longest time between the first and the last file of a run; what was changed later was changed by another.
 const AT_ONCE: Duration = Duration::from_secs(10);
@@ -110,7 +114,7 @@ impl Folder {
         let folder = Self::prepare(path, true)?;
         let changed =
             |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
-        let summary = std::fs::read(path.join(FILES[0])).unwrap_or_default();
+        let summary = system::read(&path.join(FILES[0]), SUMMARY_LIMIT).unwrap_or_default();
         let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
         let written =
             changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
@@ -166,8 +170,8 @@ impl Folder {
             bundle.files.iter().map(|file| format!("{FIGURES}/{}", file.name)).collect();
         let figures = names.iter().map(String::as_str);
         let figures = figures.zip(bundle.files.iter().map(|file| file.bytes.as_slice()));
-        let folder = self.path.join(FIGURES);
-        std::fs::create_dir_all(&folder).map_err(|error| self.refused(FIGURES, &error))?;
+        system::folder_below(&self.path, Path::new(FIGURES))
+            .map_err(|error| self.refused(FIGURES, &error))?;
         let texts = [("report.html", page.as_bytes()), ("report.md", bundle.text.as_bytes())];
         self.put(&figures.chain(texts))
     }
@@ -185,8 +189,8 @@ impl Folder {
         let written = files
             .clone()
             .try_for_each(|(name, bytes)| {
-                let write = std::fs::write(self.temporary(name), bytes);
-                write.map_err(|error| self.refused(name, &error))
+                let write = system::begin(&self.temporary(name));
+                write.and_then(|mut file| file.write_all(bytes)).map_err(|error| self.refused(name, &error))
             })
             .and_then(|()| {
                 names().try_for_each(|name| {
@@ -363,7 +367,7 @@ fn variants_csv(answer: &Answer) -> String {
         for (number, result) in found.results.iter().enumerate() {
             let (kind, collapse) = match &result.outcome {
                 Ok(Outcome::Collapse { mode, time, first, .. }) => {
-                    ("collapse", format!("{},{first},{time}", mode.name()))
+                    ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))
                 }
                 Ok(outcome) => (outcome.kind(), ",,".to_owned()),
                 Err(_) => ("cannot-stand", ",,".to_owned()),

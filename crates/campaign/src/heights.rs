@@ -15,6 +15,7 @@ use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
+use crate::system;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 
 pub use crate::scenario::View;
@@ -197,7 +198,10 @@ pub fn heights(
     let mut found = Vec::new();
     for (view, recorded, study) in &studies {
         let report = |progress: &Progress| tell(before + progress.tally.cases, all);
-        let place = folder.join(plan::name(*view, *recorded));
+        let name = plan::name(*view, *recorded);
+        let place = folder.join(&name);
+        system::folder_below(folder, Path::new(&name))
+            .map_err(StudyError::system("make the folder", &place))?;
         found.push((*view, *recorded, study.run(&place, options, &report)?));
         before += study.cases();
     }

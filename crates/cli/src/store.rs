@@ -1,6 +1,6 @@
 //! Files that are never half there.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
 use barrelstack_input::system;
@@ -18,6 +18,13 @@ pub(crate) fn folder(path: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(path)
         .map_err(plain)
         .with_context(|| format!("cannot make the folder {}", path.display()))
+}
+
+/// Makes a folder below one of results; a link in its place is refused.
+pub(crate) fn folder_below(root: &Path, name: &str) -> anyhow::Result<PathBuf> {
+    system::folder_below(root, Path::new(name))
+        .map_err(plain)
+        .with_context(|| format!("cannot make the folder {}", root.join(name).display()))
 }
 
 /// Refuses a folder in which nothing can be written, before the work is done.

@@ -76,7 +76,22 @@ pub(crate) fn markdown(text: &str) -> String {
 }
 
 /// A CSV field, quoted when it must be.
+///
+/// Spreadsheets compute what begins with `=`, `+`, `-` or `@`, whoever wrote it: such a text gets an apostrophe before it,
+/// by which they take it as text, unless it is a number.
+///
+/// ```
+/// use barrelstack_report::csv_field;
+///
+/// assert_eq!(csv_field("=HYPERLINK(1)"), "'=HYPERLINK(1)");
+/// assert_eq!(csv_field("-0.5"), "-0.5");
+/// assert_eq!(csv_field("rack, left"), "\"rack, left\"");
+/// ```
 pub fn csv(text: &str) -> String {
+    let begins = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    if begins && text.len() > 1 && text.parse::<f64>().is_err() {
+        return csv(&format!("'{text}"));
+    }
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -230,8 +230,9 @@ impl RenderFolder {
     /// The place of a part, made, and free of what an earlier rendering wrote there.
     fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
         let place = self.path.join(part.place());
-        let folder = if part == Part::Report { &self.path } else { &place };
-        std::fs::create_dir_all(folder).map_err(|error| ExportError::refused(folder, &error))?;
+        let folder = if part == Part::Report { "" } else { part.place() };
+        system::folder_below(&self.path, Path::new(folder))
+            .map_err(|error| ExportError::refused(&place, &error))?;
         for file in self.earlier(part)? {
             std::fs::remove_file(&file).map_err(|error| ExportError::refused(&file, &error))?;
         }
@@ -255,7 +256,8 @@ impl RenderFolder {
         for entry in entries {
             let path = entry.map_err(|error| ExportError::refused(&place, &error))?.path();
             let kind = path.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
-            if path.is_file() && KINDS.contains(&kind) {
+            let unfinished = system::is_unfinished(&path, |whole| KINDS.iter().any(|kind| whole.ends_with(kind)));
+            if path.is_file() && (KINDS.contains(&kind) || unfinished) {
                 files.push(path);
             }
         }

@@ -13,7 +13,8 @@ use super::{ProtectError, Protection, Ranked, Reached, Request, middle, plan};
 use crate::decision::Cases;
 use crate::pool;
 use crate::scenario::{Scenario, View};
-use crate::study::{RunOptions, Study};
+use crate::study::{RunOptions, Study, StudyError};
+use crate::system;
 
 /// A protection while it is tried.
 pub(super) struct Trial {
@@ -97,10 +98,10 @@ impl Search<'_> {
         for at in open {
             for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
                 let study = plan::study(self.request, stack, self.levels, round)?;
-                let folder = self
-                    .folder
-                    .join(&trials[*at].protection.key)
-                    .join(plan::name(view.name(), round));
+                let below = Path::new(&trials[*at].protection.key).join(plan::name(view.name(), round));
+                let folder = self.folder.join(&below);
+                system::folder_below(self.folder, &below)
+                    .map_err(StudyError::system("make the folder", &folder))?;
                 studies.push((*at, direction, folder, study));
             }
         }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -10,7 +9,8 @@ use barrelstack_report::column::{csv_heading, csv_rows};
 
 use super::draft::{Draft, write_whole};
 use super::error::StudyError;
-use super::folder::{Provenance, manifest_of, read_shard, shards};
+use super::folder::{Provenance, read_shard, shards, study_text};
+use super::manifest::manifest_of;
 use super::shard;
 use super::stop::Tally;
 use super::table::StudyTable;
@@ -142,8 +142,7 @@ pub fn collect(
     let provenance = serde_json::to_string_pretty(&made)
         .map_err(|error| StudyError::Table(error.to_string()))?;
     // The table travels alone: what it comes from goes with it.
-    let path = folder.join("study.toml");
-    let study = fs::read_to_string(&path).map_err(StudyError::system("read", &path))?;
+    let study = study_text(folder, &made)?;
     let about = [("study", study), ("provenance", provenance.clone())];
     parquet.finish(&about).map_err(|error| encode(&error))?;
     part.name().map_err(failed)?;

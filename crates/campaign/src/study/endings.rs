@@ -8,7 +8,7 @@ use barrelstack_report::described;
 
 use super::Study;
 use super::error::StudyError;
-use super::motions::MotionCache;
+use super::motions::{MotionCache, Shaking, Synthetic};
 use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::Ending;
@@ -152,9 +152,19 @@ impl Study {
         };
         if let Some(duration) = run.duration {
             let mut seen = BTreeSet::new();
+            let mut last: Option<(&Synthetic, f64)> = None;
             for motion in &self.motions {
-                let shaken = cache.unscaled(motion, &base.motion, run.similitude)?;
-                let left = shaken.ground.end() / run.similitude.sqrt() - duration;
+                let made = match &motion.shaking {
+                    Shaking::Synthetic(made) => Some(&**made),
+                    Shaking::Base | Shaking::Spec(_) => None,
+                };
+                // Realizations of one ensemble are equally long, whatever their seeds, and may be a hundred thousand.
+                let end = match (made, last) {
+                    (Some(made), Some((other, end))) if made.is_of_ensemble(other) => end,
+                    _ => cache.unscaled(motion, &base.motion, run.similitude)?.ground.end(),
+                };
+                last = made.map(|made| (made, end));
+                let left = end / run.similitude.sqrt() - duration;
                 if left > crate::run::CUT && seen.insert(&motion.name) {
                     found.cut.push(motion.name.clone());
                     found.longest_cut = found.longest_cut.max(left);

@@ -15,8 +15,8 @@ use super::design::seed_of;
 use super::fields::{Maker, Soil};
 use super::motions::{Making, Motion, Shaking, Synthetic};
 
-/// Most files that a folder may give.
-const MOST_FILES: usize = 100_000;
+/// Most motions of a study, and files that a folder may give.
+pub(super) const MOST: usize = 100_000;
 
 /// The motions of one `[[motion]]`, whose number counts from 1.
 pub(super) fn read(
@@ -156,9 +156,9 @@ fn matching(
     if names.is_empty() {
         return refuse(format!("no file of the folder {} matches \"{pattern}\"", folder.display()));
     }
-    if names.len() > MOST_FILES {
+    if names.len() > MOST {
         return refuse(format!(
-            "the folder {} has {} files, more than {MOST_FILES}",
+            "the folder {} has {} files, more than {MOST}",
             folder.display(),
             names.len()
         ));
@@ -203,6 +203,10 @@ fn ensemble(
 ) -> Result<Vec<Motion>, ScenarioError> {
     let kind: Maker = reader.choice("kind")?;
     let count = reader.integer("count")?;
+    if count as usize > MOST {
+        let message = format!("{count} motions are more than the {MOST} that a study has at most: take fewer, or several studies with other seeds");
+        return Err(reader.inconsistent("count", message));
+    }
     let own = reader.optional_integer("seed")?.map(u64::from);
     let time_step = reader.quantity("time_step")?;
     let maker = match kind {

@@ -71,7 +71,7 @@ impl From<parquet::errors::ParquetError> for StudyError {
 
 impl StudyError {
     /// What the system said when something was tried with a path.
-    pub(super) fn system(
+    pub(crate) fn system(
         doing: &'static str,
         path: &Path,
     ) -> impl Fn(std::io::Error) -> Self + Copy {

@@ -13,6 +13,7 @@ use super::Study;
 use super::collect::{Collected, collect};
 use super::error::StudyError;
 use super::folder::{Folder, read_shard};
+use super::grow::Keys;
 use super::motions::MotionCache;
 use super::prepare::Resources;
 use super::stop::{StopRule, Tally};
@@ -49,6 +50,10 @@ pub struct Progress {
     pub chunks_done: usize,
     /// Damaged shards that were found and set aside; their chunks are run again.
     pub damaged: usize,
+    /// Whether the manifest of the folder was damaged and has been written anew.
+    pub manifest_healed: bool,
+    /// A chunk that another process holds, while there is nothing else to do.
+    pub waits_for: Option<usize>,
 }
 
 /// What became of a chunk that was to be run.
@@ -76,8 +81,8 @@ struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
     cache: MotionCache,
-    /// What tells the motions from all others.
-    motions: Vec<u64>,
+    /// What tells the shards from all others.
+    keys: Keys,
     lanes: Width,
     rule: Option<StopRule>,
     stop: AtomicBool,
@@ -136,8 +141,8 @@ impl Study {
         self.try_motions(&cache)?;
         let place = Folder::open(folder, self, true)?;
         place.clean()?;
-        let motions = self.motion_keys()?;
-        let Done { tallies: done, damaged } = self.done(&place, 0..self.chunk_count(), &motions)?;
+        let keys = self.keys()?;
+        let Done { tallies: done, damaged } = self.done(&place, 0..self.chunk_count(), &keys)?;
         // What is not of this study is set aside by now, so nobody takes it for its own.
         place.describe(self)?;
         let rule = self.stop_rule();
@@ -147,6 +152,7 @@ impl Study {
         progress.before = progress.tally.cases;
         progress.chunks_done = done.len();
         progress.damaged = damaged;
+        progress.manifest_healed = place.healed;
         let open: Vec<usize> =
             (0..self.chunk_count()).rev().filter(|chunk| !done.contains_key(chunk)).collect();
         let threads = options.threads.or_else(|| std::thread::available_parallelism().ok());
@@ -156,7 +162,7 @@ impl Study {
             study: self,
             folder: &place,
             cache,
-            motions,
+            keys,
             lanes: options.lanes.unwrap_or_else(Width::widest),
             rule,
             stop: AtomicBool::new(false),
@@ -264,15 +270,15 @@ impl Study {
             }
             std::thread::sleep(LOOK_AGAIN);
         };
-        let motions = self.motion_keys()?;
-        let found = self.done(&place, chunk..chunk + 1, &motions)?;
+        let keys = self.keys()?;
+        let found = self.done(&place, chunk..chunk + 1, &keys)?;
         if !found.tallies.is_empty() {
             return Ok(ChunkRun::Before);
         }
         let mut resources =
             Resources { cache: &MotionCache::default(), lanes, tell: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut resources)?.ok_or(StudyError::Stopped)?;
-        place.write_shard(chunk, self.chunk_key(chunk, &motions), &table)?;
+        place.write_shard(chunk, self.chunk_key(chunk, &keys), &table)?;
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
 
@@ -284,12 +290,12 @@ impl Study {
         &self,
         folder: &Folder,
         chunks: Range<usize>,
-        motions: &[u64],
+        keys: &Keys,
     ) -> Result<Done, StudyError> {
         let (mut done, specs) = (Done::default(), self.columns());
         for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
             match read_shard(&path, &specs) {
-                Ok((table, Some(key))) if key == self.chunk_key(chunk, motions) => {
+                Ok((table, Some(key))) if key == self.chunk_key(chunk, keys) => {
                     done.tallies.insert(chunk, Tally::of(&table));
                 }
                 Ok(_) => set_aside(&path, "replaced")?,
@@ -347,11 +353,13 @@ impl Shared<'_> {
         }
         if state.open.is_empty() && !state.elsewhere.is_empty() {
             state.open = std::mem::take(&mut state.elsewhere);
+            state.progress.waits_for = state.open.last().copied();
             drop(state);
             // Their owners finish them, or die and leave them to us.
             std::thread::sleep(LOOK_AGAIN);
             state = self.state();
             self.tell(&mut state);
+            state.progress.waits_for = None;
         }
         state.open.pop()
     }
@@ -362,7 +370,7 @@ impl Shared<'_> {
             self.state().elsewhere.push(chunk);
             return Ok(());
         };
-        let mut found = self.study.done(self.folder, chunk..chunk + 1, &self.motions)?;
+        let mut found = self.study.done(self.folder, chunk..chunk + 1, &self.keys)?;
         let mut state = self.state();
         state.progress.damaged += found.damaged;
         if let Some(tally) = found.tallies.remove(&chunk) {
@@ -382,7 +390,7 @@ impl Shared<'_> {
         let mut resources =
             Resources { cache: &self.cache, lanes: self.lanes, tell: &mut tell, stop: &stop };
         let Some(table) = self.study.compute(chunk, &mut resources)? else { return Ok(()) };
-        self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.motions), &table)?;
+        self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.keys), &table)?;
         let mut state = self.state();
         state.done.insert(chunk, Tally::of(&table));
         state.progress.chunks_done += 1;

@@ -133,6 +133,14 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         motions.extend(ensembles::read(&set, opened, number, seed)?);
         set.finish();
     }
+    if motions.len() > ensembles::MOST {
+        let message = format!(
+            "the study has {} motions, and a study has {} at most: take fewer, or several studies with other seeds",
+            motions.len(),
+            ensembles::MOST
+        );
+        return Err(top.inconsistent("motion", message).into());
+    }
     let own = motions.is_empty();
     if own {
         motions.push(Motion { name: "base".to_owned(), shaking: Shaking::Base });

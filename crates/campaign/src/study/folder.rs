@@ -21,6 +21,7 @@ use super::claim::Claim;
 use super::design::Design;
 use super::draft::write_whole;
 use super::error::StudyError;
+use super::manifest::{self, Manifest, manifest_of};
 use super::grow::{Common, difference};
 use super::motions::hash_files;
 use super::shard;
@@ -30,13 +31,16 @@ use super::{Intensity, Study};
 use barrelstack_report::column::ColumnSpec;
 
 /// Version of the layout of a folder.
-const LAYOUT: u32 = 2;
+pub(super) const LAYOUT: u32 = 3;
 
 /// Largest file (bytes) of a folder that is read.
 const FILE_LIMIT: usize = 1 << 30;
 
-const MANIFEST: &str = "study.json";
+pub(super) const MANIFEST: &str = "study.json";
 const SHARDS: &str = "shards";
+
+/// The study file, as it was.
+const COPY: &str = "study.toml";
 
 /// Under this key a shard says what its chunk holds.
 const KEY: &str = "chunk";
@@ -55,6 +59,8 @@ described! {
         pub title: String,
         /// Fingerprint of the study file, the scenarios it extends, the bytes of its records, and the version.
         pub study_hash: String,
+        /// Fingerprint of the bytes of the study file, of which a folder has a copy.
+        pub text_hash: String,
         /// Seed of everything that was drawn.
         pub seed: u64,
         /// The design, as study files name it.
@@ -117,6 +123,8 @@ pub(super) struct Folder {
     path: PathBuf,
     /// Fingerprint of the study that it is opened for.
     study: String,
+    /// Whether its manifest was damaged and has been written anew.
+    pub(super) healed: bool,
 }
 
 impl Folder {
@@ -125,7 +133,7 @@ impl Folder {
     /// The folder of a study that grew, or changed in nothing that all its cases have in common, is kept; only a run as
     /// a whole may decide that (`grows`), and makes the folder its own by [`Folder::describe`].
     pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
-        let folder = Self { path: path.to_owned(), study: study.fingerprint() };
+        let mut folder = Self { path: path.to_owned(), study: study.fingerprint(), healed: false };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
         if path.is_file() {
             return refuse("is a file, not a folder; name another".to_owned());
@@ -134,7 +142,19 @@ impl Folder {
         // Listed before the manifest is looked for: what another run makes in between comes after its manifest.
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
-            let known = manifest_of(path)?;
+            let known = match manifest::read(path)? {
+                Manifest::Sound(known) => known,
+                // The chunks say themselves whether they are of this study; its copy says whose folder this is.
+                Manifest::Damaged(how) => {
+                    let copy = system::read(&path.join(COPY), FILE_LIMIT).unwrap_or_default();
+                    if !grows || copy != study.text.as_bytes() {
+                        return Err(manifest::damaged(path, &how));
+                    }
+                    manifest::write(path, &study.provenance()?)?;
+                    folder.healed = true;
+                    return Ok(folder);
+                }
+            };
             if known.study_hash != folder.study {
                 let reason = match difference(&known, &study.provenance()?) {
                     None if grows => return Ok(folder),
@@ -151,7 +171,8 @@ impl Folder {
                 "holds {foreign} and is no folder of a study; name another, new or empty"
             ));
         }
-        fs::create_dir_all(&shards).map_err(StudyError::system("make the folder", &shards))?;
+        system::folder_below(path, Path::new(SHARDS))
+            .map_err(StudyError::system("make the folder", &shards))?;
         folder.describe(study)?;
         Ok(folder)
     }
@@ -161,15 +182,15 @@ impl Folder {
         let manifest = self.path.join(MANIFEST);
         // An earlier version may have made other keys of the same motions.
         let keys = || study.motions.iter().map(|motion| format!("{:016x}", motion.shaking.key()));
-        let same = |known: &Provenance| known.motions.iter().map(|m| m.key.clone()).eq(keys());
+        let same = |known: &Provenance| {
+            known.motions.iter().map(|m| m.key.clone()).eq(keys()) && known.text_hash == study.text_hash()
+        };
         if !manifest.is_file() || !self.is_ours()? || !same(&manifest_of(&self.path)?) {
-            let text = serde_json::to_string_pretty(&study.provenance()?)
-                .map_err(|error| StudyError::Table(error.to_string()))?;
-            write_whole(&manifest, format!("{text}\n").as_bytes())?;
+            manifest::write(&self.path, &study.provenance()?)?;
         }
         // After the manifest, so that a folder without one holds nothing of ours but an empty folder of shards.
-        let copy = self.path.join("study.toml");
-        if fs::read(&copy).is_ok_and(|text| text == study.text.as_bytes()) {
+        let copy = self.path.join(COPY);
+        if system::read(&copy, FILE_LIMIT).is_ok_and(|text| text == study.text.as_bytes()) {
             return Ok(());
         }
         write_whole(&copy, study.text.as_bytes())
@@ -214,6 +235,12 @@ impl Folder {
             }
             // Whoever is alive holds it locked; it may also have its own name by now, or be gone. Network file
             // systems lock only what is open for writing.
+            // What is no file, such as a link, was left by nobody that may be alive.
+            let found = fs::symlink_metadata(&path);
+            if found.is_ok_and(|found| !found.is_file()) {
+                drop(fs::remove_file(&path));
+                continue;
+            }
             let Ok(file) = File::options().write(true).open(&path) else { continue };
             if file.try_lock().is_ok() {
                 drop(fs::remove_file(&path));
@@ -238,39 +265,12 @@ impl Folder {
 }
 
 /// The bytes of a file of a folder.
-fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
+pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
         doing: "read",
         path: path.to_owned(),
         reason,
     })
-}
-
-/// The manifest of a folder.
-pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
-    let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
-    let path = folder.join(MANIFEST);
-    if !path.is_file() {
-        return Err(refuse(if folder.is_dir() {
-            format!("is no folder of a study: it has no {MANIFEST}; name one that a study wrote")
-        } else {
-            "is not there; name a folder that a study wrote".to_owned()
-        }));
-    }
-    let bytes = read_file(&path)?;
-    let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
-        refuse(format!(
-            "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
-        ))
-    })?;
-    if known.schema != LAYOUT {
-        return Err(refuse(format!(
-            "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
-             version, or name another folder",
-            known.version, known.schema
-        )));
-    }
-    Ok(known)
 }
 
 /// The first name in a folder but for some names and hidden ones, as a sentence may give it; none where there is no
@@ -302,6 +302,21 @@ fn named(path: &Path) -> Option<(usize, u64)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".parquet")?;
     let (chunk, hash) = name.split_once('-')?;
     Some((chunk.parse().ok()?, u64::from_str_radix(hash, 16).ok()?))
+}
+
+/// The copy of the study file in a folder, which must be the one that its manifest states.
+pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, StudyError> {
+    let path = folder.join(COPY);
+    let bytes = read_file(&path)?;
+    let found = format!("{:016x}", fnv1a(&bytes));
+    let text = String::from_utf8(bytes).ok().filter(|_| found == made.text_hash);
+    text.ok_or_else(|| StudyError::Folder {
+        folder: folder.to_owned(),
+        reason: format!(
+            "holds a damaged {COPY}: its fingerprint is {found}, not {}; run the study again, which writes it anew",
+            made.text_hash
+        ),
+    })
 }
 
 /// Reads a shard and the key of its chunk; what its bytes are must be what its name says.
@@ -352,6 +367,7 @@ impl Study {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             title: self.title.clone(),
             study_hash: self.fingerprint(),
+            text_hash: self.text_hash(),
             seed: self.seed,
             design: self.design.name().to_owned(),
             measure: self.intensity.as_ref().map(|Intensity { measure, .. }| measure.to_string()),
@@ -370,6 +386,11 @@ impl Study {
             cases: 0,
             complete: false,
         })
+    }
+
+    /// The fingerprint of its file as files have it.
+    fn text_hash(&self) -> String {
+        format!("{:016x}", fnv1a(self.text.as_bytes()))
     }
 
     /// The fingerprint as files have it.

@@ -23,6 +23,14 @@ described! {
     }
 }
 
+/// What tells the shards of a study from all others.
+pub(super) struct Keys {
+    /// What all cases have in common.
+    common: String,
+    /// Every motion.
+    motions: Vec<u64>,
+}
+
 impl Study {
     /// What all cases have in common.
     pub(super) fn common(&self) -> Result<Vec<Common>, StudyError> {
@@ -70,8 +78,14 @@ impl Study {
         self.design.is_sample() || matches!(self.design, Design::Saltelli { .. })
     }
 
+    /// What tells the shards of this study from all others.
+    pub(super) fn keys(&self) -> Result<Keys, StudyError> {
+        let common: Vec<String> = self.common()?.into_iter().map(|one| one.hash).collect();
+        Ok(Keys { common: common.join(" "), motions: self.motion_keys()? })
+    }
+
     /// What tells the motions from all others: how each is made, and the bytes of its files.
-    pub(super) fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
+    fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
         let base = self.scenario(&[])?;
         let key = |motion: &super::Motion| {
             let files = hash_files(&motion.name, &motion.shaking.files(Some(&base.motion)))?;
@@ -81,9 +95,8 @@ impl Study {
         self.motions.iter().map(key).collect()
     }
 
-    /// What a chunk holds, apart from what all cases have in common: its cases, their motions, levels and
-    /// values, in order.
-    pub(super) fn chunk_key(&self, chunk: usize, motions: &[u64]) -> u64 {
+    /// What a chunk holds: what all cases have in common, and its cases, their motions, levels and values, in order.
+    pub(super) fn chunk_key(&self, chunk: usize, keys: &Keys) -> u64 {
         let words = |case: &Case| {
             let settings: Vec<String> = case
                 .settings
@@ -91,12 +104,12 @@ impl Study {
                 .map(|setting| setting.as_ref().map_or_else(String::new, super::Setting::word))
                 .collect();
             let level = case.level.map_or_else(String::new, plain);
-            let motion = motions[case.motion];
+            let motion = keys.motions[case.motion];
             format!("{} {:016x} {motion:016x} {level} {settings:?}", case.number, case.id)
         };
         let numbers = self.chunks.numbers(chunk);
-        let all: Vec<String> =
-            numbers.iter().map(|number| words(&self.cases.case(self, *number))).collect();
+        let cases = numbers.iter().map(|number| words(&self.cases.case(self, *number)));
+        let all: Vec<String> = std::iter::once(keys.common.clone()).chain(cases).collect();
         fnv1a(all.join("\n").as_bytes())
     }
 }

@@ -66,6 +66,11 @@ impl std::fmt::Display for Making {
 }
 
 impl Synthetic {
+    /// Whether it differs from another in nothing but its seed.
+    pub(super) fn is_of_ensemble(&self, other: &Self) -> bool {
+        Self { seed: 0, ..self.clone() } == Self { seed: 0, ..other.clone() }
+    }
+
     fn motion(&self) -> Result<GroundMotion, MotionError> {
         let (step, seed) = (self.time_step, self.seed);
         match &self.maker {
@@ -361,6 +366,27 @@ fn size(ground: &Ground) -> usize {
 #[cfg(test)]
 mod tests {
     use super::{MEASURES, measure, scaled_measures};
+
+    #[test]
+    fn realizations_of_an_ensemble_are_equally_long() {
+        let text = |kind: &str| {
+            format!(
+                "schema = 1\ntitle = \"lengths\"\n[base]\nextends = \"candia-8-barrels\"\n[design]\nkind = \"stripes\"\n\
+                 [intensity]\nmeasure = \"pgv\"\nlevels = [\"20 cm/s\"]\n\
+                 [[motion]]\nsynthetic = {{ count = 6, {kind} }}\n"
+            )
+        };
+        for kind in [
+            "kind = \"boore\", magnitude = 6.0, distance = \"8 km\"",
+            "kind = \"clough-penzien\", rms = \"1 m/s2\"",
+            "kind = \"near-fault\", magnitude = 6.0, distance = \"8 km\", pulse_velocity = \"40 cm/s\", pulse_period = \"1 s\"",
+        ] {
+            let study = crate::Study::parse("lengths.toml", &text(kind)).unwrap();
+            let base = study.scenario(&[]).unwrap().motion;
+            let end = |at: usize| study.motions[at].shaking.ground(&base, 1.0).unwrap().end();
+            assert!((1..6).all(|at| end(at) == end(0)), "{kind}");
+        }
+    }
 
     #[test]
     fn measures_of_a_scaled_motion_are_the_scaled_measures() {

@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use barrelstack_campaign::study::RunOptions;
 use barrelstack_report::{Document, html, markdown};
 use serde::Serialize;
@@ -12,7 +11,7 @@ use crate::interrupt::keeps;
 use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::Progress;
-use crate::store::{store, writable};
+use crate::store::{folder_below, store, writable};
 
 /// How studies are run, and how the page is told.
 #[derive(Debug, clap::Args)]
@@ -78,9 +77,7 @@ pub(super) fn write_both(
 
 /// Writes a page as HTML and as Markdown with its figures beside it.
 pub(super) fn write(out: &Path, page: &Document) -> anyhow::Result<()> {
-    let figures = out.join("figures");
-    std::fs::create_dir_all(&figures)
-        .with_context(|| format!("cannot make {}", figures.display()))?;
+    let figures = folder_below(out, "figures")?;
     store(&out.join("index.html"), html(page).as_bytes())?;
     let bundle = markdown(page, "figures");
     store(&out.join("index.md"), bundle.text.as_bytes())?;

@@ -15,7 +15,7 @@ use crate::args::ReproduceArgs;
 use crate::interrupt::Stopped;
 use crate::printer;
 use crate::progress::Progress;
-use crate::store::{store, writable};
+use crate::store::{folder_below, store, writable};
 
 /// Runs every case, writes the page, prints the table.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
@@ -46,7 +46,7 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
     let put = |name: &str, bytes: &[u8]| store(&out.join(name), bytes);
-    prepare(&out.join("figures"))?;
+    folder_below(out, "figures")?;
     super::page::write(out, &found.document)?;
     put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
     put("index.pdf", &document_pdf(&found.document, Paper::A4))?;

@@ -35,6 +35,9 @@ Start with:
 Results are in the folder: table.csv and table.parquet, whose columns columns.csv explains, provenance.json, and
 one Parquet file a chunk in shards.";
 
+/// Exit status of `study collect` where chunks are missing.
+const UNFINISHED: u8 = 1;
+
 /// Arguments of `study`.
 #[derive(Debug, clap::Args)]
 #[command(
@@ -120,7 +123,8 @@ enum Action {
     RunChunk(ChunkArgs),
     /// Say how far a study is.
     Status(FolderArgs),
-    /// Write table.csv, table.parquet and provenance.json from the shards that are there.
+    /// Write table.csv, table.parquet and provenance.json from the shards that are there; exit status 1 where chunks are
+    /// missing.
     Collect(FolderArgs),
     /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
     Report(report::ReportArgs),
@@ -150,7 +154,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
         Some(Action::Plan { which, json }) => plan(which, *json)?,
         Some(Action::RunChunk(args)) => return run_chunk(args),
         Some(Action::Status(args)) => status(args)?,
-        Some(Action::Collect(args)) => collect(args)?,
+        Some(Action::Collect(args)) => return collect(args),
         Some(Action::Report(args)) => report::report(args)?,
         Some(Action::Export(args)) => export::export(args)?,
         Some(Action::Emit(args)) => emit::emit(args)?,
@@ -183,13 +187,19 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
         "every chunk that was done is in {}: run the same command again to go on from there",
         out.display()
     ));
-    let live = live::Live::new(!args.quiet, study.design.is_sample());
+    let live = live::Live::new(!args.quiet, study.design.is_sample(), out);
     let options = RunOptions { threads: args.threads, lanes: args.lanes.lanes };
     let ran = study.run_all(out, &options, &|progress| live.at(progress));
-    let damaged = live.damaged();
+    let (damaged, healed) = (live.damaged(), live.manifest_healed());
     drop(live);
     ran.map_err(stopped)?;
     warn_of_damaged(damaged, out);
+    if healed {
+        printer::warning(&format!(
+            "{} was damaged: written anew from the study",
+            out.join("study.json").display()
+        ));
+    }
     let (answer, made) = collected(out)?;
     let page = report::write_page(out)?;
     if args.json {
@@ -295,7 +305,12 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     keeps(format!("chunk {} is to be run again", args.chunk));
     let interrupt = Interrupt::listen();
     let lanes = args.lanes.lanes.unwrap_or_else(Width::widest);
-    match study.run_chunk(&args.out, args.chunk, lanes, &|| interrupt.asked()) {
+    let waiting = live::Waiting::new(&args.out);
+    let stop = || {
+        waiting.at(Some(args.chunk));
+        interrupt.asked()
+    };
+    match study.run_chunk(&args.out, args.chunk, lanes, &stop) {
         Ok(ChunkRun::Before) => {
             printer::lines([format!("chunk {} was done before", args.chunk)])?;
         }
@@ -331,12 +346,26 @@ fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), Study
     Ok((answer, made))
 }
 
-fn collect(args: &FolderArgs) -> anyhow::Result<()> {
+/// Writes the table of what is there, and fails where some is missing: what follows in a script must not take a part for
+/// the whole.
+fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
     let (answer, made) = collected(&args.folder)?;
     if args.json {
-        return printer::document(&StudyResult::of(&(&answer, &made)));
+        printer::document(&StudyResult::of(&(&answer, &made)))?;
+    } else {
+        printer::lines(answer::lines(&answer, &made, &args.folder))?;
     }
-    printer::lines(answer::lines(&answer, &made, &args.folder))
+    if made.complete {
+        return Ok(ExitCode::SUCCESS);
+    }
+    printer::warning(&format!(
+        "the study is unfinished, with {} of {} chunks done: the table holds what is there; `barrelstack study status {}` lists \
+         the chunks to run",
+        made.chunks_done,
+        made.chunks,
+        args.folder.display()
+    ));
+    Ok(ExitCode::from(UNFINISHED))
 }
 
 fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {

@@ -47,7 +47,8 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     }
     text.push_str("time (s)");
     for name in super::names(&record.channels) {
-        let _ = write!(text, ",{name} (m/s2)");
+        let guard = if is_formula(&name) { "'" } else { "" };
+        let _ = write!(text, ",{guard}{name} (m/s2)");
     }
     text.push('\n');
     for row in 0..rows {
@@ -64,7 +65,15 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
 
 /// A text on one line, without the words by which other formats are known.
 fn plain(text: &str) -> String {
-    super::broken(&super::line(text), &super::FOREIGN)
+    let line = super::broken(&super::line(text), &super::FOREIGN);
+    let cells = line.split(',').map(|cell| if is_formula(cell) { format!("'{cell}") } else { cell.to_owned() });
+    cells.collect::<Vec<_>>().join(",")
+}
+
+/// Whether a spreadsheet would compute a cell; it takes one with an apostrophe before it as text.
+fn is_formula(cell: &str) -> bool {
+    let cell = cell.trim_start();
+    cell.starts_with(['=', '+', '-', '@']) && cell.len() > 1 && cell.parse::<f64>().is_err()
 }
 
 /// A time (s) to nine decimals without trailing zeros.

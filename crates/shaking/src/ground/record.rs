@@ -1,6 +1,6 @@
 //! The record of a scenario: fetched, at hand, read.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use barrelstack_input::{FileRef, system};
 use barrelstack_motion::{
@@ -128,6 +128,10 @@ pub(super) fn read_file(
     };
     record.map(named).map_err(|error| {
         let mut failure: ReadFailure = (*error).clone();
+        if is_outside(file) {
+            "other text, which is not shown, since the file lies outside the folder of the scenario"
+                .clone_into(&mut failure.found);
+        }
         // The reader knows what is missing, the scenario where to state it.
         if let Refusal::Missing(given) = failure.refusal {
             failure.remedy += match given {
@@ -141,6 +145,19 @@ pub(super) fn read_file(
         }
         GroundError::Read(failure.into())
     })
+}
+
+/// Whether a file lies outside the folder of the file that names it: a scenario of somebody else must not have a message
+/// quote what it was not given.
+fn is_outside(file: &FileRef) -> bool {
+    let folder = if file.folder.as_os_str().is_empty() { Path::new(".") } else { &file.folder };
+    match (file.resolve().canonicalize(), folder.canonicalize()) {
+        (Ok(path), Ok(folder)) => !path.starts_with(folder),
+        // What was given as a value lies nowhere.
+        _ => Path::new(&file.path)
+            .components()
+            .any(|part| !matches!(part, Component::Normal(_) | Component::CurDir)),
+    }
 }
 
 fn unit(meters_per_second_squared: f64) -> Result<AccelerationUnit, GroundError> {

@@ -1,13 +1,16 @@
 //! A line on the terminal while a study runs, and Ctrl-C that keeps what was done.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
-use barrelstack_campaign::study::Progress;
+use barrelstack_campaign::study::{Holder, Progress, holder};
 use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
+use crate::printer;
 use crate::progress::{Bar, Lines, style};
 
 /// Tells how far a study is, and whether the user wants it to stop.
@@ -18,11 +21,60 @@ pub(super) struct Live {
     sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
+    healed: AtomicBool,
+    waiting: Waiting,
+}
+
+/// Says once who holds a chunk for which this process waits, when it has waited for a while: a process that was stopped
+/// holds its chunk for ever.
+pub(super) struct Waiting {
+    folder: PathBuf,
+    /// The chunk, since when, and whether it was said.
+    state: Mutex<Option<(usize, Instant, bool)>>,
+}
+
+/// Time before anything is said.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+impl Waiting {
+    /// Of the chunks of a folder.
+    pub(super) fn new(folder: &Path) -> Self {
+        Self { folder: folder.to_owned(), state: Mutex::new(None) }
+    }
+
+    /// Knows the chunk that is waited for, if any, many times a second.
+    pub(super) fn at(&self, chunk: Option<usize>) {
+        let Ok(mut state) = self.state.lock() else { return };
+        let Some(chunk) = chunk else { return };
+        let known = state.filter(|(known, ..)| *known == chunk);
+        let (_, since, said) = *state.insert(known.unwrap_or((chunk, Instant::now(), false)));
+        if said || since.elapsed() < PATIENCE {
+            return;
+        }
+        *state = Some((chunk, since, true));
+        drop(state);
+        if let Some(Holder { who, age }) = holder(&self.folder, chunk) {
+            printer::warning(&format!(
+                "waiting for chunk {chunk}, which {who} has held for {}; if that process is stopped or hangs, let it go on \
+                 (kill -CONT) or end it, and its chunk goes to another",
+                age_in_words(age)
+            ));
+        }
+    }
+}
+
+/// A time as people say it: "40 s", "12 min", "3 h".
+fn age_in_words(age: Duration) -> String {
+    match age.as_secs() {
+        seconds @ ..120 => format!("{seconds} s"),
+        seconds @ ..7200 => format!("{} min", seconds / 60),
+        seconds => format!("{} h", seconds / 3600),
+    }
 }
 
 impl Live {
     /// Starts; shows a line only when asked to and only on a terminal.
-    pub(super) fn new(show: bool, sample: bool) -> Self {
+    pub(super) fn new(show: bool, sample: bool, folder: &Path) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::no_length();
             bar.set_style(style("{spinner} reading the motions"));
@@ -35,6 +87,8 @@ impl Live {
             sample,
             interrupt: Interrupt::listen(),
             damaged: AtomicUsize::new(0),
+            healed: AtomicBool::new(false),
+            waiting: Waiting::new(folder),
         }
     }
 
@@ -43,9 +97,16 @@ impl Live {
         self.damaged.load(Ordering::Relaxed)
     }
 
+    /// Whether the manifest was damaged and has been written anew.
+    pub(super) fn manifest_healed(&self) -> bool {
+        self.healed.load(Ordering::Relaxed)
+    }
+
     /// Shows how far it is.
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
         self.damaged.store(progress.damaged, Ordering::Relaxed);
+        self.healed.store(progress.manifest_healed, Ordering::Relaxed);
+        self.waiting.at(progress.waits_for);
         if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style(

@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use anyhow::{Context as _, bail};
+use barrelstack::scenario::fnv1a;
 use barrelstack_campaign::study::{ColumnSpec, Value, ValueKind};
+use barrelstack_input::system;
 use serde_json::json;
 
 use crate::commands::motion::input;
@@ -65,12 +67,7 @@ impl Journal {
         let names: Vec<String> = specs.iter().map(ColumnSpec::heading).collect();
         let version = env!("CARGO_PKG_VERSION");
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path)
+        let file = system::open_to_change(&path)
             .map_err(input::plain)
             .with_context(|| cannot("write"))?;
         // Where a file system has no locks, two commands are not told from each other.
@@ -157,15 +154,23 @@ impl Entry {
             Some(Value::Text(value)) => json!(value),
         };
         let row = self.row.as_ref().map(|row| row.iter().map(value).collect::<Vec<_>>());
-        json!({
+        let mut line = json!({
             "record": self.record,
             "hash": format!("{:016x}", self.hash),
             "row": row,
             "refused": self.refused,
-        })
+        });
+        line["line"] = seal(&line).into();
+        line
     }
 
+    /// What a line says; none where it is not as it was written.
     fn of(found: &serde_json::Value, specs: &[ColumnSpec]) -> Option<Self> {
+        let mut bare = found.clone();
+        let stated = bare.as_object_mut()?.remove("line")?;
+        if stated.as_str() != Some(&seal(&bare)) {
+            return None;
+        }
         let row = if found["row"].is_null() {
             None
         } else {
@@ -180,6 +185,11 @@ impl Entry {
             refused: serde_json::from_value(found["refused"].clone()).ok()?,
         })
     }
+}
+
+/// The fingerprint of a line without it.
+fn seal(line: &serde_json::Value) -> String {
+    format!("{:016x}", fnv1a(line.to_string().as_bytes()))
 }
 
 /// A value of a column's kind; the outer None where it is of another.

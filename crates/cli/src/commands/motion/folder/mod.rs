@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::bail;
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
+use barrelstack_report::csv_field;
 use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
 use indicatif::ProgressBar;
@@ -226,9 +227,8 @@ impl Measurements {
         store(&self.out.join("records.parquet"), &self.table.to_parquet()?)?;
         let mut text = "file,reason\n".to_owned();
         for (file, reason) in &self.refused {
-            let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{},{}", quoted(file), quoted(reason));
+            let _ = writeln!(text, "{},{}", csv_field(file), csv_field(reason));
         }
         store(&self.out.join("refused.csv"), text.as_bytes())
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use barrelstack_campaign::study::StudyTable;
+use barrelstack_report::csv_field;
 use barrelstack_selection::{Chosen, Selection, SelectionTarget};
 
 use super::SelectArgs;
@@ -43,7 +44,6 @@ impl Set<'_> {
     fn csv(&self) -> String {
         let mut text =
             "record,files,event,factor,magnitude,rupture_distance (km),epicentral_distance (km),vs30 (m/s)\n".to_owned();
-        let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
         for (row, chosen) in self.chosen() {
             let number = |column: &str| {
                 self.number(column, row).map_or_else(String::new, |value| value.to_string())
@@ -52,9 +52,9 @@ impl Set<'_> {
             let _ = writeln!(
                 text,
                 "{},{},{},{},{},{},{},{}",
-                quoted(self.text("record", row)),
-                quoted(self.text("files", row)),
-                quoted(self.text("event", row)),
+                csv_field(self.text("record", row)),
+                csv_field(self.text("files", row)),
+                csv_field(self.text("event", row)),
                 chosen.scale,
                 number("magnitude"),
                 number("rupture_distance"),

@@ -1,0 +1,115 @@
+//! The manifest of a folder: what its shards belong to, with a fingerprint of its own bytes.
+//!
+//! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file with zeros in its place, so that
+//! no byte of it can change without being noticed. It guards against damage, not against somebody who means to deceive.
+
+use std::path::Path;
+
+use super::draft::write_whole;
+use super::error::StudyError;
+use super::folder::{LAYOUT, MANIFEST, Provenance, read_file};
+use crate::scenario::fnv1a;
+
+/// Before the fingerprint, which ends the file.
+const BEFORE: &str = ",\n  \"fingerprint\": \"";
+
+/// Behind it.
+const BEHIND: &str = "\"\n}\n";
+
+/// Digits of a fingerprint.
+const DIGITS: usize = 16;
+
+/// What a folder says that it belongs to.
+pub(super) enum Manifest {
+    /// As it was written.
+    Sound(Box<Provenance>),
+    /// Changed since; what shows it, as a clause.
+    Damaged(String),
+}
+
+/// The bytes with zeros in place of the fingerprint, and that fingerprint; none where there is none.
+fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
+    let rest = bytes.strip_suffix(BEHIND.as_bytes())?;
+    let (head, stated) = rest.split_at_checked(rest.len().checked_sub(DIGITS)?)?;
+    head.ends_with(BEFORE.as_bytes()).then_some(())?;
+    Some(([head, &[b'0'; DIGITS], BEHIND.as_bytes()].concat(), stated))
+}
+
+/// Writes what a folder belongs to.
+pub(super) fn write(folder: &Path, made: &Provenance) -> Result<(), StudyError> {
+    let text =
+        serde_json::to_string_pretty(made).map_err(|error| StudyError::Table(error.to_string()))?;
+    let body = text.trim_end().strip_suffix("\n}").unwrap_or(&text);
+    let sealed = |digits: &str| format!("{body}{BEFORE}{digits}{BEHIND}");
+    let found = fnv1a(sealed(&"0".repeat(DIGITS)).as_bytes());
+    write_whole(&folder.join(MANIFEST), sealed(&format!("{found:016x}")).as_bytes())
+}
+
+/// What a folder belongs to, as far as its manifest can be relied on.
+///
+/// # Errors
+/// When there is none, it cannot be read, or another version wrote it.
+pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
+    let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
+    let path = folder.join(MANIFEST);
+    if !path.is_file() {
+        return Err(refuse(if folder.is_dir() {
+            format!("is no folder of a study: it has no {MANIFEST}; name one that a study wrote")
+        } else {
+            "is not there; name a folder that a study wrote".to_owned()
+        }));
+    }
+    let bytes = read_file(&path)?;
+    let known = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
+    let sealed = parted(&bytes).map(|(zeroed, stated)| (format!("{:016x}", fnv1a(&zeroed)), stated));
+    let Some((found, stated)) = sealed else {
+        // Earlier layouts had no fingerprint.
+        let text = |key: &str| known.as_ref().map_or(String::new(), |known| known[key].to_string());
+        if known.as_ref().and_then(|known| known["schema"].as_u64()).is_some_and(|n| n < LAYOUT.into()) {
+            return Err(refuse(format!(
+                "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+                 version, or name another folder",
+                text("version").trim_matches('"'),
+                text("schema")
+            )));
+        }
+        return Ok(Manifest::Damaged("it does not end with its fingerprint".to_owned()));
+    };
+    if found.as_bytes() != stated {
+        return Ok(Manifest::Damaged(format!(
+            "its {} bytes have the fingerprint {found}, not {}",
+            bytes.len(),
+            String::from_utf8_lossy(stated)
+        )));
+    }
+    let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
+        refuse(format!(
+            "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
+        ))
+    })?;
+    if known.schema != LAYOUT {
+        return Err(refuse(format!(
+            "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
+             version, or name another folder",
+            known.version, known.schema
+        )));
+    }
+    Ok(Manifest::Sound(Box::new(known)))
+}
+
+/// The manifest of a folder.
+pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
+    match read(folder)? {
+        Manifest::Sound(known) => Ok(*known),
+        Manifest::Damaged(how) => Err(damaged(folder, &how)),
+    }
+}
+
+/// A refusal of a damaged manifest.
+pub(super) fn damaged(folder: &Path, how: &str) -> StudyError {
+    let reason = format!(
+        "holds a damaged {MANIFEST}: {how}; run the study whose file is study.toml there once more with this folder as --out, \
+         which writes {MANIFEST} anew and keeps every sound chunk"
+    );
+    StudyError::Folder { folder: folder.to_owned(), reason }
+}
