@@ -190,7 +190,9 @@ impl Folder {
             .clone()
             .try_for_each(|(name, bytes)| {
                 let write = system::begin(&self.temporary(name));
-                write.and_then(|mut file| file.write_all(bytes)).map_err(|error| self.refused(name, &error))
+                write
+                    .and_then(|mut file| file.write_all(bytes))
+                    .map_err(|error| self.refused(name, &error))
             })
             .and_then(|()| {
                 names().try_for_each(|name| {

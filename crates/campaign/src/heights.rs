@@ -15,8 +15,8 @@ use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
-use crate::system;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
+use crate::system;
 
 pub use crate::scenario::View;
 pub use json::HeightsDocument;

@@ -32,7 +32,8 @@ pub fn words(error: &io::Error) -> String {
 /// # Errors
 /// In words, when the file cannot be opened, or is a named pipe, a device or a socket.
 pub fn open(path: &Path) -> Result<File, String> {
-    let of_the_shell = ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|place| path.starts_with(place));
+    let of_the_shell =
+        ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|place| path.starts_with(place));
     let found = fs::metadata(path).map_err(|error| words(&error))?;
     if !of_the_shell && !found.is_dir() {
         regular(&found).map_err(|error| words(&error))?;
@@ -48,7 +49,10 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     if of.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
-    Err(io::Error::new(io::ErrorKind::InvalidInput, format!("it is {}, not a file; write what it carries into a file and name that", kind(of))))
+    Err(io::Error::new(
+        io::ErrorKind::InvalidInput,
+        format!("it is {}, not a file; write what it carries into a file and name that", kind(of)),
+    ))
 }
 
 /// What is neither a file nor a folder.
@@ -249,7 +253,8 @@ mod tests {
 
     impl Place {
         fn new(name: &str) -> io::Result<Self> {
-            let path = std::env::temp_dir().join(format!("barrelstack-{name}-{}", std::process::id()));
+            let path =
+                std::env::temp_dir().join(format!("barrelstack-{name}-{}", std::process::id()));
             fs::create_dir_all(&path)?;
             Ok(Self(path))
         }
@@ -267,7 +272,10 @@ mod tests {
         let pipe = place.0.join("pipe");
         assert!(Command::new("mkfifo").arg(&pipe).status()?.success());
         let said = |path: &Path| read(path, 100).unwrap_err();
-        assert_eq!(said(&pipe), "it is a named pipe, not a file; write what it carries into a file and name that");
+        assert_eq!(
+            said(&pipe),
+            "it is a named pipe, not a file; write what it carries into a file and name that"
+        );
         assert!(said(Path::new("/dev/zero")).starts_with("it is a device, not a file"));
         assert_eq!(said(&place.0), "it is a folder, not a file");
         assert!(open_to_change(&pipe).is_err());

@@ -256,7 +256,9 @@ impl RenderFolder {
         for entry in entries {
             let path = entry.map_err(|error| ExportError::refused(&place, &error))?.path();
             let kind = path.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
-            let unfinished = system::is_unfinished(&path, |whole| KINDS.iter().any(|kind| whole.ends_with(kind)));
+            let unfinished = system::is_unfinished(&path, |whole| {
+                KINDS.iter().any(|kind| whole.ends_with(kind))
+            });
             if path.is_file() && (KINDS.contains(&kind) || unfinished) {
                 files.push(path);
             }

@@ -98,7 +98,8 @@ impl Search<'_> {
         for at in open {
             for (direction, (view, stack)) in trials[*at].stacks.iter().enumerate() {
                 let study = plan::study(self.request, stack, self.levels, round)?;
-                let below = Path::new(&trials[*at].protection.key).join(plan::name(view.name(), round));
+                let below =
+                    Path::new(&trials[*at].protection.key).join(plan::name(view.name(), round));
                 let folder = self.folder.join(&below);
                 system::folder_below(self.folder, &below)
                     .map_err(StudyError::system("make the folder", &folder))?;

@@ -204,7 +204,9 @@ fn ensemble(
     let kind: Maker = reader.choice("kind")?;
     let count = reader.integer("count")?;
     if count as usize > MOST {
-        let message = format!("{count} motions are more than the {MOST} that a study has at most: take fewer, or several studies with other seeds");
+        let message = format!(
+            "{count} motions are more than the {MOST} that a study has at most: take fewer, or several studies with other seeds"
+        );
         return Err(reader.inconsistent("count", message));
     }
     let own = reader.optional_integer("seed")?.map(u64::from);

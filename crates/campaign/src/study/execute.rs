@@ -286,12 +286,7 @@ impl Study {
     ///
     /// A shard that is damaged, or holds other cases than its chunk has now, is set aside, and its chunk is not done:
     /// the latter was made before the study grew, maybe by a process that has not ended yet.
-    fn done(
-        &self,
-        folder: &Folder,
-        chunks: Range<usize>,
-        keys: &Keys,
-    ) -> Result<Done, StudyError> {
+    fn done(&self, folder: &Folder, chunks: Range<usize>, keys: &Keys) -> Result<Done, StudyError> {
         let (mut done, specs) = (Done::default(), self.columns());
         for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
             match read_shard(&path, &specs) {

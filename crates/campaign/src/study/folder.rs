@@ -21,8 +21,8 @@ use super::claim::Claim;
 use super::design::Design;
 use super::draft::write_whole;
 use super::error::StudyError;
-use super::manifest::{self, Manifest, manifest_of};
 use super::grow::{Common, difference};
+use super::manifest::{self, Manifest, manifest_of};
 use super::motions::hash_files;
 use super::shard;
 use super::stop::StopRule;
@@ -183,7 +183,8 @@ impl Folder {
         // An earlier version may have made other keys of the same motions.
         let keys = || study.motions.iter().map(|motion| format!("{:016x}", motion.shaking.key()));
         let same = |known: &Provenance| {
-            known.motions.iter().map(|m| m.key.clone()).eq(keys()) && known.text_hash == study.text_hash()
+            known.motions.iter().map(|m| m.key.clone()).eq(keys())
+                && known.text_hash == study.text_hash()
         };
         if !manifest.is_file() || !self.is_ours()? || !same(&manifest_of(&self.path)?) {
             manifest::write(&self.path, &study.provenance()?)?;

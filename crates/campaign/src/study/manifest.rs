@@ -61,11 +61,16 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     }
     let bytes = read_file(&path)?;
     let known = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
-    let sealed = parted(&bytes).map(|(zeroed, stated)| (format!("{:016x}", fnv1a(&zeroed)), stated));
+    let sealed =
+        parted(&bytes).map(|(zeroed, stated)| (format!("{:016x}", fnv1a(&zeroed)), stated));
     let Some((found, stated)) = sealed else {
         // Earlier layouts had no fingerprint.
         let text = |key: &str| known.as_ref().map_or(String::new(), |known| known[key].to_string());
-        if known.as_ref().and_then(|known| known["schema"].as_u64()).is_some_and(|n| n < LAYOUT.into()) {
+        if known
+            .as_ref()
+            .and_then(|known| known["schema"].as_u64())
+            .is_some_and(|n| n < LAYOUT.into())
+        {
             return Err(refuse(format!(
                 "was written by version {} in layout {} of such folders, and this version reads layout {LAYOUT}; use that \
                  version, or name another folder",

@@ -66,7 +66,9 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
 /// A text on one line, without the words by which other formats are known.
 fn plain(text: &str) -> String {
     let line = super::broken(&super::line(text), &super::FOREIGN);
-    let cells = line.split(',').map(|cell| if is_formula(cell) { format!("'{cell}") } else { cell.to_owned() });
+    let cells = line
+        .split(',')
+        .map(|cell| if is_formula(cell) { format!("'{cell}") } else { cell.to_owned() });
     cells.collect::<Vec<_>>().join(",")
 }
 

@@ -67,9 +67,8 @@ impl Journal {
         let names: Vec<String> = specs.iter().map(ColumnSpec::heading).collect();
         let version = env!("CARGO_PKG_VERSION");
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
-        let file = system::open_to_change(&path)
-            .map_err(input::plain)
-            .with_context(|| cannot("write"))?;
+        let file =
+            system::open_to_change(&path).map_err(input::plain).with_context(|| cannot("write"))?;
         // Where a file system has no locks, two commands are not told from each other.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let out = out.display();

@@ -12,9 +12,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::bail;
 use barrelstack::pool;
 use barrelstack::scenario::{Dimension, fnv1a};
-use barrelstack_report::csv_field;
 use barrelstack_campaign::study::StudyTable;
 use barrelstack_motion::{Flatfile, Processing, Record, Stage, measure, record_sequence_number};
+use barrelstack_report::csv_field;
 use indicatif::ProgressBar;
 
 use super::input::{self, Chain, Input};
