@@ -365,12 +365,13 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
-    // A later version may lay folders out in another way.
-    let later = String::from_utf8(before).unwrap().replacen("\"schema\": 2", "\"schema\": 3", 1);
-    std::fs::write(folder.path().join("study.json"), later).unwrap();
+    // An earlier version laid folders out in another way, without a fingerprint.
+    let text = String::from_utf8(before).unwrap().replacen("\"schema\": 3", "\"schema\": 2", 1);
+    let earlier = format!("{}\n}}\n", text.split_once(",\n  \"fingerprint\"").unwrap().0);
+    std::fs::write(folder.path().join("study.json"), earlier).unwrap();
     let error = Collected::read(folder.path()).unwrap_err().to_string();
     assert!(
-        error.contains("in layout 3 of such folders, and this version reads layout 2"),
+        error.contains("in layout 2 of such folders, and this version reads layout 3"),
         "{error}"
     );
 

@@ -18,6 +18,7 @@ Exit status:
   1    the numbers broke down, and there is no verdict
   2    there is none: a mistake in what was asked for, or a file that could not be read or written
   3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
+  4    chunks of a study are missing, and its table holds those that are there (study collect)
   130  stopped by Ctrl-C or by SIGTERM: what was computed until then was printed and written
 
 With --json what has no result prints one document as well, of the schema `error`; see barrelstack schema.";

@@ -215,10 +215,10 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     let written = begin(&part)
         .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| std::fs::rename(&part, path));
+        .and_then(|()| fs::rename(&part, path));
     if written.is_err() {
         // It may never have been made, and that is well.
-        let _ = std::fs::remove_file(&part);
+        let _ = fs::remove_file(&part);
     }
     written
 }
@@ -231,12 +231,12 @@ pub fn writable(folder: &Path) -> Result<(), String> {
     let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
     let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
     let probe = temporary(&folder.join("barrelstack"));
-    let tried = std::fs::create_dir_all(&folder)
+    let tried = fs::create_dir_all(&folder)
         .and_then(|()| begin(&probe).map(drop))
-        .and_then(|()| std::fs::remove_file(&probe));
+        .and_then(|()| fs::remove_file(&probe));
     for made in missing {
         // What could not be made need not be removed, and what is not empty is somebody else's.
-        let _ = std::fs::remove_dir(made);
+        let _ = fs::remove_dir(made);
     }
     tried.map_err(|error| words(&error))
 }

@@ -133,19 +133,11 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         motions.extend(ensembles::read(&set, opened, number, seed)?);
         set.finish();
     }
-    if motions.len() > ensembles::MOST {
-        let message = format!(
-            "the study has {} motions, and a study has {} at most: take fewer, or several studies with other seeds",
-            motions.len(),
-            ensembles::MOST
-        );
-        return Err(top.inconsistent("motion", message).into());
-    }
     let own = motions.is_empty();
     if own {
         motions.push(Motion { name: "base".to_owned(), shaking: Shaking::Base });
     }
-    unique_names(&top, &motions)?;
+    few_of_their_own_names(&top, &motions)?;
 
     let mut factors: Vec<Factor> = Vec::new();
     for reader in top.sections("factor")? {
@@ -247,7 +239,16 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-fn unique_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
+/// Refuses too many motions, and two of one name.
+fn few_of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
+    if motions.len() > ensembles::MOST {
+        let message = format!(
+            "the study has {} motions, and a study has {} at most: take fewer, or several studies with other seeds",
+            motions.len(),
+            ensembles::MOST
+        );
+        return Err(top.inconsistent("motion", message));
+    }
     let mut seen = std::collections::BTreeSet::new();
     for motion in motions {
         if !seen.insert(&motion.name) {

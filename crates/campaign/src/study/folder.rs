@@ -139,6 +139,11 @@ impl Folder {
             return refuse("is a file, not a folder; name another".to_owned());
         }
         let (manifest, shards) = (path.join(MANIFEST), path.join(SHARDS));
+        if fs::symlink_metadata(&shards).is_ok() {
+            // There already: refused where it is a link.
+            system::folder_below(path, Path::new(SHARDS))
+                .map_err(StudyError::system("write in", &shards))?;
+        }
         // Listed before the manifest is looked for: what another run makes in between comes after its manifest.
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {

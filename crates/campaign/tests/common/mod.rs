@@ -55,6 +55,7 @@ pub(crate) fn made(
         program: "barrelstack".into(),
         version: "0".into(),
         title: "made by hand".into(),
+        text_hash: String::new(),
         study_hash: "0".into(),
         seed: 7,
         design: design.into(),

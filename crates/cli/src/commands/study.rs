@@ -36,7 +36,7 @@ Results are in the folder: table.csv and table.parquet, whose columns columns.cs
 one Parquet file a chunk in shards.";
 
 /// Exit status of `study collect` where chunks are missing.
-const UNFINISHED: u8 = 1;
+const UNFINISHED: u8 = 4;
 
 /// Arguments of `study`.
 #[derive(Debug, clap::Args)]
@@ -123,7 +123,7 @@ enum Action {
     RunChunk(ChunkArgs),
     /// Say how far a study is.
     Status(FolderArgs),
-    /// Write table.csv, table.parquet and provenance.json from the shards that are there; exit status 1 where chunks are
+    /// Write table.csv, table.parquet and provenance.json from the shards that are there; exit status 4 where chunks are
     /// missing.
     Collect(FolderArgs),
     /// Write the page: fragility, losses, what matters, and with a hazard curve annual rates.
