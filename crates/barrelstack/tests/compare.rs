@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
+use std::ops::ControlFlow;
+
 use barrelstack::compare::{self, CompareError, Side, differences};
 use barrelstack::scenario::Source;
+use barrelstack::variants::{Asked, answer};
 use barrelstack::{Scenario, Summary};
 use barrelstack_report::{Block, Document, FigureKind, Plot, Table, figures, markdown};
 
@@ -189,4 +192,40 @@ fn runs_are_called_by_what_differs_between_them_in_words() {
     // What differs in more than a name can tell keeps the name of its file.
     let many = ["stack.levels=3", "stack.columns=4", "run.gravity=9 m/s^2"];
     assert_eq!(named(&[&[], &many]), ["file", "file (2)"]);
+}
+
+#[test]
+fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() {
+    let answered = |name: &str, levels: &str| {
+        let changes = [
+            levels,
+            "imperfections.variants=6",
+            "run.duration=6 s",
+            "run.stop_after_collapse=0.2 s",
+        ];
+        let scenario = scenario("demo-napa", &changes);
+        let go = &mut |_| ControlFlow::Continue(());
+        (name.to_owned(), answer(&scenario, Asked::Typical, go).unwrap())
+    };
+    let answers =
+        vec![answered("five levels", "stack.levels=5"), answered("two levels", "stack.levels=2")];
+    let aligned = compare::aligned(answers, &mut |_| ControlFlow::Continue(())).unwrap();
+    let sides = compare::sides(aligned);
+    let shown = |side: &Side| {
+        (side.summary.variant, side.run.assembly.view, side.run.scenario.motion.clone())
+    };
+    assert_eq!(shown(&sides[0]), shown(&sides[1]));
+    let document = compare::document(&sides);
+    assert_eq!(lanes(&document), ["ground acceleration", "ground velocity"]);
+    // Counts of the headline are those of the shares and of the pairs.
+    let paired = &compare::Comparison::of(&sides[..]).paired[0];
+    let counts =
+        [&sides[0], &sides[1]].map(|side| side.summary.ensemble.as_ref().unwrap().collapsed);
+    assert_eq!((paired.collapsed(), paired.pairs()), (counts, 6));
+    let [from, to] = counts;
+    let said =
+        if from == to { format!("at {to} of 6") } else { format!("from {from} to {to} of 6") };
+    let headline = &document.verdict.headline;
+    assert!(headline.starts_with("Two levels in place of five levels: collapse"), "{headline}");
+    assert!(headline.contains(&said), "{headline}");
 }
