@@ -210,7 +210,7 @@ described! {
         /// Whether it was stopped early by the user.
         pub interrupted: bool = run.interrupted,
         /// What contact constants are stated for.
-        pub stiffness_basis: &'static str ["node", "length", "mixed"] = run.stiffness_basis(),
+        pub stiffness_basis: &'static str ["seat", "node", "length", "mixed"] = run.stiffness_basis(),
         /// Length scale of similitude.
         pub similitude: f64 as "1" = run.scenario.run.similitude,
         /// Steps taken to find equilibrium.

@@ -142,7 +142,8 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
             if stack.rack.contact != SeatContact::Nodes {
                 return Err("no rack carries nodes along its faces".into());
             }
-            if stack.view == View::Transverse {
+            let per_seat = seats.iter().all(|interface| interface.basis == Basis::Seat);
+            if stack.view == View::Transverse && !per_seat {
                 return Err(
                     "across the barrels single nodes (cradle supports, corners of beams, rolling \
                             barrels) stand for one spacing, so halving it would soften them"

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use barrelstack::scenario::{
     Basis, Damping, Dimension, Friction, Interface, NormalLaw, Scenario, Scene,
 };
+use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math;
 
 use super::CalibrateError;
@@ -81,8 +82,8 @@ impl Tunable {
         let basis = interfaces.barrel_rack.basis;
         if interfaces.rack_ground.basis != basis {
             return Err(refuse(
-                "interface barrel-rack and rack-ground differ in `basis`: state both per node or both \
-                 per length",
+                "interface barrel-rack and rack-ground differ in `basis`: state both per seat, both per \
+                 node or both per length",
             ));
         }
         Ok(Self { parameters: parameters.to_vec(), barrel_rack, rack_ground, basis })
@@ -106,9 +107,9 @@ impl Tunable {
     /// What a parameter measures.
     pub(super) fn dimension(&self, parameter: Parameter) -> Dimension {
         match (parameter, self.basis) {
-            (Parameter::Stiffness, Basis::Node) => Dimension::STIFFNESS,
+            (Parameter::Stiffness, Basis::Node | Basis::Seat) => Dimension::STIFFNESS,
             (Parameter::Stiffness, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
-            (Parameter::Damping, Basis::Node) => Dimension::DAMPING,
+            (Parameter::Damping, Basis::Node | Basis::Seat) => Dimension::DAMPING,
             (Parameter::Damping, Basis::Length) => Dimension::DAMPING_PER_LENGTH,
             (Parameter::FrictionBarrelRack | Parameter::FrictionRackGround, _) => Dimension::NONE,
         }
@@ -186,8 +187,16 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
             "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
         );
     };
-    let Damping::Coefficient(damping) = damping else {
-        return refuse("state `damping` in place of `restitution`, so that c is not tied to k");
+    // A fit that moves k and c apart starts from the c that a stated restitution gives.
+    let damping = match damping {
+        Damping::Coefficient(damping) => damping,
+        Damping::Restitution { restitution: ratio, reference: mass } => {
+            let ratio = match interface.normal {
+                NormalLaw::KelvinVoigt { .. } => restitution::kelvin_voigt_damping_ratio(ratio),
+                _ => restitution::speed_gap_damping_ratio(ratio),
+            };
+            restitution::damping(stiffness, ratio.unwrap_or(0.0), mass)
+        }
     };
     let (kinetic, rest) = match interface.friction {
         Friction::Coulomb { coefficient, static_coefficient, .. } => {

@@ -1,7 +1,7 @@
 //! What of a stack is known in space, and what is refused at its field.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
-use barrelstack::scenario::{Fill, RackKind, Scenario, SeatContact, StackSpec};
+use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
 /// Refuses what is not known in space; the barrel of what is.
@@ -27,11 +27,14 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
                 .into(),
         );
     }
-    if rack.contact != SeatContact::Rails {
+    let interfaces = &spec.interfaces;
+    let bases = [interfaces.rack_ground.basis, interfaces.barrel_rack.basis];
+    if rack.contact != SeatContact::Rails && bases.iter().any(|basis| *basis != Basis::Seat) {
         return refuse(
             "stack.rack.contact",
-            "in space a rack has two beams, each a contact element of its own wherever it touches: set \
-             stack.rack.contact to \"rails\", or stack.view to \"both\""
+            "in space a rack has two beams, each a contact element of its own wherever it touches, and constants that are \
+             not stated per seat hold for another division: set stack.rack.contact to \"rails\", the basis of \
+             interface.rack-ground and interface.barrel-rack to \"seat\", or stack.view to \"both\""
                 .into(),
         );
     }

@@ -6,7 +6,9 @@ mod verdict;
 use std::ops::ControlFlow;
 
 use barrelstack_dynamics::contact::Basis;
-use barrelstack_dynamics::{EnergySummary, Method, RunError, Settled, Simulation, simulate};
+use barrelstack_dynamics::{
+    EnergySummary, Interface, Method, Planar, RunError, Settled, Simulation, simulate,
+};
 
 use crate::assemble::Assembly;
 use crate::ground::{Ground, from_disk};
@@ -416,9 +418,17 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// What the constants of the interfaces are stated for, such as "node"; "mixed" when they differ.
+    /// What the constants of the seats of a stack, or of all interfaces of a free scene, are stated for, such as "seat";
+    /// "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
-        let mut bases = self.assembly.model.interfaces().iter().map(|interface| interface.basis);
+        let model = &self.assembly.model;
+        let seats = |interface: &&Interface<Planar>| {
+            self.assembly.view.is_none() || interface.stop.is_some()
+        };
+        let used = model.pairs().map(|pair| pair.interface);
+        let used: std::collections::BTreeSet<usize> = used.collect();
+        let all = used.iter().map(|interface| &model.interfaces()[*interface]).filter(seats);
+        let mut bases = all.map(|interface| interface.basis);
         let Some(first) = bases.next() else { return Basis::Node.name() };
         if bases.all(|basis| basis == first) { first.name() } else { "mixed" }
     }

@@ -2,8 +2,8 @@
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
-    Body, BodyId, ContactPair, Element, Linear as _, Model, Node, Nodes, NormalLaw, Planar, Round,
-    Shape, Space as _, Substepping, math,
+    Basis, Body, BodyId, ContactPair, Element, Linear as _, Model, Node, Nodes, NormalLaw, Planar,
+    Round, Shape, Space as _, Substepping, math,
 };
 
 use crate::assemble::Assembly;
@@ -250,6 +250,8 @@ fn facing(
     let basis = model.interfaces()[pair.interface].basis;
     let weight = |tributary: f64| basis.weight(tributary);
     match &model.bodies()[pair.contactor].nodes[pair.nodes] {
+        // However many there are, they bear as one.
+        Nodes::Fixed(_) if basis == Basis::Seat => 1.0,
         Nodes::Fixed(nodes) => {
             let total: f64 = nodes.iter().map(|n| weight(n.tributary_length)).sum();
             let two: f64 = nodes.iter().take(2).map(|n| weight(n.tributary_length)).sum();

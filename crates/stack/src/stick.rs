@@ -7,7 +7,6 @@
 
 use std::fmt;
 
-use barrelstack_dynamics::forces::tributary_length;
 use barrelstack_dynamics::{FrictionLaw, Interface, Planar, Scratch};
 use barrelstack_motion::GroundMotion;
 
@@ -38,15 +37,12 @@ impl SoftStick {
         let Some(swing) = motion.map(GroundMotion::pgd) else { return Vec::new() };
         let model = &assembly.model;
         let mut sums = vec![(0.0, 0.0); model.interfaces().len()];
-        for contact in &rest.contacts {
-            let pair = &model.pair(contact.pair);
-            let interface = &model.interfaces()[pair.interface];
-            let length = tributary_length(model, pair, contact.node as usize);
-            let weight = interface.basis.weight(length);
-            let stiffness = interface.friction.stick_stiffness() * weight;
-            if let FrictionLaw::Coulomb { static_coefficient, .. } = interface.friction {
-                sums[pair.interface].0 += static_coefficient * contact.normal_force;
-                sums[pair.interface].1 += stiffness;
+        for pressed in rest.pressed.iter().filter(|pressed| pressed.touching) {
+            let interface = model.pair(pressed.pair).interface;
+            let friction = &model.interfaces()[interface].friction;
+            if let FrictionLaw::Coulomb { static_coefficient, .. } = *friction {
+                sums[interface].0 += static_coefficient * pressed.normal_force;
+                sums[interface].1 += friction.stick_stiffness() * pressed.weight;
             }
         }
         let soft = |(interface, (limit, stiffness)): (&Interface<Planar>, (f64, f64))| {

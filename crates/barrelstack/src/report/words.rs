@@ -252,8 +252,10 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
     let step = 1e3 * time_step;
     pair("integration", format!("{method}, time step {step:.4} ms, {steps} steps"));
     let constants = match stiffness_basis {
+        "seat" => "stated per seat, however many contact nodes it is divided into",
         "node" => "stated per contact node, as in the paper",
         "length" => "stated per meter of boundary",
+        "mixed" => "stated for some seats in one way and for some in another",
         other => other,
     };
     pair("contact constants", constants.to_owned());

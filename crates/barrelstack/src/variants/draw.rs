@@ -82,8 +82,11 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     let steel = &mut [&mut laws.rack_rack, &mut laws.fallen_rack_rack];
     roughen(Shared::FrictionRackRack, others, steel);
     roughen(Shared::FrictionBarrelBarrel, others, &mut [&mut laws.barrel_barrel]);
-    let stiffness = [Shared::SeatStiffness, Shared::ImpactStiffness]
-        .map(|axis| point.lognormal(axis, spread.stiffness));
+    let stiffness = [
+        (Shared::SeatStiffness, spread.stiffness),
+        (Shared::ImpactStiffness, spread.impact_stiffness),
+    ]
+    .map(|(axis, dispersion)| point.lognormal(axis, dispersion));
     let damping = point.lognormal(Shared::SeatDamping, spread.damping);
     for seat in [&mut laws.rack_ground, &mut laws.barrel_rack, &mut laws.rack_rack] {
         seat.stiffen(stiffness[0]);

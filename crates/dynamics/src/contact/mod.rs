@@ -15,20 +15,27 @@ pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 /// With constants per node, refining the nodes of a boundary stiffens the interface, so the number
 /// of nodes is then part of the physics (the paper states its constants this way).
 /// With constants per length, each node acts for its tributary length and refinement converges.
+/// With constants per seat, the nodes of a row that touch share one set of constants, so that their number changes
+/// where a seat presses and not how stiff it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
     /// Constants of one node (N/m, N·s/m).
     Node,
     /// Constants of one meter of boundary (N/m², N·s/m²).
     Length,
+    /// Constants of one seat (N/m, N·s/m): a place where two bodies touch, or a whole row of nodes on one surface.
+    ///
+    /// A row is as deep as its deepest node, and its force is divided among its nodes in proportion to their depths.
+    Seat,
 }
 
 impl Basis {
-    /// What the constants of a node that stands for a length of boundary (m) are multiplied by.
+    /// What the constants of a node that stands for a length of boundary (m) are multiplied by; of a row of nodes on
+    /// the basis of a seat, what those of the whole row are.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {
-            Self::Node => R::splat(1.0),
+            Self::Node | Self::Seat => R::splat(1.0),
             Self::Length => tributary_length,
         }
     }
@@ -38,6 +45,7 @@ impl Basis {
         match self {
             Self::Node => "node",
             Self::Length => "length",
+            Self::Seat => "seat",
         }
     }
 }

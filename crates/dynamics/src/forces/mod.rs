@@ -151,7 +151,7 @@ pub struct Pressed<S: Space> {
     /// Compressive force (N); zero where it does not touch.
     pub normal_force: S::Real,
     /// What the constants of its laws are multiplied by.
-    weight: S::Real,
+    pub weight: S::Real,
 }
 
 impl<S: Space> Scratch<S> {

@@ -3,9 +3,10 @@
 mod meeting;
 mod patch;
 mod rounds;
+mod row;
 
 use crate::body::Nodes;
-use crate::contact::{FrictionLaw, NormalLaw, Rolling, Stop};
+use crate::contact::{Basis, FrictionLaw, NormalLaw, Rolling, Stop};
 use crate::contact_elements::{ContactElements, Group};
 use crate::model::{ContactPair, Fast, Model};
 use crate::pair_frame::{AtFace, PairFrame};
@@ -18,6 +19,7 @@ use super::{Contact, ContactTotals, LOOKAHEAD_GAP, PairForce, Pressed, Scratch};
 
 use meeting::Meeting;
 pub(super) use meeting::Seen;
+use row::{Row, counting};
 
 /// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
@@ -112,6 +114,7 @@ fn touch_by<S: Space>(
     let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
     let meeting = Meeting::of(seen);
     let others = scratch.pressed.len();
+    let basis = model.interfaces[pair.interface].basis;
     let mut press = Press {
         whole_step_depth: whole_step_depth
             .lt(S::Real::splat(f64::INFINITY))
@@ -140,7 +143,7 @@ fn touch_by<S: Space>(
         pressed: &mut scratch.pressed,
         contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
     };
-    press.nodes(pair, model.pair_nodes(pair), group, surface);
+    press.nodes(pair, model.pair_nodes(pair), group, surface, basis);
     let Press { meeting, sum, totals, needs_substeps, is_hard, pressed, .. } = press;
     let touches = pressed.len() > others;
     scratch.needs_substeps = needs_substeps;
@@ -207,12 +210,38 @@ const RESTING_SHARE: f64 = 0.01;
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// All contacts of a pair.
     #[inline(always)]
-    fn nodes(&mut self, pair: &ContactPair, nodes: &Nodes<S>, group: &Group, surface: &S::Surface) {
+    fn nodes(
+        &mut self,
+        pair: &ContactPair,
+        nodes: &Nodes<S>,
+        group: &Group,
+        surface: &S::Surface,
+        basis: Basis,
+    ) {
         let one = S::Real::splat(1.0);
         match nodes {
             Nodes::Fixed(all) => {
                 let (elements, frame) = (self.elements, self.frame);
                 let places = &elements.positions[group.first..group.end];
+                let mut row = Row::default();
+                if basis == Basis::Seat {
+                    let counted = self.counted;
+                    surface.penetrated_by(
+                        places.len(),
+                        #[inline(always)]
+                        |index| frame.to_surface(places[index]),
+                        #[inline(always)]
+                        |index| {
+                            let node = &all[elements.nodes[group.first + index] as usize];
+                            node.outward.map(
+                                #[inline(always)]
+                                |outward| Facing::outward(frame.direction_to_surface(outward)),
+                            )
+                        },
+                        #[inline(always)]
+                        |_, _, gap| row.add(counting(counted, gap)),
+                    );
+                }
                 surface.penetrated_by(
                     places.len(),
                     #[inline(always)]
@@ -228,7 +257,11 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                     #[inline(always)]
                     |index, node, gap| {
                         self.look_ahead(node, gap);
-                        self.node(group.first + index, node, gap, one);
+                        if basis == Basis::Seat {
+                            self.of_row(group.first + index, node, gap, &row);
+                        } else {
+                            self.node(group.first + index, node, gap, one);
+                        }
                     },
                 );
             }
@@ -293,24 +326,29 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
     /// target's surface. Returns the energy (J) that its spring would store if its share were one.
     #[inline(always)]
-    fn node(
+    fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
+        let gap = counting(self.counted, gap);
+        self.press(element, node, gap, share, None)
+    }
+
+    /// The forces of a node at `node` (m) whose gap counts; its laws are asked at a depth (m) that it shares with others,
+    /// or at its own.
+    #[inline(always)]
+    fn press(
         &mut self,
         element: usize,
         node: S::Vector,
-        mut gap: Gap<S>,
+        gap: Gap<S>,
         share: S::Real,
+        shared: Option<S::Real>,
     ) -> S::Real {
-        if let Some(face) = self.counted {
-            gap.distance =
-                S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
-        }
         let meeting = self.meeting;
         let contact = meeting.contact(self.pair, self.elements, element, node, gap);
         let touching = contact.touching;
         let whole = self.elements.weights[element] * share;
         let weight = S::Real::select(touching, whole, S::Real::zero());
-        let (depth, rate) = (contact.penetration, contact.penetration_rate);
-        let normal = self.law(depth, rate);
+        let rate = contact.penetration_rate;
+        let normal = self.law(shared.unwrap_or(contact.penetration), rate);
         let normal_force = normal.total * weight;
         let tangent_plane = S::tangent_plane(contact.normal);
         let stick = self.elements.sticks[element].carried(tangent_plane);

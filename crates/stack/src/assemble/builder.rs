@@ -4,9 +4,9 @@ use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Element, Interface, Nodes, Planar, Pose, Shape, Vec2,
 };
 
+use super::bundle::{Bundle, Shown};
 use super::interfaces::interface;
 use super::solid::{Seat, Solid, Touch, uniform};
-use super::stack::behind_each_other;
 use super::{Part, PartKind, Similitude, outline_of};
 use crate::device::{Loose, Words};
 use crate::scenario::{self, StackBody, StackPair, StackSpec, View};
@@ -87,19 +87,19 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds a law of contact of a device; returns its number.
-    pub(crate) fn add_law(
-        &mut self,
-        name: &str,
-        law: &scenario::Interface,
-        elements: f64,
-    ) -> usize {
-        self.laws.push(interface(name, law, elements, self.scale));
-        StackPair::ALL.len() + self.laws.len() - 1
+    pub(crate) fn add_law(&mut self, name: &str, law: &scenario::Interface) -> usize {
+        self.add_bundle(name, law, Bundle::ONE)
     }
 
-    /// Adds the law of a seat; returns its number.
-    pub(crate) fn add_seat(&mut self, name: &str, law: &scenario::Interface) -> usize {
-        self.add_law(name, law, behind_each_other(self.spec))
+    /// Adds a law of barrels in their cradles; returns its number.
+    pub(crate) fn add_cradle(&mut self, name: &str, law: &scenario::Interface) -> usize {
+        let shown = Shown::Plane(self.spec.view);
+        self.add_bundle(name, law, Bundle::of_cradle(law, self.spec, shown))
+    }
+
+    fn add_bundle(&mut self, name: &str, law: &scenario::Interface, bundle: Bundle) -> usize {
+        self.laws.push(interface(name, law, bundle, self.scale));
+        StackPair::ALL.len() + self.laws.len() - 1
     }
 
     /// Adds an element without which the stack does not stand.

@@ -11,6 +11,7 @@ use barrelstack_dynamics::{
     Planar, Pose, Rod, Shape, State, Strap, Twist, Vec2,
 };
 
+use super::bundle::Bundle;
 use super::interfaces::interface;
 use super::{AssembleError, Assembly, Part, PartKind, Similitude, outline_of};
 use crate::device::FREE;
@@ -35,7 +36,7 @@ pub(super) fn assemble(
         parts.push(part);
         outer.push(of_body);
     }
-    let law = |law: &FreeInterface| interface(&law.between.join("-"), &law.law, 1.0, scale);
+    let law = |law: &FreeInterface| interface(&law.between.join("-"), &law.law, Bundle::ONE, scale);
     let interfaces = scene.interfaces.iter().map(law).collect();
     let kinds = kinds(scene, &bodies, &outer);
     let gravity = Vec2::new(0.0, -gravity);

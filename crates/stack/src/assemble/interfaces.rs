@@ -4,6 +4,7 @@ use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};
 
 use super::Similitude;
+use super::bundle::Bundle;
 use crate::scenario;
 
 /// Penetration (m) at which the laws that stiffen with penetration lend their stiffness to the stick.
@@ -13,21 +14,21 @@ const STICK_REFERENCE: f64 = 2e-4;
 const STICK_DAMPING_RATIO: f64 = 0.1;
 const STICK_MASS: f64 = 50.0;
 
-/// An interface of the model.
-///
-/// `elements` is how many contact elements stand one behind the other where the plane shows one.
+/// An interface of the model, of which each contact stands for a bundle of those that the law is stated for.
 pub(super) fn interface<S: Space<Real = f64>>(
     name: &str,
     law: &scenario::Interface,
-    elements: f64,
+    bundle: Bundle,
     scale: Similitude,
 ) -> Interface<S> {
     let basis = match law.basis {
         scenario::Basis::Node => Basis::Node,
         scenario::Basis::Length => Basis::Length,
+        scenario::Basis::Seat => Basis::Seat,
     };
-    let normal = together(normal(&law.normal, basis, scale), elements);
-    let friction = friction(&law.friction, &normal, basis == Basis::Length, scale);
+    let normal = together(normal(&law.normal, basis, scale), bundle.elements());
+    let friction = bundle.friction(law.friction);
+    let friction = friction_of(&friction, &normal, basis == Basis::Length, scale);
     Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
 }
 
@@ -97,7 +98,7 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
     }
 }
 
-fn friction(
+fn friction_of(
     law: &scenario::Friction,
     normal: &NormalLaw,
     per_length: bool,

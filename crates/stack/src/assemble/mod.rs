@@ -1,6 +1,7 @@
 //! From a scenario to bodies that can move: the model, and what each of its bodies means.
 
 mod builder;
+mod bundle;
 mod content;
 mod free;
 mod interfaces;
@@ -238,12 +239,12 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
 /// The laws of contact of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL): those
 /// of the plane, of which every element is a contact of its own.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
-    stack::laws(spec, 1.0, Similitude::FULL)
+    stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
 /// A law of contact in space.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
-    interfaces::interface(name, law, 1.0, Similitude::FULL)
+    interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }
 
 /// The laws of contact of a free scene in space, in the order of its interfaces.

@@ -11,9 +11,9 @@
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
 use super::builder::Builder;
-use super::solid::{Seat, Touch};
+use super::solid::{NodedFace, Seat, Touch};
 use super::{Assembly, PartKind};
-use crate::scenario::StackPair;
+use crate::scenario::{Basis, StackPair};
 
 /// All boundaries that can ever meet, each with its interface.
 pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
@@ -99,6 +99,13 @@ impl Pairs<'_> {
         }
     }
 
+    /// The nodes with which a solid stands on a floor. A tube from end to end of a rack has a seat at each end, and no
+    /// row where constants are stated for a seat.
+    fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
+        let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
+        touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))
+    }
+
     fn with_ground(&mut self, body: BodyId) {
         let part = &self.builder.parts[body];
         let stands = part.kind == PartKind::Rack && part.supports.is_empty();
@@ -114,7 +121,7 @@ impl Pairs<'_> {
                     StackPair::BarrelGround
                 }
             };
-            match touch.below.filter(|_| seat) {
+            match self.row_on_floor(&touch).filter(|_| seat) {
                 Some(face) => {
                     self.push((body, face.nodes), ground, interface, Counts::Everywhere);
                     self.push((body, face.others), ground, interface, Counts::Everywhere);
@@ -174,7 +181,7 @@ impl Pairs<'_> {
             let pair = if seat { StackPair::RackGround } else { StackPair::FallenRackRack };
             for of_device in self.solids(device) {
                 let both = [Counts::Everywhere; 2];
-                match touch.below.filter(|_| seat) {
+                match self.row_on_floor(&touch).filter(|_| seat) {
                     Some(face) => {
                         let before = Counts::BeforeFace(face.face);
                         self.push((rack, face.nodes), (device, of_device), pair, before);

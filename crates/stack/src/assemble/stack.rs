@@ -4,6 +4,7 @@ use barrelstack_dynamics::contact::{Rolling, Stop};
 use barrelstack_dynamics::{Interface, Model, Space, Vec2};
 
 use super::builder::Builder;
+use super::bundle::{Bundle, Shown};
 use super::interfaces::interface;
 use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
@@ -33,6 +34,10 @@ pub(super) fn assemble(
         return Err(AssembleError::Space);
     }
     let mut builder = Builder::new(spec, scale);
+    if spec.interfaces.barrel_rack.basis == Basis::Seat {
+        builder.cradle_law =
+            builder.add_cradle(StackPair::BarrelRack.name(), &spec.interfaces.barrel_rack);
+    }
     let (height, rack_reach) = match spec.view {
         View::Transverse => transverse::build(&mut builder)?,
         View::Longitudinal => longitudinal::build(&mut builder)?,
@@ -44,9 +49,9 @@ pub(super) fn assemble(
     content::pour(&mut builder, gravity);
     let pairs = pairs::pairs(&builder);
     let Builder { bodies, parts, laws: more, cradle_law, held, loose, raised, .. } = builder;
-    let mut interfaces = laws(spec, behind_each_other(spec), scale);
+    let mut interfaces = laws(spec, Shown::Plane(spec.view), scale);
     interfaces.extend(more);
-    // Pads have as much stroke as bare cradles.
+    // Cradles, with pads and without, have as much stroke as other seats.
     interfaces[cradle_law].stop = interfaces[StackPair::BarrelRack as usize].stop;
     let mut model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     let (held, devices) = held.into_iter().unzip();
@@ -65,19 +70,10 @@ pub(super) fn assemble(
     })
 }
 
-/// How many elements of a seat stand one behind the other where the plane shows one.
-pub(super) fn behind_each_other(spec: &StackSpec) -> f64 {
-    match spec.view {
-        View::Transverse => spec.rack.contact.behind_each_other(),
-        View::Longitudinal => 1.0,
-    }
-}
-
-/// The laws of contact, each at the place of its pair. Across the barrels a seat stands for the elements that are
-/// there one `behind` the other; in space every element is a contact of its own.
+/// The laws of contact, each at the place of its pair; a contact of a seat stands for those that are shown in one place.
 pub(super) fn laws<S: Space<Real = f64>>(
     spec: &StackSpec,
-    behind: f64,
+    shown: Shown,
     scale: Similitude,
 ) -> Vec<Interface<S>> {
     let stroke = spec.rack.seat_stroke * scale.length;
@@ -88,11 +84,12 @@ pub(super) fn laws<S: Space<Real = f64>>(
     } * scale.length;
     let impact = |law: &scenario::Interface, seat: Basis| {
         let elements = match (seat, law.basis) {
-            (Basis::Length, Basis::Node) => 1.0 / each,
-            (Basis::Node, Basis::Length) => each,
-            (Basis::Node, Basis::Node) | (Basis::Length, Basis::Length) => 1.0,
+            (Basis::Length, Basis::Node | Basis::Seat) => 1.0 / each,
+            (Basis::Node | Basis::Seat, Basis::Length) => each,
+            (Basis::Node | Basis::Seat, Basis::Node | Basis::Seat)
+            | (Basis::Length, Basis::Length) => 1.0,
         };
-        interface::<S>("stop", law, elements, scale).normal
+        interface::<S>("stop", law, Bundle::of(elements), scale).normal
     };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {
@@ -112,13 +109,18 @@ pub(super) fn laws<S: Space<Real = f64>>(
                         lever: ROLLING_LEVER * scale.length,
                         spin: ROLLING_SPIN / scale.time(),
                     }),
-                    ..interface(pair.name(), laws.of(*pair), 1.0, scale)
+                    ..interface(pair.name(), laws.of(*pair), Bundle::ONE, scale)
                 };
             }
         };
         Interface {
             stop: Some(Stop { depth: stroke, law: impact(stop, laws.of(*pair).basis) }),
-            ..interface(pair.name(), laws.of(*pair), behind, scale)
+            ..interface(
+                pair.name(),
+                laws.of(*pair),
+                Bundle::at(*pair, laws.of(*pair), spec, shown),
+                scale,
+            )
         }
     };
     StackPair::ALL.iter().map(law).collect()

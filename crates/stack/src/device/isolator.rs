@@ -179,7 +179,7 @@ impl Isolators {
         }
         let (scale, share) = (builder.scale, 1.0 / builder.side_by_side());
         builder.raise((Self::BEARING + Self::PLATE) * scale.length);
-        let law = builder.add_law("isolator-ground", &self.law(share), 1.0);
+        let law = builder.add_law("isolator-ground", &self.law(share));
         let bottom = |(id, part): (BodyId, &crate::assemble::Part)| {
             (part.kind == PartKind::Rack && part.supports.is_empty()).then_some(id)
         };

@@ -17,15 +17,15 @@ pub(super) static WORDS: Words = Words {
     degraded: &[Setting {
         name: "worn pads",
         overrides: &[
-            "stack.pad.stiffness=\"980 kN/m\"",
-            "stack.pad.damping=\"2.2 kN s/m\"",
-            "stack.pad.friction=0.22",
+            "stack.pad.stiffness=\"1500 kN/m\"",
+            "stack.pad.damping=\"2.5 kN s/m\"",
+            "stack.pad.friction=0.3",
         ],
     }],
     // As hard and as smooth as the seats, where these are springs and dampers.
     idle: &[
         "interface.barrel-rack.law=kelvin-voigt",
-        "interface.barrel-rack.basis=node",
+        "interface.barrel-rack.basis=seat",
         "interface.barrel-rack.stiffness=\"980 kN/m\"",
         "interface.barrel-rack.damping=\"5 kN s/m\"",
         "interface.barrel-rack.friction.coefficient=0.3",
@@ -48,10 +48,10 @@ section! {
     /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still holds
     /// for racks that lie on barrels.
     pub static SECTION = "pad";
-    /// Stiffness of one contact element on pads; without it there are none.
+    /// Stiffness of the pad of one support of a cradle; without it there are none.
     stiffness: Option<f64> =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Nothing;
-    /// Damping of one contact element on pads, of rubber in both senses: an assumption.
+    /// Damping of the pad of one support, of rubber in both senses: an assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
     /// Coefficient of friction of wood on pads: an assumption.
@@ -69,10 +69,10 @@ impl Pads {
         self.stiffness.is_some()
     }
 
-    /// The law of one contact element on pads, where there are some.
+    /// The law of the pad of one support, where there are some.
     pub fn law(&self) -> Option<Interface> {
         self.stiffness.map(|stiffness| Interface {
-            basis: Basis::Node,
+            basis: Basis::Seat,
             normal: NormalLaw::KelvinVoigt {
                 stiffness,
                 damping: Damping::Coefficient(self.damping),
@@ -90,7 +90,7 @@ impl Pads {
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {
-            builder.cradle_law = builder.add_seat("pad", &law);
+            builder.cradle_law = builder.add_cradle("pad", &law);
         }
         Ok(())
     }

@@ -98,11 +98,66 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
+/// What a seat is made of: a place where a rack bears, or is borne.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seat {
+    /// Stiffness (N/m).
+    pub stiffness: f64,
+    /// Ratio of the speeds after and before `mass` strikes it.
+    pub restitution: f64,
+    /// Mass (kg) for which the restitution holds.
+    pub mass: f64,
+}
+
+/// The seats of a rack: medians, about which variants draw (`validation/seats.md` has the derivations).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seats {
+    /// One rail across the crown of a barrel below, and one support of a cradle under a barrel.
+    pub barrel: Seat,
+    /// One end of a rail, or one foot, on the ground.
+    pub floor: Seat,
+    /// One post under the rack above.
+    pub post: Seat,
+    /// Where the numbers come from.
+    pub source: &'static str,
+}
+
+impl Seat {
+    const fn new(stiffness: f64, mass: f64) -> Self {
+        // Full barrels of 270 kg that fell bounced clearly, and what the paper measured on barrels and racks is a
+        // restitution of 0.84 to 0.91 for a full barrel on one to four contact elements.
+        Self { stiffness, restitution: 0.8, mass }
+    }
+}
+
+/// Racks that lie on barrels, whose rails carry each barrel right above the crowns on which they lie.
+const ON_BARRELS: Seats = Seats {
+    barrel: Seat::new(3e6, 70.0),
+    floor: Seat::new(1e7, 140.0),
+    post: Seat::new(1e7, 140.0),
+    source: "a shell of oak staves 27 mm thick under a point load beside a hoop, joints that open and the tube wall \
+             in series: 2.7 to 4.4 MN/m; the 0.89 MN/m that Candia, de la Llera and Almazán (2008) measured on local \
+             barrels and racks and the 12 MN/m of a stave clamped between hoops bound it; on floors, tubes that lie \
+             hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat: derived, \
+             nobody has measured these racks",
+};
+
+/// Racks whose rails span from post to post and bend under their barrels.
+const ON_POSTS: Seats = Seats {
+    barrel: Seat::new(6e5, 70.0),
+    source: "as racks on barrels, in series with a rail of 60 mm square tube that spans 1.54 m from post to post and \
+             bends under each barrel by 1.2 MN/m; steel posts on steel, on floors and on each other, by their play: \
+             derived, nobody has measured these racks",
+    ..ON_BARRELS
+};
+
 /// A rack of the catalog.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogRack {
     /// The rack.
     pub rack: Rack,
+    /// Its seats.
+    pub seats: Seats,
     /// What it is, in a sentence.
     pub help: &'static str,
     /// Where the numbers come from.
@@ -137,6 +192,7 @@ const TWO_BARREL: Rack = Rack {
 pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: TWO_BARREL,
+        seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes.",
         source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
              Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
@@ -144,18 +200,21 @@ pub const RACKS: &[CatalogRack] = &[
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-feet", foot_height: 0.06, ..TWO_BARREL },
+        seats: ON_BARRELS,
         help: "Stands on the barrels below with feet.",
         source: "`two-barrel` with a foot over each barrel below, as wide as that of the reconstructed `candia-2008`: \
                  an assumption",
     },
     CatalogRack {
         rack: Rack { base: "single-bar", mass: 35.0, contact: SeatContact::Element, ..TWO_BARREL },
+        seats: ON_BARRELS,
         help: "Lies on the barrels below with one bar in place of two.",
         source: "single-bar version of the rack for two barrels (Wines & Vines 2016); the numbers are those of \
                  `two-barrel`, the mass is an assumption",
     },
     CatalogRack {
         rack: Rack { base: "four-barrel", mass: 80.0, barrels_deep: 2, ..TWO_BARREL },
+        seats: ON_BARRELS,
         help: "Two racks end to end.",
         source: "two racks for two barrels end to end (Wines & Vines 2016); the numbers of one are those of \
                  `two-barrel`, the mass is an assumption",
@@ -174,6 +233,7 @@ pub const RACKS: &[CatalogRack] = &[
             }),
             ..TWO_BARREL
         },
+        seats: ON_POSTS,
         help: "Stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
                  assumption, the post height makes the usual level pitch, the posts stand clear of the barrels on both \
@@ -181,6 +241,7 @@ pub const RACKS: &[CatalogRack] = &[
     },
     CatalogRack {
         rack: Rack { base: "two-barrel-inclined", incline: 3.5 * PI / 180.0, ..TWO_BARREL },
+        seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
                  Filiatrault et al. 2010), across the shelf as here along the barrels; no maker of such a rack is \
@@ -202,6 +263,7 @@ pub const RACKS: &[CatalogRack] = &[
             contact: SeatContact::Nodes,
             ..TWO_BARREL
         },
+        seats: ON_BARRELS,
         help: "The rack of the paper, reconstructed where its text leaves it open.",
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",

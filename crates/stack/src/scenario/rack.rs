@@ -45,8 +45,8 @@ choices! {
 }
 
 named! {
-    /// How a seat is divided into contact elements, each with the stiffness and damping that the scenario
-    /// states per node: tests measure a whole seat, so the division is part of the physics.
+    /// How a seat is divided into contact elements. Where the scenario states its constants per node, the division is
+    /// part of the physics; where it states them per seat, the elements share them.
     pub enum SeatContact {
         /// Nodes along flat undersides, one at each support of a cradle, as in the paper.
         Nodes = "nodes",
@@ -58,7 +58,8 @@ named! {
 }
 
 impl SeatContact {
-    /// How many elements stand side by side, one behind the other, where a transverse section shows one.
+    /// How many elements stand one behind the other where a transverse section shows one, each with the constants of
+    /// a node.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,
@@ -129,8 +130,8 @@ known! {
     cradle: Cradle = Kind::ChoiceOrTable(Cradle::names, "type", &CRADLE), CATALOG;
     /// Half of the length of a foot.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
-    /// How a seat is divided into contact elements, each with the constants per node: nodes along flat undersides, one
-    /// element, or one for each of two rails.
+    /// How a seat is divided into contact elements: nodes along flat undersides, one element, or one for each of two
+    /// rails. Each has the constants that are stated per node; those that are stated per seat are divided among them.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
     /// Penetration of a seat beyond which the solids themselves meet, by the law of impacts.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
@@ -175,6 +176,12 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     }
     bases
 };
+
+/// The seats of the rack that a table names.
+pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
+    let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
+    Ok(known.seats)
+}
 
 /// Reads a rack.
 pub(super) fn read(reader: Reader<'_>) -> Result<Rack, ScenarioError> {

@@ -11,7 +11,7 @@ use super::tree::Table;
 use super::writer::Writer;
 use super::{
     Imperfections, OutcomeSpec, RecordSpec, Scenario, Scene, Written, element, free, imperfections,
-    interface, motion, pair, run, spatial, stack,
+    interface, motion, pair, rack, run, spatial, stack,
 };
 
 /// Version of the scenario language.
@@ -98,7 +98,8 @@ pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario,
     let record = RecordSpec::read(reader.section("record")?)?;
     let scene = match kind {
         SceneKind::Stack => {
-            let interfaces = pair::read_interfaces(reader.section("interface")?)?;
+            let seats = rack::seats(&reader.section("stack")?.section("rack")?)?;
+            let interfaces = pair::read_interfaces(reader.section("interface")?, &seats)?;
             let stack = stack::read(reader.section("stack")?, interfaces)?;
             let outcome = OutcomeSpec::read(reader.section("outcome")?)?;
             let imperfections = Imperfections::read(reader.section("imperfections")?)?;

@@ -46,6 +46,14 @@ const BASIS: Field = Field::new(
     "Whether stiffness and damping belong to one contact node or to one meter of boundary.",
 );
 
+const SEAT_BASIS: Field = Field::new(
+    "basis",
+    Kind::Choice(names::<Basis>),
+    Default::Value("\"seat\""),
+    "Whether stiffness and damping belong to one seat (one rail across the crown of a barrel, one support of a cradle, one \
+     end of a rail or one foot on the ground, one post), to one contact node or to one meter of boundary.",
+);
+
 const STIFFNESS: Field = Field::new(
     "stiffness",
     Kind::Quantity(
@@ -58,10 +66,11 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack 9.8 kN/cm for a linear law per node, and for a rebound per node 1.2e9 N/m^1.5, \
-         5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be given otherwise",
+        "in a stack that of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for one per node, and \
+         for a rebound per node 1.2e9 N/m^1.5, 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be \
+         given otherwise",
     ),
-    "Stiffness k: N/m per node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
+    "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
 
 const FRICTION_FIELD: Field = Field::new(
@@ -84,15 +93,20 @@ const LINEAR: &[Field] = &[
     Field::new(
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
-        Default::Derived("22 N s/cm in a stack when the stiffness is not given either"),
-        "Damping c: N s/m per node or N s/m^2 per length.",
+        Default::Derived(
+            "in a stack the restitution of the rack's seats in the catalog per seat, and 22 N s/cm per node when the \
+             stiffness is not given either",
+        ),
+        "Damping c: N s/m per seat or node or N s/m^2 per length.",
     ),
     RESTITUTION,
     Field::new(
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
-        Default::Derived("must be given with `restitution`"),
-        "Mass for which the restitution holds: kg on one node, or kg/m of boundary.",
+        Default::Derived(
+            "that of the rack's seats in the catalog per seat; must be given with `restitution` otherwise",
+        ),
+        "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
 ];
 
@@ -161,7 +175,7 @@ const EXCLUSIVE: &[&[&str]] =
 pub static INTERFACE: Section = Section {
     name: "interface",
     help: "The law of contact of one pair of bodies.",
-    fields: &[LAW, BASIS, STIFFNESS, FRICTION_FIELD],
+    fields: &[LAW, SEAT_BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
     exclusive: EXCLUSIVE,
 };

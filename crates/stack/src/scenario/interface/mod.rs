@@ -6,6 +6,7 @@ mod text;
 pub use fields::{FREE_INTERFACE, FRICTION, IMPACT, INTERFACE};
 pub(super) use text::{PairDefaults, read, write, write_free};
 
+use barrelstack_dynamics::contact::restitution;
 use barrelstack_input::named;
 
 named! {
@@ -16,20 +17,23 @@ named! {
         /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
         /// node.
         Length = "length",
+        /// Constants hold for one seat, however many nodes it is divided into: one rail across the crown of a barrel,
+        /// one support of a cradle, one end of a rail or one foot on the ground, one post.
+        Seat = "seat",
     }
 }
 
 /// Dissipation of a law whose restitution depends on what strikes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// `c` of a linear law (N·s/m per node, or N·s/m² on the basis of length); `d` (s/m) of Hunt and Crossley's.
+    /// `c` of a linear law (N·s/m per node or seat, or N·s/m² on the basis of length); `d` (s/m) of Hunt and Crossley's.
     Coefficient(f64),
     /// The damping that gives this restitution to a reference.
     Restitution {
         /// Ratio of normal speeds after and before, in `(0, 1]`.
         restitution: f64,
-        /// Under a linear law the mass that strikes one node (kg), or one meter of boundary (kg/m); under Hunt
-        /// and Crossley's the speed (m/s).
+        /// Under a linear law the mass that strikes one node or seat (kg), or one meter of boundary (kg/m); under
+        /// Hunt and Crossley's the speed (m/s).
         reference: f64,
     },
 }
@@ -39,21 +43,21 @@ pub enum Damping {
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
     SpeedGap {
-        /// `k` (N/m per node, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² on the basis of length).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `max(0, k δ + c δ̇)`.
     KelvinVoigt {
-        /// `k` (N/m per node, or N/m² on the basis of length).
+        /// `k` (N/m per node or seat, or N/m² on the basis of length).
         stiffness: f64,
         /// Dissipation.
         damping: Damping,
     },
     /// `k δⁿ (1 + d δ̇)`.
     HuntCrossley {
-        /// `k` (N/mⁿ per node, or N/mⁿ⁺¹ on the basis of length).
+        /// `k` (N/mⁿ per node or seat, or N/mⁿ⁺¹ on the basis of length).
         stiffness: f64,
         /// `n`, either 1 or 1.5.
         exponent: f64,
@@ -62,7 +66,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5` on approach and `e²` of it on separation, joined over some `v` of speed.
     Rebound {
-        /// `k` (N/m^1.5 per node, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
         stiffness: f64,
         /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
@@ -71,7 +75,7 @@ pub enum NormalLaw {
     },
     /// `k δ^1.5`, without dissipation.
     Hertz {
-        /// `k` (N/m^1.5 per node, or N/m^2.5 on the basis of length).
+        /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
         stiffness: f64,
     },
 }
@@ -124,12 +128,25 @@ impl Interface {
         }
     }
 
-    /// Multiplies the damping of a linear law where it is stated as a coefficient.
+    /// Multiplies the damping of a linear law: its coefficient, or the damping ratio that gives its restitution.
     pub fn damp(&mut self, factor: f64) {
-        if let NormalLaw::SpeedGap { damping: Damping::Coefficient(c), .. }
-        | NormalLaw::KelvinVoigt { damping: Damping::Coefficient(c), .. } = &mut self.normal
-        {
-            *c *= factor;
+        let (damping, there, back): (_, fn(f64) -> Option<f64>, fn(f64) -> f64) =
+            match &mut self.normal {
+                NormalLaw::SpeedGap { damping, .. } => {
+                    (damping, restitution::speed_gap_damping_ratio, restitution::speed_gap)
+                }
+                NormalLaw::KelvinVoigt { damping, .. } => {
+                    (damping, restitution::kelvin_voigt_damping_ratio, restitution::kelvin_voigt)
+                }
+                NormalLaw::HuntCrossley { .. }
+                | NormalLaw::Rebound { .. }
+                | NormalLaw::Hertz { .. } => return,
+            };
+        match damping {
+            Damping::Coefficient(c) => *c *= factor,
+            Damping::Restitution { restitution, .. } => {
+                *restitution = there(*restitution).map_or(1.0, |ratio| back(factor * ratio));
+            }
         }
     }
 

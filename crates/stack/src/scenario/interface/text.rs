@@ -1,5 +1,6 @@
 //! Reads and writes `[interface]`.
 
+use crate::scenario::catalog::Seat;
 use crate::scenario::dimension::Dimension;
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::field::Section;
@@ -12,11 +13,15 @@ use crate::scenario::writer::Writer;
 use super::fields::{FREE_INTERFACE, FRICTION, FrictionKind, Law};
 use super::{Basis, Damping, Friction, Interface, NormalLaw};
 
+/// Stiffness (N/m) of one contact node of a stack, and its damping (N·s/m), calibrated by Candia, de la Llera and
+/// Almazán (2008).
+const NODE: (f64, f64) = (980_000.0, 2200.0);
+
 /// What a stack takes for constants that its scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
-    pub(in crate::scenario) stiffness: f64,
-    pub(in crate::scenario) damping: f64,
+    /// Those of the seat that the pair is, if it is one.
+    pub(in crate::scenario) seat: Option<Seat>,
     pub(in crate::scenario) rebound_stiffness: f64,
     pub(in crate::scenario) coefficient: f64,
 }
@@ -28,6 +33,16 @@ pub(in crate::scenario) fn read(
 ) -> Result<Interface, ScenarioError> {
     let law = reader.choice::<Law>("law")?;
     let basis = reader.choice::<Basis>("basis")?;
+    let seat = defaults.and_then(|defaults| defaults.seat);
+    if basis == Basis::Seat && seat.is_none() {
+        let message = format!(
+            "`{}` is \"seat\", and this pair is no seat of a rack; state its constants per node with \"node\", or per \
+             meter of boundary with \"length\"",
+            reader.path_of("basis")
+        );
+        return Err(reader.inconsistent("basis", message));
+    }
+    let seat = seat.filter(|_| basis == Basis::Seat);
     let exponent = match law {
         Law::SpeedGap | Law::KelvinVoigt => 1.0,
         Law::HuntCrossley => {
@@ -41,24 +56,34 @@ pub(in crate::scenario) fn read(
         }
         Law::Hertz | Law::Rebound => 1.5,
     };
-    // Constants of the catalog hold together and for their laws only.
-    let linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt) && basis == Basis::Node;
-    let constants = defaults.filter(|_| linear && !reader.has("stiffness"));
+    // Constants of the paper hold together and for its laws only.
+    let is_linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt);
+    let node = (is_linear && basis == Basis::Node && defaults.is_some()).then_some(NODE);
+    let known = match law {
+        Law::SpeedGap | Law::KelvinVoigt => {
+            seat.map(|seat| seat.stiffness).or(node.map(|node| node.0))
+        }
+        Law::Rebound => {
+            defaults.filter(|_| basis == Basis::Node).map(|defaults| defaults.rebound_stiffness)
+        }
+        Law::HuntCrossley | Law::Hertz => None,
+    };
     let stiffness_dimension = stiffness_dimension(exponent, basis);
-    let stiffness = match quantity_in(&reader, "stiffness", stiffness_dimension)? {
-        Some(stiffness) => stiffness,
-        None => match (constants, defaults.filter(|_| law == Law::Rebound && basis == Basis::Node))
-        {
-            (Some(constants), _) => constants.stiffness,
-            (None, Some(constants)) => constants.rebound_stiffness,
-            (None, None) => {
-                return Err(missing_quantity(&reader, "stiffness", stiffness_dimension));
-            }
-        },
+    let stiffness = quantity_in(&reader, "stiffness", stiffness_dimension)?
+        .or(known)
+        .ok_or_else(|| missing_quantity(&reader, "stiffness", stiffness_dimension))?;
+    let own = match (seat, node) {
+        (Some(seat), _) => {
+            Some(Damping::Restitution { restitution: seat.restitution, reference: seat.mass })
+        }
+        (None, Some((_, damping))) if !reader.has("stiffness") => {
+            Some(Damping::Coefficient(damping))
+        }
+        (None, _) => None,
     };
     let normal = match law {
         Law::SpeedGap | Law::KelvinVoigt => {
-            let damping = read_damping(&reader, linear_damping(basis), constants)?;
+            let damping = read_damping(&reader, linear_damping(basis), own)?;
             if law == Law::SpeedGap {
                 NormalLaw::SpeedGap { stiffness, damping }
             } else {
@@ -92,7 +117,7 @@ const HUNT_CROSSLEY: DampingUnits =
 
 fn linear_damping(basis: Basis) -> DampingUnits {
     match basis {
-        Basis::Node => (Dimension::DAMPING, "reference_mass", Dimension::MASS),
+        Basis::Node | Basis::Seat => (Dimension::DAMPING, "reference_mass", Dimension::MASS),
         Basis::Length => {
             (Dimension::DAMPING_PER_LENGTH, "reference_mass", Dimension::MASS_PER_LENGTH)
         }
@@ -102,24 +127,31 @@ fn linear_damping(basis: Basis) -> DampingUnits {
 fn read_damping(
     reader: &Reader<'_>,
     (damping_dimension, field, dimension): DampingUnits,
-    constants: Option<PairDefaults>,
+    own: Option<Damping>,
 ) -> Result<Damping, ScenarioError> {
     let damping = quantity_in(reader, "damping", damping_dimension)?;
     let restitution = reader.optional_number("restitution")?;
     let reference = quantity_in(reader, field, dimension)?;
-    match (damping, restitution, reference, constants) {
+    let known = match own {
+        Some(Damping::Restitution { restitution, reference }) => Some((restitution, reference)),
+        Some(Damping::Coefficient(_)) | None => None,
+    };
+    match (damping, restitution, reference, known) {
         (Some(damping), ..) => Ok(Damping::Coefficient(damping)),
-        (None, Some(restitution), Some(reference), _) => {
+        (None, Some(restitution), Some(reference), _)
+        | (None, Some(restitution), None, Some((_, reference)))
+        | (None, None, Some(reference), Some((restitution, _))) => {
             Ok(Damping::Restitution { restitution, reference })
         }
-        (None, Some(_), None, _) => {
+        (None, Some(_), None, None) => {
             // The place is that of the restitution, which may be laid over another file.
             let problem = missing_problem(reader, field, dimension);
             Err(reader.error("restitution", problem))
         }
-        (None, None, Some(_), _) => Err(reader.missing("restitution")),
-        (None, None, None, Some(constants)) => Ok(Damping::Coefficient(constants.damping)),
-        (None, None, None, None) => Err(missing_quantity(reader, "damping", damping_dimension)),
+        (None, None, Some(_), None) => Err(reader.missing("restitution")),
+        (None, None, None, _) => {
+            own.ok_or_else(|| missing_quantity(reader, "damping", damping_dimension))
+        }
     }
 }
 
@@ -184,9 +216,9 @@ fn read_friction(
 
 fn stiffness_dimension(exponent: f64, basis: Basis) -> Dimension {
     match (exponent == 1.0, basis) {
-        (true, Basis::Node) => Dimension::STIFFNESS,
+        (true, Basis::Node | Basis::Seat) => Dimension::STIFFNESS,
         (true, Basis::Length) => Dimension::STIFFNESS_PER_LENGTH,
-        (false, Basis::Node) => Dimension::HERTZ_STIFFNESS,
+        (false, Basis::Node | Basis::Seat) => Dimension::HERTZ_STIFFNESS,
         (false, Basis::Length) => Dimension::HERTZ_STIFFNESS_PER_LENGTH,
     }
 }

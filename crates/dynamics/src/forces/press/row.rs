@@ -1,0 +1,59 @@
+//! Rows of nodes that bear as one seat.
+//!
+//! The seat is as deep as its deepest node: its laws are asked at that depth, and what they answer is divided among the
+//! nodes that touch in proportion to their own depths. So the number of nodes says where the seat presses, and nothing
+//! of how stiff, how damped or how rough it is.
+
+use crate::pair_frame::AtFace;
+use crate::real::Real;
+use crate::shape::Gap;
+use crate::space::Space;
+
+use super::{Laws, Press};
+
+/// A gap where it counts, and none where it does not.
+#[inline(always)]
+pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) -> Gap<S> {
+    if let Some(face) = counted {
+        gap.distance = S::Real::select(face.counts(gap.normal), gap.distance, S::Real::splat(1.0));
+    }
+    gap
+}
+
+/// A row of nodes that bears as one seat.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Row<R> {
+    /// The depth (m) of the deepest node.
+    deepest: R,
+    /// The sum of the depths (m) of those that touch.
+    sum: R,
+}
+
+impl<R: Real> Row<R> {
+    /// Adds a node whose gap counts.
+    #[inline(always)]
+    pub(super) fn add<S: Space<Real = R>>(&mut self, gap: Gap<S>) {
+        let depth = (-gap.distance).max(R::zero());
+        self.deepest = self.deepest.max(depth);
+        self.sum += depth;
+    }
+}
+
+impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
+    /// The forces of a node of a row that bears as one seat.
+    #[inline(always)]
+    pub(super) fn of_row(
+        &mut self,
+        element: usize,
+        node: S::Vector,
+        gap: Gap<S>,
+        row: &Row<S::Real>,
+    ) {
+        let gap = counting(self.counted, gap);
+        let zero = S::Real::zero();
+        let touching = gap.distance.lt(zero);
+        let sum = S::Real::select(touching, row.sum, S::Real::splat(1.0));
+        let share = S::Real::select(touching, -gap.distance / sum, zero);
+        self.press(element, node, gap, share, Some(row.deepest));
+    }
+}
