@@ -24,6 +24,7 @@ pub mod heights;
 pub mod protect;
 pub mod score;
 pub mod study;
+mod unknown;
 
 pub use study::Study;
 

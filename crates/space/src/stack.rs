@@ -1,11 +1,13 @@
 //! From a scenario to a stack that can move in space.
 
+use std::collections::BTreeMap;
+
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, assemble};
 use barrelstack::device::Words;
 use barrelstack::run::time_step;
 use barrelstack::scenario::{Scenario, Scene, StackBody, StackSpec, View};
-use barrelstack_dynamics::{BodyId, Fast, Model, Spatial, Substepping, Vec3};
+use barrelstack_dynamics::{BodyId, Fast, Interface, Model, Spatial, Substepping, Vec3};
 
 use crate::builder::Builder;
 use crate::device::{self, Loose};
@@ -74,7 +76,7 @@ impl Stack {
         }
         let spec = stack_of(scenario)?;
         let barrel = known(scenario, spec)?;
-        let Pace { step, substepping, reach } = Pace::of(scenario, spec)?;
+        let pace = Pace::of(scenario, spec)?;
         let mut builder = Builder::new(spec, barrel);
         builder.build()?;
         device::place(&mut builder)?;
@@ -83,7 +85,7 @@ impl Stack {
         let gravity = Vec3::new(0.0, 0.0, -scenario.run.gravity);
         let mut model =
             Model::new(bodies, laws.all, pairs, gravity).map_err(AssembleError::from)?;
-        model.set_substepping(substepping);
+        model.set_substepping(pace.substepping(model.interfaces()));
         let (elements, devices) = held.into_iter().unzip();
         model.fasten(elements).map_err(AssembleError::from)?;
         let heights = Heights::of(&spec.rack, &barrel);
@@ -95,11 +97,11 @@ impl Stack {
         Ok(Self {
             model,
             parts,
-            step,
+            step: pace.step,
             height,
             levels,
             bilge_radius,
-            reach,
+            reach: pace.reach,
             stave_capacity,
             loose,
             devices,
@@ -137,8 +139,12 @@ const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 struct Pace {
     /// The time step (s).
     step: f64,
-    /// How impacts divide it.
-    substepping: Substepping<f64>,
+    /// By how much impacts divide it.
+    substeps: f64,
+    /// How deep (m) the contacts of a law, by its name, are followed with whole steps.
+    depths: BTreeMap<String, f64>,
+    /// [`Substepping::resting_allowance`], the smaller one of the planes.
+    resting_allowance: f64,
     /// How far (m) a rack may move on the barrels below, across and along them.
     reach: [f64; 2],
 }
@@ -146,8 +152,8 @@ struct Pace {
 impl Pace {
     fn of(scenario: &Scenario, spec: &StackSpec) -> Result<Self, RunFailure> {
         let (mut step, mut shortest) = (f64::INFINITY, f64::INFINITY);
-        let mut whole_step_depth: Vec<f64> = Vec::new();
         let mut resting_allowance = f64::INFINITY;
+        let mut depths: BTreeMap<String, f64> = BTreeMap::new();
         let mut reach = [0.0; 2];
         for (axis, view) in [View::Transverse, View::Longitudinal].into_iter().enumerate() {
             for cut in cuts(scenario, spec, view) {
@@ -159,8 +165,9 @@ impl Pace {
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                whole_step_depth.resize(divided.whole_step_depth.len(), f64::INFINITY);
-                for (depth, own) in whole_step_depth.iter_mut().zip(&divided.whole_step_depth) {
+                // The planes number their laws otherwise where one shows several seats as one.
+                for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
+                    let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);
                 }
                 resting_allowance = resting_allowance.min(divided.resting_allowance);
@@ -168,9 +175,19 @@ impl Pace {
             }
         }
         let substeps = (step / shortest * (1.0 - 1e-9)).ceil().max(1.0);
-        let substepping =
-            Substepping { substeps, whole_step_depth, resting_allowance, fast: Some(FAST) };
-        Ok(Self { step, substepping, reach })
+        Ok(Self { step, substeps, depths, resting_allowance, reach })
+    }
+
+    /// When impacts divide the steps of a model with some laws, and by how much.
+    fn substepping(&self, laws: &[Interface<Spatial>]) -> Substepping<f64> {
+        let depth = |law: &Interface<Spatial>| self.depths.get(&law.name).copied();
+        let depths = laws.iter().map(|law| depth(law).unwrap_or(f64::INFINITY));
+        Substepping {
+            substeps: self.substeps,
+            whole_step_depth: depths.collect(),
+            resting_allowance: self.resting_allowance,
+            fast: Some(FAST),
+        }
     }
 }
 

@@ -39,9 +39,10 @@ const WHOLE_STEP_SHARE: f64 = 0.7;
 const LOAD: f64 = 3.0;
 const LOADED_SHARE: f64 = 1.4;
 
-/// Radius (m) from which on a round piece counts as nearly straight. Levers of rounder ones are taken too long by up
-/// to four times, and steps along barrels a seventh too short.
-const NEARLY_STRAIGHT: f64 = 4.0;
+/// Radius (m) from which on a round piece counts as nearly straight: for contacts whose constants are stated per seat, and
+/// for others. Levers of rounder ones are taken too long by up to four times; the paper's cases, whose staves are such,
+/// keep the steps that they had.
+const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
 /// How a stack is stepped.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,7 +235,8 @@ fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, 
     };
     let contactor = &model.bodies()[pair.contactor];
     let turning = if std::ptr::eq(body, contactor) {
-        mean_square_arm(&contactor.nodes[pair.nodes]) / body.inertia
+        mean_square_arm(model.interfaces()[pair.interface].basis, &contactor.nodes[pair.nodes])
+            / body.inertia
     } else {
         0.0
     };
@@ -276,12 +278,14 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
 
 /// Mean square lever (m²) of what presses on nodes about the center of mass. A rolling node turns a body by friction
 /// only, which the stick bounds.
-fn mean_square_arm(nodes: &Nodes<Planar>) -> f64 {
+fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
             mean_square(nodes.iter().map(|node| node.position.length()))
         }
-        Nodes::Rounds(rounds) if !rounds.is_empty() => mean_square(rounds.iter().map(lever)),
+        Nodes::Rounds(rounds) if !rounds.is_empty() => {
+            mean_square(rounds.iter().map(|round| lever(basis, round)))
+        }
         Nodes::Fixed(_) | Nodes::Rounds(_) | Nodes::Rolling { .. } => 0.0,
         Nodes::Whole(none) => match *none {},
     }
@@ -291,10 +295,14 @@ fn mean_square_arm(nodes: &Nodes<Planar>) -> f64 {
 ///
 /// That of nearly straight staves lies hundreds of meters away, and they are pressed no farther out than at their
 /// ends: the limits there stand square to the outermost normals.
-fn lever(round: &Round<Planar>) -> f64 {
+fn lever(basis: Basis, round: &Round<Planar>) -> f64 {
     let center = round.center;
     let is_bounded = round.limits.iter().all(|limit| limit.length() > 0.0);
-    if round.radius < NEARLY_STRAIGHT || !is_bounded {
+    let straight = match basis {
+        Basis::Seat => NEARLY_STRAIGHT.0,
+        Basis::Node | Basis::Length => NEARLY_STRAIGHT.1,
+    };
+    if round.radius < straight || !is_bounded {
         return center.length();
     }
     round.limits.iter().map(|limit| center.dot(*limit).abs()).fold(0.0, f64::max)

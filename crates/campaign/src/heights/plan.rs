@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 
 use super::{HeightsError, Request};
 use crate::protect::NAPA;
-use crate::scenario::{View, catalog};
+use crate::scenario::{Scenario, View, catalog};
+use crate::study::StudyError;
+use crate::unknown::factors;
 
 /// Levels of the stacks.
 pub const HEIGHTS: [u32; 5] = [2, 3, 4, 5, 6];
@@ -60,17 +62,14 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         levels.join(", ")
     );
     if !recorded {
-        // Medians and scatter: assumptions, since floors are washed daily and racks differ.
-        for (pair, median, dispersion) in [("rack-ground", 0.5, 0.2), ("barrel-rack", 0.3, 0.25)] {
-            // Writing to a String cannot fail.
-            let _ = write!(
-                text,
-                "[[factor]]\n\
-                 name = \"friction {pair}\"\n\
-                 field = \"interface.{pair}.friction.coefficient\"\n\
-                 distribution = {{ kind = \"lognormal\", median = {median}, dispersion = {dispersion} }}\n\n"
-            );
-        }
+        let stack = format!(
+            "schema = 1\n[stack]\nlevels = 2\ncolumns = {columns}\nview = \"{}\"\nbarrel = \"{}\"\nrack = {rack}\n\
+             [motion]\nnone = true\n",
+            view.name(),
+            request.barrel
+        );
+        let stack = Scenario::from_str(&stack).map_err(StudyError::from)?;
+        text.push_str(&factors(&stack));
     }
     text.push_str(NAPA);
     if recorded {

@@ -7,13 +7,10 @@ use crate::heights::{quoted, synthetic};
 use crate::scenario::Scenario;
 use crate::study::Study;
 use crate::study::StudyError;
+use crate::unknown::factors;
 
 /// Runs of a chunk, what is kept or lost at a stop.
 const CHUNK: usize = 24;
-
-/// Pairs of bodies whose friction is drawn for each run, and the scatter (standard deviation of the logarithm) about that
-/// of the scenario: assumptions, since floors are washed daily and racks differ.
-const FRICTION: [(&str, f64); 2] = [("rack-ground", 0.2), ("barrel-rack", 0.25)];
 
 /// Both components of the bundled record, with its vertical.
 pub(crate) const NAPA: &str = "[[motion]]\n\
@@ -27,7 +24,7 @@ pub(super) fn name(direction: &str, round: u32) -> String {
 }
 
 /// The study of a stack in one direction in a round, counted from 0: what it draws depends on the round alone, so all
-/// protections meet the same motions and the same quantiles of friction.
+/// protections meet the same motions and the same quantiles of friction and of the constants of seats.
 ///
 /// # Errors
 /// When a record cannot be read.
@@ -41,8 +38,8 @@ pub(super) fn study(
     shaken("protection", scenario, seed, &motions(request, round), levels)
 }
 
-/// The study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with friction drawn for each
-/// run by a seed.
+/// The study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with what is not known
+/// of it drawn for each run by a seed.
 ///
 /// # Errors
 /// When a record cannot be read.
@@ -57,25 +54,7 @@ pub(crate) fn shaken(
         "schema = 1\ntitle = \"{title}\"\nseed = {seed}\n\n{}\n",
         scenario.to_toml_table("base")
     );
-    let settings = scenario.settings();
-    for (pair, dispersion) in FRICTION {
-        let field = format!("interface.{pair}.friction.coefficient");
-        let Some(median) = settings.iter().find(|setting| setting.path == field) else { continue };
-        // What is at rest may not slide more easily than what slides: both are drawn as one.
-        let at_rest = format!("interface.{pair}.friction.static_coefficient");
-        let known = settings.iter().any(|setting| setting.path == at_rest);
-        let also = if known { format!("also = [\"{at_rest}\"]\n") } else { String::new() };
-        // Writing to a String cannot fail.
-        let _ = write!(
-            text,
-            "[[factor]]\n\
-             name = \"friction {pair}\"\n\
-             field = \"{field}\"\n\
-             {also}\
-             distribution = {{ kind = \"lognormal\", median = {}, dispersion = {dispersion} }}\n\n",
-            median.value
-        );
-    }
+    text.push_str(&factors(scenario));
     text.push_str(motions);
     let levels: Vec<String> = levels.iter().map(|v| format!("\"{} cm/s\"", 100.0 * v)).collect();
     let _ = write!(

@@ -40,10 +40,11 @@ pub struct State {
 
 impl Protocol {
     /// The protocol of the RockScore: stacks of four levels; six velocity pulses, both components of the bundled
-    /// record and sixteen synthetic motions, at six levels.
+    /// record and sixteen synthetic motions, at six levels; friction, stiffness and damping of seats drawn as variants
+    /// draw them. Under its first number friction alone was drawn, less widely, and constants belonged to contact elements.
     pub fn rockscore() -> Self {
         Self {
-            name: "rockscore/1",
+            name: "rockscore/2",
             levels: 4,
             velocities: vec![0.15, 0.25, 0.40, 0.60, 0.90, 1.35],
             periods: vec![0.5, 0.8, 1.2, 1.8, 2.7, 4.0],

@@ -34,9 +34,9 @@ pub(super) fn assemble(
         return Err(AssembleError::Space);
     }
     let mut builder = Builder::new(spec, scale);
-    if spec.interfaces.barrel_rack.basis == Basis::Seat {
-        builder.cradle_law =
-            builder.add_cradle(StackPair::BarrelRack.name(), &spec.interfaces.barrel_rack);
+    let (law, shown) = (&spec.interfaces.barrel_rack, Shown::Plane(spec.view));
+    if Bundle::of_cradle(law, spec, shown) != Bundle::at(StackPair::BarrelRack, law, spec, shown) {
+        builder.cradle_law = builder.add_cradle(StackPair::BarrelRack.name(), law);
     }
     let (height, rack_reach) = match spec.view {
         View::Transverse => transverse::build(&mut builder)?,

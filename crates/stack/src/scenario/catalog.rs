@@ -133,12 +133,12 @@ impl Seat {
 /// Racks that lie on barrels, whose rails carry each barrel right above the crowns on which they lie.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0),
-    floor: Seat::new(1e7, 140.0),
-    post: Seat::new(1e7, 140.0),
+    floor: Seat::new(1e7, 10.0),
+    post: Seat::new(1e7, 15.0),
     source: "a shell of oak staves 27 mm thick under a point load beside a hoop, joints that open and the tube wall \
              in series: 2.7 to 4.4 MN/m; the 0.89 MN/m that Candia, de la Llera and Almazán (2008) measured on local \
              barrels and racks and the 12 MN/m of a stave clamped between hoops bound it; on floors, tubes that lie \
-             hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat: derived, \
+             hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat, and of an empty rack on a floor: derived, \
              nobody has measured these racks",
 };
 

@@ -237,7 +237,8 @@ table! {
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
             /// Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner,
             /// at a smaller step.
-            tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)), Default::Value("1.0");
+            tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
+                Default::Derived("2 for constants per seat, since staves give way across themselves rather than along; 1 otherwise");
             /// Tangential damping of the stick over the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }

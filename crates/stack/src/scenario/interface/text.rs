@@ -17,6 +17,13 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// Almazán (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
+/// Tangential stiffness of a seat over its normal stiffness.
+///
+/// Staves bend under what presses on them and are loaded in their own surface by what drags along it, which is stiffer;
+/// with it the stick of five levels on the ground of South Napa yields early enough to turn friction round as rigid
+/// friction does.
+const STICK_OF_SEAT: f64 = 2.0;
+
 /// What a stack takes for constants that its scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
@@ -104,7 +111,7 @@ pub(in crate::scenario) fn read(
     if defaults.is_none() && !reader.has("friction") {
         return Err(reader.missing("friction"));
     }
-    let friction = read_friction(reader.section("friction")?, defaults)?;
+    let friction = read_friction(reader.section("friction")?, defaults, basis)?;
     reader.finish();
     Ok(Interface { basis, normal, friction })
 }
@@ -176,6 +183,7 @@ fn write_damping(
 fn read_friction(
     reader: Reader<'_>,
     defaults: Option<PairDefaults>,
+    basis: Basis,
 ) -> Result<Friction, ScenarioError> {
     let coefficient = || -> Result<f64, ScenarioError> {
         match (reader.optional_number("coefficient")?, defaults) {
@@ -201,7 +209,9 @@ fn read_friction(
             Friction::Coulomb {
                 coefficient,
                 static_coefficient,
-                tangential_stiffness_ratio: reader.number("tangential_stiffness_ratio")?,
+                tangential_stiffness_ratio: reader
+                    .optional_number("tangential_stiffness_ratio")?
+                    .unwrap_or(if basis == Basis::Seat { STICK_OF_SEAT } else { 1.0 }),
                 tangential_damping_ratio: reader.number("tangential_damping_ratio")?,
             }
         }

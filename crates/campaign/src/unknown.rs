@@ -1,0 +1,75 @@
+//! What nobody has measured on a stack, as factors of a study: the draws of `[imperfections]`.
+//!
+//! A run draws its variants by them, and so do the chart of heights, the ranking of protections and the scores, so that
+//! what they say of one stack rests on one set of medians and spreads.
+
+use std::fmt::Write as _;
+
+use crate::scenario::{Imperfection, Scenario, Scene, Setting};
+
+/// The pairs that seats are, each with the pair of the same materials that meets in impacts.
+const SEATS: [(&str, Option<&str>); 3] = [
+    ("rack-ground", Some("fallen-rack-ground")),
+    ("barrel-rack", Some("fallen-barrel-rack")),
+    ("rack-rack", Some("fallen-rack-rack")),
+];
+
+/// The tables `[[factor]]` of a scenario: friction, stiffness and damping of its seats, about what it states.
+///
+/// A free scene, and one whose variants differ in places and masses alone, has none.
+pub(crate) fn factors(scenario: &Scenario) -> String {
+    let mut text = String::new();
+    let Scene::Stack { stack, imperfections: spread, .. } = &scenario.scene else { return text };
+    if spread.kind == Imperfection::Hair {
+        return text;
+    }
+    let settings = scenario.settings();
+    let of = |path: &str| settings.iter().find(|setting: &&Setting| setting.path == path);
+    for (pair, fallen) in SEATS {
+        // Without posts no rack stands on another.
+        if pair == "rack-rack" && stack.rack.posts.is_none() {
+            continue;
+        }
+        let path = |field: &str| format!("interface.{pair}.{field}");
+        let mut factor = |name: &str, field: &str, also: &[String], dispersion: f64, cut: &str| {
+            let Some(median) = of(&path(field)).filter(|_| dispersion > 0.0) else { return };
+            let also: Vec<String> = also.iter().map(|path| format!("\"{path}\"")).collect();
+            // Writing to a String cannot fail.
+            let _ = write!(
+                text,
+                "[[factor]]\nname = \"{name} {pair}\"\nfield = \"{}\"\nalso = [{}]\n\
+                 distribution = {{ kind = \"lognormal\", median = {}, dispersion = {dispersion}{cut} }}\n\n",
+                path(field),
+                also.join(", "),
+                median.value
+            );
+        };
+        let friction = "friction.coefficient";
+        // What is at rest may not slide more easily than what slides, and what has fallen is of the same materials.
+        let others = [
+            Some(path("friction.static_coefficient")),
+            fallen.map(|fallen| format!("interface.{fallen}.{friction}")),
+            fallen.map(|fallen| format!("interface.{fallen}.friction.static_coefficient")),
+        ];
+        let stated = of(&path(friction)).map(|setting| setting.value.as_str());
+        let mut also = Vec::new();
+        for other in others.into_iter().flatten() {
+            let is_static = other == path("friction.static_coefficient");
+            if of(&other).is_some_and(|found| is_static || Some(found.value.as_str()) == stated) {
+                also.push(other);
+            }
+        }
+        let on_ground = pair == "rack-ground";
+        let dispersion = if on_ground { spread.friction_ground } else { spread.friction };
+        factor("friction", friction, &also, dispersion, "");
+        factor("stiffness", "stiffness", &[], spread.stiffness, "");
+        factor("damping", "damping", &[], spread.damping, "");
+        // The logarithm of a restitution goes with the damping ratio while that is small.
+        let restitution = of(&path("restitution")).and_then(|one| one.value.parse::<f64>().ok());
+        if let Some(restitution) = restitution {
+            let dispersion = -spread.damping * libm::log(restitution);
+            factor("restitution", "restitution", &[], dispersion, ", greatest = 1");
+        }
+    }
+    text
+}
