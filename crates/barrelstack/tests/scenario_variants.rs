@@ -111,7 +111,7 @@ fn friction_laws() {
     // The coefficient of the base goes with its law; the pair has its own.
     assert_eq!(
         friction(&[".law=regularized", ".velocity=1 mm/s"]),
-        Friction::Regularized { coefficient: 0.22, velocity: 1e-3 }
+        Friction::Regularized { coefficient: 0.3, velocity: 1e-3 }
     );
     assert_eq!(
         friction(&[
@@ -120,7 +120,7 @@ fn friction_laws() {
             ".tangential_damping_ratio=0"
         ]),
         Friction::Coulomb {
-            coefficient: 0.22,
+            coefficient: 0.3,
             static_coefficient: 0.3,
             tangential_stiffness_ratio: 0.5,
             tangential_damping_ratio: 0.0,

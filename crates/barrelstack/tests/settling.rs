@@ -57,6 +57,7 @@ fn random_stack(seed: u64) -> Vec<String> {
     ];
     for pair in ["rack-ground", "barrel-rack", "rack-rack"] {
         let stiffness = 9.8e5 * libm::pow(10.0, random.between(-1.0, 1.0));
+        set.push(format!("interface.{pair}.basis=node"));
         set.push(format!("interface.{pair}.stiffness=\"{stiffness:.1} N/m\""));
         if random.next() < 0.5 {
             let damping = random.between(0.0, 22_000.0);

@@ -29,6 +29,7 @@ pub(super) static WORDS: Words = Words {
         "interface.barrel-rack.stiffness=\"980 kN/m\"",
         "interface.barrel-rack.damping=\"5 kN s/m\"",
         "interface.barrel-rack.friction.coefficient=0.3",
+        "interface.barrel-rack.friction.tangential_stiffness_ratio=1",
         "stack.pad.stiffness=\"980 kN/m\"",
         "stack.pad.friction=0.3",
     ],
