@@ -10,7 +10,7 @@
 //!    the target's surface, and which way is out?
 //! 3. The normal law turns penetration and its rate into a compressive force.
 //! 4. The friction law turns slip rate and stick into a tangential force.
-//! 5. Both bodies feel the force at one point, the companion point on the target.
+//! 5. Both bodies feel the force at one point: the companion point on the target, or the middle of the overlap.
 //! 6. Contact, force elements, gravity and viscous damping are summed: accelerations ([`evaluate`]).
 //! 7. The integrator repeats 1 to 6 as its method asks and advances poses, twists and sticks.
 //! 8. Once the step is accepted, every stick is cut back to what friction can hold.

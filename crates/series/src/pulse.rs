@@ -7,7 +7,7 @@ use crate::sampled::Kinematics;
 /// A motion given by a formula, from rest at zero displacement at t = 0.
 ///
 /// Every pulse ends at [`Pulse::duration`]; afterwards the acceleration is zero, the velocity is
-/// held and the displacement grows linearly.
+/// held and the displacement grows linearly, but after a sine the ground stands still.
 /// With `T` the period, `w = 2π/T` and `s` the time from the middle of the pulse:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pulse {
@@ -15,7 +15,7 @@ pub enum Pulse {
     /// the first and the last `ramp_cycles` periods.
     ///
     /// Without a ramp the velocity jumps from 0 to `A w` at t = 0, an impact rather than a shake,
-    /// and the pulse leaves with the velocity of its last instant.
+    /// and back to 0 after the last instant: the ground stays where the sine leaves it.
     Sine {
         /// Displacement amplitude `A` (m).
         amplitude: f64,
@@ -169,7 +169,13 @@ impl Pulse {
             return Kinematics::default();
         }
         let end = self.duration();
-        if t <= end { self.inside(t) } else { self.inside(end).coast(t - end) }
+        match self {
+            _ if t <= end => self.inside(t),
+            Self::Sine { .. } => {
+                Kinematics { displacement: self.inside(end).displacement, ..Kinematics::default() }
+            }
+            _ => self.inside(end).coast(t - end),
+        }
     }
 
     fn inside(&self, t: f64) -> Kinematics {
