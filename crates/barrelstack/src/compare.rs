@@ -136,13 +136,15 @@ pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
 described! {
     /// Two or more runs side by side.
     #[derive(Clone, Debug)]
-    pub struct Comparison of sides: &[Side] {
+    pub struct Comparison of sides: &[Side], unfinished: Vec<String> {
         /// Name and version of this layout.
         pub schema: &'static str ["comparison/1"] = "comparison/1",
         /// The runs, in order.
         pub runs: Vec<Compared> = sides.iter().map(Compared::of).collect(),
         /// The first run beside each other one, variant by variant, in the plane that is shown and then in the other.
         pub paired: Vec<Paired> = pairs(sides),
+        /// Runs that were stopped before their end, or not begun, and so are not compared.
+        pub unfinished: Vec<String> = unfinished,
         /// The inputs that differ.
         pub differences: Vec<Difference> = differences(sides.iter().map(|side| &*side.run.stated)),
     }

@@ -364,10 +364,13 @@ fn variants_csv(answer: &Answer) -> String {
         "plane,variant,outcome,mode,first body,collapse (s),first fall (s),barrels fallen,barrels\n",
     );
     let planes = std::iter::once(&answer.decides).chain(&answer.other);
-    for found in planes.filter_map(|shown| shown.variants.as_ref()) {
-        let view = found.view.map_or("", View::name);
-        for (number, result) in found.results.iter().enumerate() {
+    for Shown { run, variants, stopped, .. } in planes {
+        let view = run.assembly.view.map_or("", View::name);
+        let results = variants.as_ref().map(|found| &found.results).or(stopped.as_ref());
+        for (number, result) in results.into_iter().flatten().enumerate() {
             let (kind, collapse) = match &result.outcome {
+                // What was not done has no row.
+                Ok(Outcome::Interrupted) => continue,
                 Ok(Outcome::Collapse { mode, time, first, .. }) => {
                     ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))
                 }

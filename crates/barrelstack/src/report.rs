@@ -27,7 +27,7 @@ pub(crate) use inputs::{settings_table, shown};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
 pub use tables::{demand_table, device_table, interface_table};
-pub use words::{device as device_sentence, fine};
+pub use words::{device as device_sentence, fine, stopped};
 pub(crate) use words::{headline, provenance};
 
 /// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
@@ -53,7 +53,7 @@ pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> 
 
 /// What moves of an answer, alone: its run in motion, in each plane that it looks at.
 pub fn stage(answer: &Answer) -> Block {
-    let Answer { decides: Shown { run, summary, variants }, other, .. } = answer;
+    let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());
     sections::stage(run, summary, other.as_ref(), &scene)
 }
@@ -104,7 +104,7 @@ pub(crate) fn tone(run: &Run, summary: &Summary) -> Tone {
     match run.outcome {
         Outcome::Stable => Tone::Stands,
         Outcome::Collapse { .. } => Tone::Falls,
-        Outcome::NotJudged => Tone::Neutral,
+        Outcome::NotJudged | Outcome::Interrupted => Tone::Neutral,
         Outcome::Invalid { .. } => Tone::Invalid,
     }
 }

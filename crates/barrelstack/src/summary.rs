@@ -32,6 +32,8 @@ described! {
         pub variant: u32 = 0,
         /// What all variants say together; null where none were run.
         pub ensemble: Option<Spread> = None,
+        /// How many of its runs were done; null unless they were stopped before all were.
+        pub unfinished: Option<Unfinished> = None,
         /// What would have kept the stack up; null where it stands, or nothing was looked for.
         pub remedy: Option<Remedy> = None,
         /// What happened.
@@ -63,6 +65,16 @@ described! {
         pub other_plane: Option<Box<Summary>> = None,
     }
 
+    /// Runs of the stack as it is stated and of its variants, in all planes, which were stopped before all were done:
+    /// those that collapse end first, so what is done is no sample of all.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Unfinished {
+        /// Runs that are done.
+        pub done: usize,
+        /// Runs in all.
+        pub of: usize,
+    }
+
     /// What happened.
     #[derive(Clone, Debug, Default)]
     pub struct OutcomeSummary {
@@ -80,7 +92,7 @@ described! {
         pub to_level: Option<u32>,
         /// When the first barrel had fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid.
+        /// Barrels that had fallen at the end; null where the run is invalid or was stopped before.
         pub barrels_fallen: Option<usize>,
         /// Barrels in all.
         pub barrels: usize,
@@ -233,6 +245,17 @@ described! {
     }
 }
 
+impl Unfinished {
+    /// What the reader of a result should know of it.
+    pub fn warning(&self) -> String {
+        let Self { done, of } = self;
+        format!(
+            "{done} of {of} runs were done when it was stopped, those that collapse sooner than others: nothing \
+             is said of the share that collapses"
+        )
+    }
+}
+
 impl Summary {
     /// What all variants say in each plane in which they were run, across the barrels first.
     pub fn spreads(&self) -> Vec<(View, &Spread)> {
@@ -265,11 +288,13 @@ fn sound(run: &Run) -> bool {
 }
 
 fn outcome(run: &Run) -> OutcomeSummary {
+    // What had happened until a stop stands with the bodies.
+    let ended = sound(run) && run.outcome != Outcome::Interrupted;
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let summary = OutcomeSummary {
-        kind: if run.interrupted && sound(run) { "interrupted" } else { run.outcome.kind() },
-        first_fall: run.fates.first_fall().filter(|_| sound(run)),
-        barrels_fallen: sound(run).then(|| {
+        kind: run.outcome.kind(),
+        first_fall: run.fates.first_fall().filter(|_| ended),
+        barrels_fallen: ended.then(|| {
             barrels.iter().filter(|body| run.fates.fate(**body).fell_at.is_some()).count()
         }),
         barrels: barrels.len(),
@@ -285,7 +310,7 @@ fn outcome(run: &Run) -> OutcomeSummary {
             ..summary
         },
         Outcome::Invalid { reason } => OutcomeSummary { reason: Some(reason.clone()), ..summary },
-        Outcome::Stable | Outcome::NotJudged => summary,
+        Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => summary,
     }
 }
 

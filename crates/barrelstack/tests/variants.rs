@@ -175,7 +175,13 @@ fn what_is_stopped_says_nothing_of_shares() {
         answer(&two_levels(&[]), Asked::Typical, &mut |_| ControlFlow::Break(())).unwrap().decides;
     assert_eq!(stopped.summary.outcome.kind, "interrupted");
     assert!(stopped.summary.ensemble.is_none() && stopped.variants.is_none());
-    assert!(stopped.summary.warnings.iter().any(|text| text.contains("variants were stopped")));
+    assert!(
+        stopped
+            .summary
+            .warnings
+            .iter()
+            .any(|text| text.contains("runs were done when it was stopped"))
+    );
 }
 
 #[test]

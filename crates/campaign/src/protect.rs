@@ -187,7 +187,7 @@ impl Ranking {
         let mut answers = Vec::new();
         for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
             let answer = answer(scenario, Asked::Typical, tell)?;
-            if answer.decides.run.interrupted {
+            if answer.is_stopped() {
                 return Ok(false);
             }
             answers.push((name.to_owned(), answer));

@@ -19,7 +19,7 @@ Exit status:
   2    there is none: a mistake in what was asked for, or a file that could not be read or written
   3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
   4    chunks of a study are missing, and its table holds those that are there (study collect)
-  130  stopped by Ctrl-C or by SIGTERM: what was computed until then was printed and written
+  130  stopped by Ctrl-C or by SIGTERM: there is no verdict of what was not finished, and what was is printed and written
 
 With --json what has no result prints one document as well, of the schema `error`; see barrelstack schema.";
 
@@ -30,6 +30,9 @@ pub(crate) struct Args {
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Stop as by Ctrl-C at a place of the work, WORK:THINGS:DONE; for tests.
+    #[arg(long, global = true, hide = true, value_name = "PLACE")]
+    pub(crate) stop_at: Option<crate::interrupt::Place>,
 }
 
 /// What to do.

@@ -32,7 +32,12 @@ fn main() -> ExitCode {
         }
         Err(help) => help.exit(),
     };
+    interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {
+        // Whatever is kept, stopped work is no result.
+        Ok(code) if code == ExitCode::SUCCESS && interrupt::has_stopped() => {
+            ExitCode::from(interrupt::STATUS)
+        }
         Ok(code) => code,
         Err(error) if error.is::<interrupt::Stopped>() => {
             printer::stopped(json);

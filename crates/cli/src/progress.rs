@@ -63,11 +63,13 @@ impl Progress {
     /// The run has come this far.
     pub(crate) fn at(&self, progress: barrelstack::Progress) -> ControlFlow<()> {
         let barrelstack::Progress { time, end_time } = progress;
+        self.interrupt.reached("seconds", time);
         self.told(time, end_time, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
     /// So many of so many things are done.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
+        self.interrupt.reached(things, done as f64);
         self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
     }
 
@@ -94,6 +96,7 @@ impl Progress {
             bar.set_message(words());
         }
         self.lines.now_and_then(words);
+        self.interrupt.reached(things, done as f64);
         self.interrupt.flow()
     }
 

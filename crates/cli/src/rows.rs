@@ -120,11 +120,8 @@ pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
 fn verdict(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.kind, outcome.mode, outcome.time) {
-        ("interrupted", Some(mode), Some(time)) => {
-            format!("collapse by {mode} at {time:.2} s; then it was stopped")
-        }
         (kind, Some(mode), Some(time)) => format!("{kind} by {mode} at {time:.2} s"),
-        ("interrupted", ..) => "stopped before its end, nothing had happened until then".to_owned(),
+        ("interrupted", ..) => "none: stopped before its end".to_owned(),
         ("not-judged", ..) => "not judged: a free scene has no seats to lose".to_owned(),
         (kind, ..) => kind.to_owned(),
     }

@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: every command ends within a second, keeps what it has, and says so.
+//! Ctrl-C and SIGTERM: every command stops, makes no verdict of what is not finished, keeps what is, and says so.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
@@ -16,8 +16,8 @@ use common::{HEAD, barrelstack, names, program};
 const LONG: [&str; 3] =
     ["--set=run.duration=3600 s", "--set=run.until=duration", "--set=stack.levels=2"];
 
-/// How long a command may take to end; measured 0.1 to 0.9 s on a machine that does other things, too.
-const AT_MOST: Duration = Duration::from_millis(1500);
+/// How long a command may take to end, on however busy a machine; measured 0.1 to 2 s, the work is of hours.
+const AT_MOST: Duration = Duration::from_secs(40);
 
 /// Starts a command, signals it, and gives its words on standard error.
 fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
@@ -61,7 +61,7 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn every_command_ends_within_a_second_and_says_what_is_kept() {
+fn every_command_ends_and_says_what_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let study = format!(
@@ -116,8 +116,8 @@ fn every_command_ends_within_a_second_and_says_what_is_kept() {
     // What was computed until then is there.
     assert!(names(&at.join("run")).unwrap().contains(&"report.html".to_owned()));
     assert!(names(&at.join("demo")).unwrap().contains(&"report.html".to_owned()));
+    assert!(names(&at.join("compared")).unwrap().contains(&"report.html".to_owned()));
     // What would be half is not.
-    assert_eq!(names(&at.join("compared")), None);
     assert!(!at.join("matched.txt").exists());
 }
 
@@ -138,4 +138,173 @@ fn a_study_that_was_stopped_goes_on() {
     let status = barrelstack(["study", "status", out.to_str().unwrap(), "--json"]);
     let status: serde_json::Value = serde_json::from_str(&common::stdout(&status)).unwrap();
     assert!(!status["missing"].as_array().unwrap().is_empty());
+}
+
+/// Two levels of barrels, which stand, for a few seconds: short work with variants.
+const SHORT: [&str; 4] = ["run", "demo-napa", "--set=stack.levels=2", "--set=run.duration=4 s"];
+
+/// Words that only a verdict has.
+const VERDICTS: [&str; 5] =
+    ["This stack", "The stack stands", ": it stands", ": it falls", "gives way after"];
+
+/// What a command says that stops itself at a place of its work: standard output, which must hold no verdict where none
+/// is `finished`.
+fn stops_at(place: &str, arguments: &[&str], folder: &Path, finished: bool) -> String {
+    let what = format!("{arguments:?} at {place}");
+    let output = program(arguments)
+        .args(["--stop-at", place])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let (said, words) = (common::stdout(&output), common::stderr(&output));
+    assert_eq!(output.status.code(), Some(130), "{what}: {said}{words}");
+    let mut pages = vec![said.clone()];
+    for file in files(folder) {
+        if Path::new(&file).extension().is_some_and(|end| end == "html" || end == "md") {
+            pages.push(fs::read_to_string(file).unwrap());
+        }
+    }
+    for (page, verdict) in pages.iter().flat_map(|page| VERDICTS.map(|verdict| (page, verdict))) {
+        assert!(finished || !page.contains(verdict), "{what} says \"{verdict}\": {page}");
+    }
+    said
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn stopped_variants_are_kept_and_make_no_verdict() {
+    for (plane, of) in [("both", 14), ("transverse", 7)] {
+        let folder = tempfile::tempdir().unwrap();
+        let view = format!("--set=stack.view={plane}");
+        let arguments = [&SHORT[..], &[&view, "--variants=6", "--out=out", "--json"]].concat();
+        let summary = json(&stops_at("1:variants:2", &arguments, folder.path(), false));
+        assert_eq!(summary["outcome"]["kind"], "interrupted");
+        assert_eq!(summary["unfinished"]["of"], of);
+        let done = summary["unfinished"]["done"].as_u64().unwrap();
+        assert!((2..of).contains(&done), "{done} of {of}");
+        for verdict in ["ensemble", "remedy"] {
+            assert!(summary[verdict].is_null(), "{verdict}");
+        }
+        assert!(summary["outcome"]["barrels_fallen"].is_null());
+        // What is done has its row, and nothing else has one.
+        let rows = fs::read_to_string(folder.path().join("out/variants.csv")).unwrap();
+        assert_eq!(rows.lines().count() as u64, 1 + done, "{rows}");
+        assert!(!rows.contains("interrupted"), "{rows}");
+        assert!(folder.path().join("out/report.html").exists());
+    }
+}
+
+#[test]
+fn a_stopped_run_has_no_outcome_in_print() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = stops_at(
+        "1:seconds:1",
+        &[&SHORT[..], &["--variants=0", "--set=stack.view=transverse"]].concat(),
+        folder.path(),
+        false,
+    );
+    assert!(said.contains("there is no verdict"), "{said}");
+    assert!(said.contains("none: stopped before its end"), "{said}");
+    let said =
+        stops_at("1:variants:2", &[&SHORT[..], &["--variants=6"]].concat(), folder.path(), false);
+    assert!(said.contains("of 14 runs"), "{said}");
+}
+
+#[test]
+fn a_stack_that_had_collapsed_when_it_was_stopped_has_no_outcome_either() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["run", "candia-8-barrels", "--variants=0", "--out=out", "--json"];
+    let summary = json(&stops_at("1:seconds:7", &arguments, folder.path(), false));
+    let outcome = &summary["outcome"];
+    assert_eq!(outcome["kind"], "interrupted");
+    for field in ["mode", "time", "first", "first_fall", "barrels_fallen"] {
+        assert!(outcome[field].is_null(), "{field}: {outcome}");
+    }
+    // What was observed until then stands with the bodies.
+    let left = |body: &serde_json::Value| body["left_seat_at"].is_f64();
+    assert!(summary["bodies"].as_array().unwrap().iter().any(left));
+}
+
+#[test]
+fn the_verdict_is_kept_where_the_search_behind_it_is_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let weak = ["run", "demo-napa", "--set=stack.view=longitudinal", "--variants=8"];
+    let brief = ["--set=run.stop_after_collapse=0.1 s", "--out=out", "--json"];
+    let said =
+        stops_at("2:would have helped:1", &[&weak[..], &brief].concat(), folder.path(), true);
+    let summary = json(&said);
+    assert_eq!(summary["outcome"]["kind"], "collapse");
+    assert_eq!(summary["ensemble"]["variants"], 8);
+    assert_eq!(summary["remedy"]["complete"], false);
+    assert!(folder.path().join("out/report.html").exists());
+}
+
+#[test]
+fn of_a_stopped_comparison_the_finished_run_is_kept_and_nothing_is_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let compare = ["compare", "demo-napa", "--set=run.duration=4 s", "--set=stack.view=transverse"];
+    let runs = ["--set=stack.levels=3", "--against=stack.levels=2", "--variants=6"];
+    let both = [&compare[..], &runs].concat();
+    // In the first run nothing is finished.
+    let first = [&both[..], &["--out=first", "--json"]].concat();
+    let document = json(&stops_at("1:variants:2", &first, folder.path(), false));
+    assert_eq!(document["unfinished"].as_array().unwrap().len(), 2);
+    assert_eq!(document["runs"][0]["summary"]["outcome"]["kind"], "interrupted");
+    // In the second the first is.
+    for place in ["2:variants:1", "2:seconds:2"] {
+        let out = format!("--out={}", place.replace(':', "-"));
+        let arguments = [&both[..], &[&out, "--json"]].concat();
+        let document = json(&stops_at(place, &arguments, folder.path(), true));
+        assert_eq!(document["runs"].as_array().unwrap().len(), 1, "{document}");
+        assert_eq!(document["runs"][0]["summary"]["ensemble"]["variants"], 6);
+        assert_eq!(document["unfinished"].as_array().unwrap().len(), 1);
+        assert_ne!(document["runs"][0]["name"], document["unfinished"][0]);
+        assert!(folder.path().join(&out[6..]).join("report.html").exists());
+    }
+    let said =
+        stops_at("2:variants:1", &[&both[..], &["--out=print"]].concat(), folder.path(), true);
+    assert!(!said.contains("Stands:") && !said.contains("stand:"), "{said}");
+}
+
+#[test]
+fn what_is_stopped_in_space_has_no_outcome_and_keeps_its_variants() {
+    let folder = tempfile::tempdir().unwrap();
+    let space = [&SHORT[..], &["--set=stack.view=spatial", "--json"]].concat();
+    let alone = [&space[..], &["--variants=0", "--out=alone"]].concat();
+    let summary = json(&stops_at("1:seconds:0.5", &alone, folder.path(), false));
+    assert_eq!(summary["outcome"]["kind"], "interrupted");
+    assert!(folder.path().join("alone/report.html").exists());
+    let varied = [&space[..], &["--variants=4", "--out=varied"]].concat();
+    let summary = json(&stops_at("1:variants:1", &varied, folder.path(), false));
+    assert!(summary["ensemble"].is_null() && summary["directions"].is_null());
+    let done = summary["unfinished"]["done"].as_u64().unwrap();
+    let rows = fs::read_to_string(folder.path().join("varied/variants.csv")).unwrap();
+    assert_eq!(
+        (summary["unfinished"]["of"].as_u64(), rows.lines().count() as u64),
+        (Some(5), 1 + done)
+    );
+}
+
+#[test]
+fn repeats_that_are_stopped_are_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let verify = ["run", "rocking-block", "--verify", "--set=run.duration=1 s", "--json"];
+    let summary = json(&stops_at("3:seconds:0.5", &verify, folder.path(), true));
+    assert_eq!(summary["outcome"]["kind"], "not-judged");
+    assert!(!summary["verification"]["skipped"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn of_a_stopped_reproduction_the_finished_cases_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    // Not all cases are done.
+    let said = stops_at("1:runs:1", &["reproduce", "--out=first"], folder.path(), true);
+    let cases = said.lines().filter(|line| line.contains(": ")).count();
+    assert!((1..7).contains(&cases), "{said}");
+    assert!(!said.contains("published results agree"), "{said}");
+    assert!(!folder.path().join("first/index.html").exists());
 }

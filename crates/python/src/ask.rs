@@ -60,7 +60,7 @@ pub(crate) fn compare(
     })?;
     let compared =
         compared.map_err(|(failure, at): (RunFailure, usize)| errors::run(&failure, &all[at].1))?;
-    py.detach(|| Page::of(&Comparison::of(&compared), document(&compared)))
+    py.detach(|| Page::of(&Comparison::of(&compared, Vec::new()), document(&compared)))
 }
 
 /// How high is safe.
@@ -222,7 +222,7 @@ pub(crate) fn reproduce(
     let found = found.map_err(|error| match error {
         ReproduceError::Scenario(error) => errors::scenario(&error),
         ReproduceError::Record(error) => errors::ground(&error),
-        ReproduceError::Stopped => PyKeyboardInterrupt::new_err(()),
+        ReproduceError::Stopped { .. } => PyKeyboardInterrupt::new_err(()),
         other @ (ReproduceError::Run { .. } | ReproduceError::Lost { .. }) => {
             errors::general(other)
         }

@@ -193,7 +193,11 @@ impl Scenario {
             };
             let run = stated.run_before(stated.ground()?, Pace::Steps(every), &mut eye)?;
             let summary = Summary::of(&run, None);
-            Ok(Answer { scenario, decides: Shown { run, summary, variants: None }, other: None })
+            Ok(Answer {
+                scenario,
+                decides: Shown { run, summary, variants: None, stopped: None },
+                other: None,
+            })
         });
         match (raised, done) {
             (Some(error), _) => Err(error),

@@ -41,6 +41,8 @@ pub struct Reproduction {
     pub motion: Motion,
     /// The page.
     pub document: Document,
+    /// Whether the studies were stopped, of which then none is in it.
+    pub stopped: bool,
 }
 
 /// Why there is no reproduction.
@@ -66,9 +68,12 @@ pub enum ReproduceError {
         /// The case.
         case: String,
     },
-    /// It was told to stop: half of the table would say nothing.
+    /// It was stopped before every case of the paper was done, so there is no table.
     #[error("the runs were stopped")]
-    Stopped,
+    Stopped {
+        /// The cases that were done, each with what became of it.
+        done: Vec<(String, String)>,
+    },
 }
 
 impl From<ScenarioError> for ReproduceError {
@@ -91,7 +96,8 @@ impl From<GroundError> for ReproduceError {
 /// the motion is compared.
 /// `studies` asks for the studies too: what moves each case, and contact parameters 10 % off; they are
 /// most of the work.
-/// `tell` hears how many runs are done, of how many, from several threads, and may stop them.
+/// `tell` hears how many runs are done, of how many, from several threads, and may stop them: once all cases are done
+/// there is a result without the studies.
 ///
 /// The result depends on the program, the platform and the record alone.
 ///
@@ -103,12 +109,22 @@ pub fn reproduce(
     tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Reproduction, ReproduceError> {
     let cases = cases::Cases::new(record)?;
-    let plan = results::Plan::new(&cases, studies);
-    let done = pool::run_all(&plan.jobs, tell)?;
-    let results = plan.read(cases.motion, done)?;
+    let mut plan = results::Plan::new(&cases, studies);
+    let mut done = pool::run_all(&plan.jobs, tell)?;
+    let stopped = done.iter().any(Option::is_none);
+    if stopped {
+        plan.leave_out_studies();
+        done.truncate(plan.jobs.len());
+    }
+    if done.iter().any(Option::is_none) {
+        let labels = plan.jobs.iter().map(|job| job.label.clone());
+        let told = labels.zip(done).filter_map(|(label, done)| Some((label, done?.headline)));
+        return Err(ReproduceError::Stopped { done: told.collect() });
+    }
+    let results = plan.read(cases.motion, done.into_iter().flatten().collect())?;
     let comparisons = rows::all(&results);
-    let document = page::document(&results, &comparisons);
-    Ok(Reproduction { comparisons, motion: results.motion, document })
+    let document = page::document(&results, &comparisons, stopped);
+    Ok(Reproduction { comparisons, motion: results.motion, document, stopped })
 }
 
 /// The comparisons alone, as one Markdown table.

@@ -13,7 +13,7 @@ use super::study::Subject;
 use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 
 /// The whole page.
-pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
+pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) -> Document {
     Document {
         title: "Candia, de la Llera and Almazán (2008): published against ours".into(),
         verdict: Headline {
@@ -31,7 +31,14 @@ pub(super) fn document(results: &Results, rows: &[Comparison]) -> Document {
         },
         blocks: blocks(results, rows),
         provenance: provenance(results),
-        warnings: warnings(&results.motion),
+        warnings: warnings(&results.motion)
+            .into_iter()
+            .chain(stopped.then(|| {
+                "The studies were stopped before they were done: every case of the paper was run, and what moves its \
+                 numbers is not said."
+                    .to_owned()
+            }))
+            .collect(),
         ..Document::default()
     }
 }

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::pool;
+use barrelstack::report::sentences;
 use barrelstack::run::Run;
 use barrelstack::scenario::Scenario;
 use barrelstack::summary::Summary;
@@ -33,14 +34,16 @@ pub(super) struct Done {
     pub(super) summary: Summary,
     /// All of it, where it was wanted.
     pub(super) run: Option<Box<Run>>,
+    /// What became of it, in one sentence.
+    pub(super) headline: String,
 }
 
 /// Runs all jobs on all cores, the first first; `tell` hears again and again how many are done, of how many, and may
-/// stop them.
+/// stop them: then there is nothing of those that are not done.
 pub(super) fn run_all(
     jobs: &[Job],
     tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
-) -> Result<Vec<Done>, ReproduceError> {
+) -> Result<Vec<Option<Done>>, ReproduceError> {
     let done = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
     let told = || {
@@ -60,17 +63,18 @@ pub(super) fn run_all(
     pool::map(jobs, |job| run_one(job, &told), &finished).into_iter().collect()
 }
 
-fn run_one(job: &Job, told: &dyn Fn() -> ControlFlow<()>) -> Result<Done, ReproduceError> {
+fn run_one(job: &Job, told: &dyn Fn() -> ControlFlow<()>) -> Result<Option<Done>, ReproduceError> {
     if told().is_break() {
-        return Err(ReproduceError::Stopped);
+        return Ok(None);
     }
     let run = job.scenario.run_watched(&mut |_| told()).map_err(|source| ReproduceError::Run {
         case: job.label.clone(),
         source: Box::new(source),
     })?;
     if run.interrupted {
-        return Err(ReproduceError::Stopped);
+        return Ok(None);
     }
     let summary = Summary::of(&run, None);
-    Ok(Done { summary, run: job.keep.then(|| Box::new(run)) })
+    let headline = sentences(&run, &summary).swap_remove(0);
+    Ok(Some(Done { summary, run: job.keep.then(|| Box::new(run)), headline }))
 }

@@ -104,6 +104,12 @@ impl Plan {
         Self { jobs, studies, single }
     }
 
+    /// Leaves out the studies, whose jobs come last.
+    pub(super) fn leave_out_studies(&mut self) {
+        self.jobs.truncate(self.single);
+        self.studies.clear();
+    }
+
     /// Sorts what came of the jobs.
     pub(super) fn read(self, motion: Motion, done: Vec<Done>) -> Result<Results, ReproduceError> {
         let labels: Vec<String> = self.jobs.into_iter().map(|job| job.label).collect();

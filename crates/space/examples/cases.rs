@@ -139,7 +139,9 @@ fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>
     let seconds = start.elapsed().as_secs_f64();
     let (time, first, mode) = match &run.outcome {
         Outcome::Collapse { time, first, mode, .. } => (Some(*time), first.as_str(), mode.name()),
-        Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. } => (None, "", ""),
+        Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. } => {
+            (None, "", "")
+        }
     };
     Ok(json!({
         "kind": run.outcome.kind(),

@@ -55,11 +55,13 @@ fn variants_csv(answer: &Answer) -> String {
         use barrelstack::outcome::Outcome;
         let result = &case.result;
         let (kind, mode, time, first, reason) = match &result.outcome {
+            // What was not done has no row.
+            Ok(Outcome::Interrupted) => continue,
             Ok(Outcome::Collapse { mode, time, first, .. }) => {
                 ("collapse", mode.name(), Some(*time), first.as_str(), "")
             }
             Ok(Outcome::Invalid { reason }) => ("invalid", "", None, "", reason.as_str()),
-            Ok(Outcome::Stable | Outcome::NotJudged) => ("stable", "", None, "", ""),
+            Ok(outcome) => (outcome.kind(), "", None, "", ""),
             Err(reason) => ("cannot-stand", "", None, "", reason.as_str()),
         };
         let number_or_none = |value: Option<f64>| value.map(shortest).unwrap_or_default();

@@ -176,8 +176,8 @@ pub(crate) fn affordable(
     Ok(end_time)
 }
 
-/// Runs a scenario in space on a given ground before an observer, who is told how far the run is every 0.05 s of
-/// simulated time and may stop it; what was seen until then is returned.
+/// Runs a scenario in space on a given ground before an observer, who is told how far the run is at least every
+/// 0.05 s of simulated time and may stop it; what was seen until then is returned.
 ///
 /// # Errors
 /// When the stack cannot be built in space, or does not stand.
@@ -201,6 +201,7 @@ pub fn run_on(
         every: 1.0 / scenario.record.frame_rate,
         after_collapse: scenario.run.stop_after_collapse.unwrap_or(f64::INFINITY),
         next_look: 0.0,
+        steps: 0,
         observer,
         end_time,
         ending: None,
@@ -286,6 +287,9 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     collapse(time, (&part.name, part.kind, part.level), slid, stack.levels)
 }
 
+/// Most steps between two questions whether to stop.
+const PATIENCE: u32 = 16;
+
 /// Everything that watches a run.
 struct Watch<'a> {
     fates: Fates<'a>,
@@ -298,6 +302,8 @@ struct Watch<'a> {
     /// How long (s) it goes on after a collapse.
     after_collapse: f64,
     next_look: f64,
+    /// Steps since the last look.
+    steps: u32,
     observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     end_time: f64,
     ending: Option<Ending>,
@@ -330,8 +336,10 @@ impl Observer<Spatial> for Watch<'_> {
             };
             self.frames.twists.push(state.twists.iter().map(twist).collect());
         }
-        if time >= self.next_look {
-            self.next_look = time + PROGRESS;
+        // Steps of many bodies take long.
+        self.steps += 1;
+        if time >= self.next_look || self.steps == PATIENCE {
+            (self.next_look, self.steps) = (time + PROGRESS, 0);
             if (self.observer)(Progress { time, end_time: self.end_time }).is_break() {
                 self.ending = Some(Ending::Interrupted);
             }

@@ -5,9 +5,9 @@ use barrelstack::demand::{Demands, Span};
 use barrelstack::ground::MotionSummary;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
+use barrelstack::summary::Unfinished;
 use barrelstack::summary::{Devices, EnergyBooks, JointSummary, Provenance};
 use barrelstack::variants::Spread;
-use barrelstack::watch::Ending;
 use barrelstack_dynamics::Vec3;
 use barrelstack_report::described;
 
@@ -28,6 +28,8 @@ described! {
         pub variant: u32,
         /// What all variants say together; null where none were run.
         pub ensemble: Option<Spread>,
+        /// How many of its runs were done; null unless they were stopped before all were.
+        pub unfinished: Option<Unfinished>,
         /// In which directions they fall; null where none were run.
         pub directions: Option<Directions>,
         /// What happened.
@@ -97,7 +99,7 @@ described! {
         pub to_level: Option<u32>,
         /// When the first barrel had fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid.
+        /// Barrels that had fallen at the end; null where the run is invalid or was stopped before.
         pub barrels_fallen: Option<usize>,
         /// Barrels in all.
         pub barrels: usize,
@@ -219,6 +221,7 @@ impl Summary {
             title: stated.title.clone(),
             variant: 0,
             ensemble: None,
+            unfinished: None,
             directions: None,
             outcome: outcome(run, sound),
             // Numbers of a run that broke down look like results and are none.
@@ -249,12 +252,13 @@ impl Summary {
 }
 
 fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
-    let interrupted = run.ending == Ending::Interrupted && sound;
+    // What had happened until a stop stands with the bodies.
+    let ended = sound && run.outcome != Outcome::Interrupted;
     let mut summary = OutcomeInSpace {
-        kind: if interrupted { "interrupted" } else { run.outcome.kind() },
-        heading: run.heading.map(Heading::name).filter(|_| sound),
-        first_fall: run.first_fall.filter(|_| sound),
-        barrels_fallen: sound.then(|| run.fallen().count()),
+        kind: run.outcome.kind(),
+        heading: run.heading.map(Heading::name).filter(|_| ended),
+        first_fall: run.first_fall.filter(|_| ended),
+        barrels_fallen: ended.then(|| run.fallen().count()),
         barrels: run.stack.of_kind(PartKind::Barrel).count(),
         ..OutcomeInSpace::default()
     };
@@ -267,7 +271,7 @@ fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
             summary.to_level = Some(*to_level);
         }
         Outcome::Invalid { reason } => summary.reason = Some(reason.clone()),
-        Outcome::Stable | Outcome::NotJudged => {}
+        Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => {}
     }
     summary
 }

@@ -9,6 +9,7 @@ use barrelstack::demand::{Demands, Span};
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
+use barrelstack::summary::Unfinished;
 use barrelstack::variants::{Advance, Asked, Plane, Spread, planes};
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
@@ -38,7 +39,7 @@ pub struct Answer {
     pub run: Run,
     /// Its summary, with what all variants say.
     pub summary: Summary,
-    /// The case as it is stated, and its variants; empty where none were run, or they were stopped.
+    /// The case as it is stated, and its variants, those that were stopped among them; empty where none were run.
     pub cases: Vec<Case>,
 }
 
@@ -154,7 +155,7 @@ pub fn demands(run: &Run, span: Span) -> Demands {
 }
 
 /// Runs the case as it is stated and all its variants on all cores, before an observer, who hears how many of how many
-/// are done, and may stop them; then there is nothing.
+/// are done, and may stop them; those that were not done then are interrupted.
 ///
 /// The first is the case as it is stated, those after it the variants by their numbers.
 /// All stand as the scenario turns the stack: in space no component has to be taken for another.
@@ -164,7 +165,7 @@ pub fn demands(run: &Run, span: Span) -> Demands {
 pub fn run_all(
     scenario: &Scenario,
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
-) -> Result<Option<Vec<Case>>, RunFailure> {
+) -> Result<Vec<Case>, RunFailure> {
     let plane = plane(scenario)?;
     // What cannot be run is told before the work.
     let ground = Ground::of(&plane.scenario)?;
@@ -177,22 +178,28 @@ pub fn run_all(
         }
     };
     let work = |number: &u32| {
-        let mut going = |_| {
+        let going = |()| {
             hear(done.load(Ordering::Relaxed));
             let over = stopped.load(Ordering::Relaxed);
             if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let variant = plane.variant(*number);
-        let run = run_on(&variant, ground.clone(), &mut going);
-        done.fetch_add(1, Ordering::Relaxed);
-        hear(done.load(Ordering::Relaxed));
-        match run {
+        let interrupted =
+            || Case { result: CaseResult::interrupted(), first: None, debris: Vec::new() };
+        if going(()).is_break() {
+            return interrupted();
+        }
+        let case = match run_on(&variant, ground.clone(), &mut |_| going(())) {
+            Ok(run) if run.ending == Ending::Interrupted => {
+                return interrupted();
+            }
             Ok(run) => Case::of(&run),
             Err(failure) => Case::refused(&variant, &failure),
-        }
+        };
+        hear(done.fetch_add(1, Ordering::Relaxed) + 1);
+        case
     };
-    let cases = pool::map(&numbers, work, &|_| ());
-    Ok((!stopped.load(Ordering::Relaxed)).then_some(cases))
+    Ok(pool::map(&numbers, work, &|_| ()))
 }
 
 /// The scenario with its records at hand, whose variants are those of space.
@@ -223,12 +230,13 @@ pub fn answer(
     let cases = if varied {
         run_all(&plane.scenario, &|done, of| tell(Advance::Variants { done, of }))?
     } else {
-        None
+        Vec::new()
     };
-    let stopped = varied && cases.is_none();
-    let cases = cases.unwrap_or_default();
     let results: Vec<CaseResult> = cases.iter().map(|case| case.result.clone()).collect();
-    let imperfections = plane.scenario.imperfections().filter(|_| !cases.is_empty());
+    let done = results.iter().filter(|one| one.outcome != Ok(Outcome::Interrupted)).count();
+    let unfinished = (done < results.len()).then_some(Unfinished { done, of: results.len() });
+    let whole = !cases.is_empty() && unfinished.is_none();
+    let imperfections = plane.scenario.imperfections().filter(|_| whole);
     let spread = imperfections.map(|imperfections| Spread::of(imperfections, &results));
     let number = match (asked, &spread) {
         (Asked::Number(number) | Asked::Alone(number), _) => number,
@@ -242,13 +250,9 @@ pub fn answer(
     let variant = plane.variant(number);
     let ground = Ground::of(&plane.scenario)?;
     let mut run = run_on(&variant, ground, &mut |now| tell(Advance::Run(now)))?;
-    if stopped {
-        run.warnings.push(
-            "the variants were stopped before all were done, so nothing is said of the share that collapses"
-                .to_owned(),
-        );
-    }
+    run.warnings.extend(unfinished.as_ref().map(Unfinished::warning));
     let mut summary = Summary::of(&run, &plane.scenario);
+    summary.unfinished = unfinished;
     summary.variant = number;
     summary.directions =
         spread.as_ref().map(|_| Directions::of(cases.get(1..).unwrap_or_default()));

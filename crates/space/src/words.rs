@@ -2,10 +2,10 @@
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::Outcome;
-use barrelstack::report::device_sentence;
+use barrelstack::report::{device_sentence, stopped};
 use barrelstack::scenario::View;
 use barrelstack::variants::words::{headline as of_variants, percent, tone as of_spread};
-use barrelstack::watch::{Ending, Loss};
+use barrelstack::watch::Loss;
 use barrelstack_report::{Tone, capital};
 
 use crate::fate::Heading;
@@ -20,9 +20,6 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
     }
     let barrels = summary.outcome.barrels;
     match &run.outcome {
-        Outcome::Stable if run.ending == Ending::Interrupted => {
-            format!("This stack stood until the run was stopped at {:.1} s.", run.end_time)
-        }
         Outcome::Stable => match summary.demands.stave_utilization.filter(|load| *load > 1.0) {
             Some(load) => format!(
                 "This stack stands, but staves are crushed: they bear up to {:.0} % of what they are stated to bear.",
@@ -34,9 +31,7 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
             "This stack falls: it gives way after {time:.1} s, and {} of {barrels} barrels fall.",
             run.fallen().count()
         ),
-        Outcome::NotJudged if run.ending == Ending::Interrupted => {
-            format!("A free scene, until the run was stopped at {:.1} s.", run.end_time)
-        }
+        Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::NotJudged => {
             "A free scene: nothing in it has a seat to lose, so nothing is judged.".to_owned()
         }
@@ -50,10 +45,9 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
         return of_spread(&[(View::Transverse, spread)]);
     }
     match run.outcome {
-        Outcome::Stable if run.ending == Ending::Interrupted => Tone::Neutral,
         Outcome::Stable => Tone::Stands,
         Outcome::Collapse { .. } => Tone::Falls,
-        Outcome::NotJudged => Tone::Neutral,
+        Outcome::NotJudged | Outcome::Interrupted => Tone::Neutral,
         Outcome::Invalid { .. } => Tone::Invalid,
     }
 }

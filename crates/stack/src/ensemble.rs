@@ -91,6 +91,17 @@ impl Ensemble {
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
         asked_to_stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Vec<CaseResult>> {
+        self.run_as_far(observer, asked_to_stop).into_iter().collect()
+    }
+
+    /// As [`Ensemble::run_until`], and keeps what was done until it was stopped: none for each case that was not.
+    ///
+    /// Those that collapse end first, so what is done by then is no sample of all.
+    pub fn run_as_far(
+        &self,
+        observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
+        asked_to_stop: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Option<CaseResult>> {
         let stopped = AtomicBool::new(false);
         let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
@@ -100,11 +111,10 @@ impl Ensemble {
                 }
             };
             let stop = || stopped.load(Ordering::Relaxed) || asked_to_stop();
-            simulate_in(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
+            simulate_as_far(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
-        let done: Option<Vec<_>> = pool::map(&batches, together, &|_| ()).into_iter().collect();
-        done.map(|results| results.concat())
+        pool::map(&batches, together, &|_| ()).concat()
     }
 }
 
@@ -121,16 +131,27 @@ pub fn simulate_in(
     cases: &[Prepared],
     audience: &mut Audience<'_>,
 ) -> Option<Vec<CaseResult>> {
+    simulate_as_far(width, cases, audience).into_iter().collect()
+}
+
+/// As [`simulate_in`]: none for each case that was not done when it was asked to stop.
+fn simulate_as_far(
+    width: Width,
+    cases: &[Prepared],
+    audience: &mut Audience<'_>,
+) -> Vec<Option<CaseResult>> {
+    let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
     let mut stacks: Vec<Stack<'_>> = Vec::new();
     let mut runs: Vec<Result<Run<'_>, String>> = Vec::new();
     for (index, case) in cases.iter().enumerate() {
         if (audience.stop)() {
-            return None;
+            return results;
         }
         runs.push(prepare(case, index, &mut stacks));
     }
-    stand_all(width, &mut stacks, audience.stop)?;
-    let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
+    if stand_all(width, &mut stacks, audience.stop).is_none() {
+        return results;
+    }
     let mut ready = Vec::new();
     for (run, result) in runs.into_iter().zip(&mut results) {
         let refused = match run {
@@ -143,17 +164,20 @@ pub fn simulate_in(
         }
     }
     for (method, group) in groups(&ready, &stacks) {
+        if (audience.stop)() {
+            break;
+        }
         let done = if method.is_adaptive() {
             single::run(&group, &stacks, audience)
         } else {
             let width = if group.len() < FEWEST { Width::Scalar } else { width };
             batch::run(width, method, &group, &stacks, audience)
-        }?;
+        };
         for (index, result) in done {
             results[index] = Some(result);
         }
     }
-    results.into_iter().collect()
+    results
 }
 
 impl Stack<'_> {

@@ -63,6 +63,8 @@ pub enum Outcome {
     },
     /// A free scene has no seats to lose.
     NotJudged,
+    /// The caller stopped the run before its end: whatever had happened until then, nothing is known of the rest.
+    Interrupted,
     /// The numbers broke down.
     Invalid {
         /// Why, with time and body.
@@ -82,6 +84,7 @@ impl Outcome {
             Self::Stable => "stable",
             Self::Collapse { .. } => "collapse",
             Self::NotJudged => "not-judged",
+            Self::Interrupted => "interrupted",
             Self::Invalid { .. } => "invalid",
         }
     }

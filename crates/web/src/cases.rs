@@ -31,6 +31,7 @@ enum Ended {
     Stable,
     Collapse { mode: String, time: f64, first: String, from_level: u32, to_level: u32 },
     NotJudged,
+    Interrupted,
     Invalid { reason: String },
     Refused { reason: String },
 }
@@ -46,6 +47,7 @@ impl Case {
                     Ended::Collapse { mode, time, first, from_level, to_level }
                 }
                 Ok(Outcome::NotJudged) => Ended::NotJudged,
+                Ok(Outcome::Interrupted) => Ended::Interrupted,
                 Ok(Outcome::Invalid { reason }) => Ended::Invalid { reason },
                 Err(reason) => Ended::Refused { reason },
             },
@@ -68,6 +70,7 @@ impl Case {
                 Ok(Outcome::Collapse { mode, time, first, from_level, to_level })
             }
             Ended::NotJudged => Ok(Outcome::NotJudged),
+            Ended::Interrupted => Ok(Outcome::Interrupted),
             Ended::Invalid { reason } => Ok(Outcome::Invalid { reason }),
             Ended::Refused { reason } => Err(reason),
         };

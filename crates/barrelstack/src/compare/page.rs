@@ -53,6 +53,7 @@ fn fate(side: &Side) -> String {
         Outcome::Stable => "stands".into(),
         Outcome::Collapse { time, .. } => format!("gives way after {time:.1} s"),
         Outcome::NotJudged => "ran to its end".into(),
+        Outcome::Interrupted => "was stopped before its end and says nothing".into(),
         Outcome::Invalid { .. } => "broke down and says nothing".into(),
     }
 }

@@ -126,7 +126,7 @@ fn moment(run: &Run) -> Option<Moment> {
             Some(Moment { time: *time, body, text, falls: true })
         }
         Outcome::Stable => furthest(run),
-        Outcome::NotJudged | Outcome::Invalid { .. } => None,
+        Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. } => None,
     }
 }
 

@@ -7,7 +7,7 @@ use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{Device, EnergyBooks, RunSummary, Summary};
+use crate::summary::{Device, EnergyBooks, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
@@ -22,28 +22,21 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
 
 /// What became of the run that is shown, in one sentence.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
-    let until = run.interrupted.then(|| format!("the run was stopped at {:.1} s", run.end_time));
-    match (&run.outcome, until) {
-        (Outcome::Stable, None) => match crushed(summary) {
+    match &run.outcome {
+        Outcome::Stable => match crushed(summary) {
             Some(load) => format!(
                 "The stack stands, but staves are crushed: they bear up to {load} of what they are stated to bear."
             ),
             None => "The stack stands.".into(),
         },
-        (Outcome::Stable, Some(until)) => format!("The stack stood until {until}."),
-        (Outcome::NotJudged, None) => "The scene ran to its end.".into(),
-        (Outcome::NotJudged, Some(until)) => format!("The scene was seen until {until}."),
-        (Outcome::Invalid { .. }, _) => {
-            "The run broke down and says nothing about the stack.".into()
-        }
-        (Outcome::Collapse { time, .. }, until) => {
-            let until = until.map(|until| format!("; {until}")).unwrap_or_default();
+        Outcome::NotJudged => "The scene ran to its end.".into(),
+        Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
+        Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
+        Outcome::Collapse { time, .. } => {
             let (fallen, barrels) =
                 (summary.outcome.barrels_fallen.unwrap_or(0), summary.outcome.barrels);
             if fallen == 0 {
-                return format!(
-                    "The stack comes apart after {time:.1} s, but no barrel falls{until}."
-                );
+                return format!("The stack comes apart after {time:.1} s, but no barrel falls.");
             }
             let who = match fallen {
                 1 if barrels == 1 => "The barrel falls".to_owned(),
@@ -51,7 +44,7 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
                 _ if fallen == barrels => format!("All {barrels} barrels fall"),
                 _ => format!("{fallen} of {barrels} barrels fall"),
             };
-            format!("{who}: the stack gives way after {time:.1} s{until}.")
+            format!("{who}: the stack gives way after {time:.1} s.")
         }
     }
 }
@@ -61,6 +54,16 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))
+}
+
+/// That work was stopped before its end, how far it had come, and that it says nothing.
+pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
+    match variants {
+        Some(Unfinished { done, of }) => format!(
+            "Stopped after {done} of {of} runs, of the stack as it is stated and its variants: there is no verdict."
+        ),
+        None => format!("Stopped at {time:.1} s, before the end of the run: there is no verdict."),
+    }
 }
 
 /// Levels in words: "level 3", "levels 2 and 3", "levels 2 to 4".
@@ -217,7 +220,7 @@ pub(super) fn details(
             };
             sentences.push(behind(&shown(run, summary), &format!("{top}, and {foot}.")));
         }
-        Outcome::NotJudged => {}
+        Outcome::NotJudged | Outcome::Interrupted => {}
         Outcome::Invalid { reason } => sentences.push(format!("{}.", capital(reason))),
     }
     if let Some(load) = crushed(summary) {

@@ -4,15 +4,16 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use super::typical::typical;
-use super::{Plane, Spread, Variants, planes, run, together};
+use super::{Plane, Spread, Variants, planes, run_as_far, together};
 use crate::check::check;
 use crate::ensemble::CaseResult;
 use crate::ground::GroundError;
+use crate::outcome::Outcome;
 use crate::pool;
 use crate::report::headline;
 use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{Scenario, View};
-use crate::summary::Summary;
+use crate::summary::{Summary, Unfinished};
 
 /// How far the work is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +52,12 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// Whether any of its work was stopped before its end.
+    pub fn is_stopped(&self) -> bool {
+        let mut planes = std::iter::once(&self.decides).chain(&self.other);
+        planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
+    }
+
     /// The answer in one sentence.
     pub fn headline(&self) -> String {
         headline(&self.decides.run, &self.decides.summary)
@@ -119,6 +126,9 @@ pub struct Shown {
     pub summary: Summary,
     /// What became of all variants; none where there are none, or they were stopped.
     pub variants: Option<Variants>,
+    /// What became of the case as it is stated and of its variants, in the order of their numbers, where they were
+    /// stopped before all were done; those that were not are interrupted.
+    pub stopped: Option<Vec<CaseResult>>,
 }
 
 /// Runs all variants of a scenario and then, with everything that can be seen, the run to be shown, in one
@@ -168,36 +178,41 @@ fn answered(
         check(&plane.scenario)?;
     }
     let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
-    let found = match known {
-        Some(results) if varied => Some(together(&planes, &numbers(), results)),
-        _ if varied => run(&planes, &|done, of| tell(Advance::Variants { done, of }))?,
-        _ => None,
+    let results = match known {
+        Some(results) if varied => results,
+        _ if varied => {
+            run_as_far(&planes, &numbers(), &|done, of| tell(Advance::Variants { done, of }))?
+        }
+        _ => Vec::new(),
     };
-    let stopped = varied && found.is_none();
-    let variants: Vec<Option<Variants>> = match found {
-        Some(found) => found.into_iter().map(Some).collect(),
-        None => planes.iter().map(|_| None).collect(),
+    let done = |one: &&CaseResult| one.outcome != Ok(Outcome::Interrupted);
+    let of = results.iter().flatten().count();
+    let counts = Unfinished { done: results.iter().flatten().filter(done).count(), of };
+    let unfinished = Some(counts).filter(|counts| counts.done < counts.of);
+    let all: Vec<(Option<Variants>, Option<Vec<CaseResult>>)> = if unfinished.is_some() {
+        results.into_iter().map(|some| (None, Some(some))).collect()
+    } else if varied {
+        let found = together(&planes, &numbers(), results);
+        found.into_iter().map(|found| (Some(found), None)).collect()
+    } else {
+        planes.iter().map(|_| (None, None)).collect()
     };
     let tasks: Vec<(&Plane, u32)> = planes
         .iter()
-        .zip(&variants)
-        .map(|(plane, variants)| (plane, number(asked, variants.as_ref())))
+        .zip(&all)
+        .map(|(plane, (variants, _))| (plane, number(asked, variants.as_ref())))
         .collect();
     let mut shown = Vec::new();
-    for (((plane, number), run), variants) in tasks.iter().zip(seen(&tasks, &tell)?).zip(variants) {
+    let runs = seen(&tasks, &tell)?;
+    for (((plane, number), run), (variants, stopped)) in tasks.iter().zip(runs).zip(all) {
         let mut run = run;
         run.warnings.extend(plane.warning(planes.len()));
-        if stopped {
-            run.warnings.push(
-                "the variants were stopped before all were done, so nothing is said of the share that \
-                 collapses"
-                    .to_owned(),
-            );
-        }
+        run.warnings.extend(unfinished.as_ref().map(Unfinished::warning));
         let mut summary = Summary::of(&run, None);
         summary.variant = *number;
+        summary.unfinished = unfinished;
         summary.ensemble = variants.as_ref().map(|variants| variants.spread.clone());
-        shown.push(Shown { run, summary, variants });
+        shown.push(Shown { run, summary, variants, stopped });
     }
     // Of equals the first, which is the plane across the barrels.
     let worst = (1..shown.len())

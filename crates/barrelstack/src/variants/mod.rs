@@ -33,6 +33,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::ensemble::{CaseResult, Ensemble, Prepared};
 use crate::ground::{Ground, GroundError, from_disk, other_component};
+use crate::outcome::Outcome;
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, View};
 
 pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
@@ -193,6 +194,20 @@ pub fn run_some(
     numbers: &[u32],
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Vec<Vec<CaseResult>>>, GroundError> {
+    let results = run_as_far(planes, numbers, observer)?;
+    let whole = results.iter().flatten().all(|one| one.outcome != Ok(Outcome::Interrupted));
+    Ok(whole.then_some(results))
+}
+
+/// As [`run_some`], and keeps what was done until it was stopped: all else is interrupted.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn run_as_far(
+    planes: &[Plane],
+    numbers: &[u32],
+    observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+) -> Result<Vec<Vec<CaseResult>>, GroundError> {
     let mut cases = Vec::new();
     for plane in planes {
         cases.extend(plane.prepared(numbers)?);
@@ -201,8 +216,12 @@ pub fn run_some(
     let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
     let stop = || observer(done.load(Ordering::Relaxed), of).is_break();
     let ensemble = Ensemble { cases, ..Ensemble::default() };
-    let results = ensemble.run_until(&told, &stop);
-    Ok(results.map(|all| all.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect()))
+    let results: Vec<CaseResult> = ensemble
+        .run_as_far(&told, &stop)
+        .into_iter()
+        .map(|one| one.unwrap_or_else(CaseResult::interrupted))
+        .collect();
+    Ok(results.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect())
 }
 
 /// What results in each plane say together: of the case as it is stated, which comes first, and of variants,

@@ -95,7 +95,7 @@ pub fn remedy(
 ) -> Result<Option<Remedy>, GroundError> {
     let spreads = answer.decides.summary.spreads();
     let worst = spreads.iter().filter_map(|(_, spread)| spread.largest_share()).reduce(f64::max);
-    if worst.is_none_or(enough) || answer.decides.run.interrupted {
+    if worst.is_none_or(enough) || answer.is_stopped() {
         return Ok(None);
     }
     // Read once, not for every change.

@@ -130,7 +130,12 @@ impl Spread {
             reason: variants.iter().find_map(|one| match &one.outcome {
                 Err(reason) | Ok(Outcome::Invalid { reason }) => Some(reason.clone()),
                 Ok(outcome) if outcome.fell_at_rest() => one.warnings.first().cloned(),
-                Ok(Outcome::Stable | Outcome::Collapse { .. } | Outcome::NotJudged) => None,
+                Ok(
+                    Outcome::Stable
+                    | Outcome::Collapse { .. }
+                    | Outcome::NotJudged
+                    | Outcome::Interrupted,
+                ) => None,
             }),
             stated: results.first().map_or("invalid", |result| match &result.outcome {
                 Ok(outcome) => outcome.kind(),

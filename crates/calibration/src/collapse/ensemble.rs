@@ -30,7 +30,7 @@ impl Seen {
         let (mode, loss) = match case.outcome.as_ref().ok()? {
             Outcome::Stable => (Mode::Stands, Time::Never),
             Outcome::Collapse { mode, time, .. } => (Mode::Collapse(*mode), Time::At(*time)),
-            Outcome::Invalid { .. } | Outcome::NotJudged => return None,
+            Outcome::Invalid { .. } | Outcome::NotJudged | Outcome::Interrupted => return None,
         };
         let fall = |(barrel, time): &(String, Option<f64>)| {
             (barrel.clone(), time.map_or(Time::Never, Time::At))

@@ -136,7 +136,7 @@ impl<'a> Simulator<'a> {
                  it before"
             ))),
             Outcome::Invalid { reason } => Err(CalibrateError::Scenario(reason.clone())),
-            Outcome::Stable | Outcome::NotJudged => Ok(None),
+            Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted => Ok(None),
         }
     }
 

@@ -97,7 +97,8 @@ impl Study {
                     let fell = match &told.result.outcome {
                         Ok(Outcome::Collapse { .. }) => Some(true),
                         Ok(Outcome::Stable) => Some(false),
-                        Ok(Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+                        Ok(Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. })
+                        | Err(_) => None,
                     };
                     seen[*index].push((case.level.unwrap_or(0.0), fell));
                     rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &told)));

@@ -8,7 +8,8 @@ use barrelstack::assemble::AssembleError;
 use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
-use barrelstack::variants::Asked;
+use barrelstack::variants::{Answer, Asked};
+use barrelstack_report::listed;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
@@ -92,16 +93,23 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
         let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
             .map_err(|error| super::placed(error, scenario, one))?;
-        let stopped = answer.decides.run.interrupted;
+        let stopped = answer.is_stopped();
+        if stopped && !answers.is_empty() {
+            break;
+        }
         answers.push((name.clone(), answer));
         if stopped {
             break;
         }
     }
+    crate::interrupt::finished();
+    let whole = answers.iter().filter(|(_, answer)| !answer.is_stopped()).count();
+    let unfinished: Vec<String> =
+        scenarios.iter().skip(whole).map(|(name, _)| name.clone()).collect();
     if answers.len() < 2 {
-        return Err(Stopped.into());
+        return alone(args, &folder, answers, unfinished);
     }
-    if answers.len() < scenarios.len() {
+    if !unfinished.is_empty() {
         let (done, all) = (answers.len(), scenarios.len());
         printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
@@ -115,7 +123,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let written = folder.write_page(&document);
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     if args.json {
-        printer::document(&Comparison::of(&sides))?;
+        printer::document(&Comparison::of(&sides, unfinished))?;
     } else {
         let mut lines = printer::verdict(&document.verdict);
         lines.extend(table(&differing));
@@ -129,8 +137,35 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     written?;
     let broken = sides.iter().any(|side| matches!(side.run.outcome, Outcome::Invalid { .. }));
-    let stopped = sides.iter().any(|side| side.run.interrupted);
-    Ok(super::status(broken, stopped))
+    Ok(super::status(broken))
+}
+
+/// Keeps the one run that was done, or begun, when the comparison was stopped: as its own report.
+fn alone(
+    args: &CompareArgs,
+    folder: &Folder,
+    answers: Vec<(String, Answer)>,
+    unfinished: Vec<String>,
+) -> anyhow::Result<ExitCode> {
+    let Some((name, answer)) = answers.first() else { return Err(Stopped.into()) };
+    crate::interrupt::writes_to(folder.path());
+    let written = folder.write(answer, None);
+    printer::note(&format!(
+        "stopped before the end of {}: nothing is compared",
+        listed(unfinished.iter().map(|name| format!("\"{name}\"")))
+    ));
+    if args.json {
+        printer::document(&Comparison::of(&compare::sides(answers), unfinished))?;
+    } else {
+        let mut lines = vec![format!("{name}: {}", answer.headline())];
+        if written.is_ok() {
+            lines.extend([String::new(), format!("report: {}", folder.report().display())]);
+        }
+        printer::lines(lines)?;
+        printer::warnings(answer);
+    }
+    written?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The runs asked for, with a short name for each.

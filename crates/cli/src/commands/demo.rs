@@ -26,6 +26,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
         let command = Command::of(&typed, args.variants);
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;
     }
+    crate::interrupt::finished();
     // The verdict is printed even where it cannot be written.
     let written = folder.write(&answer, None);
     let Shown { run, summary, .. } = &answer.decides;

@@ -28,7 +28,6 @@ use barrelstack::scenario::{Problem, ScenarioError, builtin};
 use barrelstack::{RunFailure, Scenario};
 
 use crate::args::{Args, Command, ScenarioArgs};
-use crate::interrupt::STATUS;
 
 /// Most of standard input (bytes) that is taken for a scenario; more than any scenario has.
 const INPUT_LIMIT: u64 = 16 << 20;
@@ -102,13 +101,9 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// The exit status of runs, as the help of the program lists them.
-fn status(broken: bool, stopped: bool) -> ExitCode {
-    match (broken, stopped) {
-        (true, _) => ExitCode::FAILURE,
-        (false, true) => ExitCode::from(STATUS),
-        (false, false) => ExitCode::SUCCESS,
-    }
+/// The exit status of runs, as the help of the program lists them; that of stopped work is set where the program ends.
+fn status(broken: bool) -> ExitCode {
+    if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
 /// An error of a run with the place in the scenario that it is about, or with the scenario; a record named on the

@@ -66,7 +66,9 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         }
         other => other?,
     };
+    // The ranking is finished, and is kept where these two runs are stopped.
     before_and_after(args, &mut found)?;
+    crate::interrupt::finished();
     let file = (args.out.as_path(), "protect.json");
     args.page.end(
         file,
@@ -126,8 +128,7 @@ fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<(
     let shown = found.show_before_and_after(&mut |told| progress.told_of(told));
     drop(progress);
     match shown {
-        Ok(true) => Ok(()),
-        Ok(false) => Err(Stopped.into()),
+        Ok(_) => Ok(()),
         Err(ProtectError::Stack(failure)) => {
             Err(super::placed(failure, &found.request.scenario, &args.scenario))
         }

@@ -26,9 +26,14 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     });
     drop(progress);
     let found = match result {
-        Err(ReproduceError::Stopped) => return Err(Stopped.into()),
+        Err(ReproduceError::Stopped { done }) => {
+            let told = done.into_iter().map(|(case, became)| format!("{case}: {became}"));
+            printer::lines(told)?;
+            return Err(Stopped.into());
+        }
         other => other?,
     };
+    crate::interrupt::finished();
     let written = write(args, &found);
     print(&found)?;
     written?;

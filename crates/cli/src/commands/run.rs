@@ -37,6 +37,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let Shown { run, summary, .. } = &answer.decides;
     let verification =
         args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
+    crate::interrupt::finished();
     // The verdict is printed even where it cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
@@ -142,8 +143,6 @@ fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
 
 /// The exit status of runs, as the help of the program lists them.
 pub(super) fn status(answer: &Answer) -> ExitCode {
-    let unfinished = answer.decides.summary.remedy.as_ref().is_some_and(|found| !found.complete);
     let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
-    let broken = runs.clone().any(|run| matches!(run.outcome, Outcome::Invalid { .. }));
-    super::status(broken, runs.any(|run| run.interrupted) || unfinished)
+    super::status(runs.any(|run| matches!(run.outcome, Outcome::Invalid { .. })))
 }

@@ -8,7 +8,6 @@ use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
 use barrelstack::render::{Part, RenderFolder};
 use barrelstack::variants::Asked;
-use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_report::paraview_of_solids;
 use barrelstack_space::mesh::solids;
@@ -40,6 +39,7 @@ pub(super) fn run(
     }
     let answer = answered(scenario, asked, !args.quiet)
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
+    crate::interrupt::finished();
     // The verdict is printed even where it cannot be written.
     let written = folder.map_or(Ok(()), |folder| {
         crate::interrupt::writes_to(folder.path());
@@ -101,8 +101,7 @@ fn answered(scenario: &Scenario, asked: Asked, show: bool) -> Result<Answer, Run
 
 /// The exit status of runs, as the help of the program lists them.
 fn status(answer: &Answer) -> ExitCode {
-    let broken = matches!(answer.run.outcome, Outcome::Invalid { .. });
-    super::status(broken, answer.run.ending == Ending::Interrupted)
+    super::status(matches!(answer.run.outcome, Outcome::Invalid { .. }))
 }
 
 /// The way to a plane, behind what is not known in space.

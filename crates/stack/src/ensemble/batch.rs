@@ -15,16 +15,17 @@ use crate::watch::{self, Ending, Fates, Joints, StressWatch};
 /// Steps between two questions whether to stop.
 const PATIENCE: u32 = 1024;
 
-/// Runs a group of one topology and method in lanes; none when asked to stop.
+/// Runs a group of one topology and method in lanes, as far as it is not asked to stop.
 pub(super) fn run(
     width: Width,
     method: Method,
     group: &[Run<'_>],
     stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
-) -> Option<Vec<(usize, CaseResult)>> {
+) -> Vec<(usize, CaseResult)> {
     let width = if width.is_here() { width } else { Width::Scalar };
-    width.run(InLanes { method, group, stacks, audience })?
+    // A width that is here runs what it is given.
+    width.run(InLanes { method, group, stacks, audience }).unwrap_or_default()
 }
 
 struct InLanes<'a, 'b> {
@@ -35,7 +36,7 @@ struct InLanes<'a, 'b> {
 }
 
 impl Task for InLanes<'_, '_> {
-    type Output = Option<Vec<(usize, CaseResult)>>;
+    type Output = Vec<(usize, CaseResult)>;
 
     fn run<R: Real>(self) -> Self::Output {
         let Self { method, group, stacks, audience } = self;
@@ -57,7 +58,7 @@ impl Task for InLanes<'_, '_> {
             results: Vec::with_capacity(group.len()),
         };
         run_batch(method, &mut batch);
-        (!batch.interrupted).then_some(batch.results)
+        batch.results
     }
 }
 

@@ -82,6 +82,11 @@ pub(super) struct Seen<'a> {
 }
 
 impl CaseResult {
+    /// Of a case that was stopped before its end, or not begun.
+    pub fn interrupted() -> Self {
+        Self { outcome: Ok(Outcome::Interrupted), ..Self::failed(String::new()) }
+    }
+
     /// What a verdict and the fates of the bodies say of a case that ran until a time (s).
     pub(super) fn of(
         assembly: &Assembly,

@@ -111,12 +111,12 @@ columns! {
     /// how it collapsed: ejection, rocking, rack-sliding, overturning, or gravity, which is before it was shaken
     mode "": Outcome Text |case| match &case.outcome {
         Ok(Outcome::Collapse { mode, .. }) => Some(mode.name().to_owned()),
-        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
     };
     /// when the first body left its seat; 0 where the stack fell under its own weight
     first_loss "s": Outcome Number |case| match &case.outcome {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),
-        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
     };
     /// when the first barrel had fallen
     first_fall "s": Outcome Number |case| case.first_fall;
@@ -188,7 +188,7 @@ columns! {
     /// why there is no verdict
     error "": Run Text |case| match &case.outcome {
         Ok(Outcome::Invalid { reason }) | Err(reason) => Some(reason.clone()),
-        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Collapse { .. }) => None,
+        Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Collapse { .. }) => None,
     };
 }
 

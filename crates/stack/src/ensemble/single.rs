@@ -13,12 +13,12 @@ use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
 use crate::watch::{End, Ending, Fates, Joints, StressWatch};
 
-/// Runs a group; none when asked to stop.
+/// Runs a group, as far as it is not asked to stop.
 pub(super) fn run(
     group: &[Run<'_>],
     stacks: &[Stack<'_>],
     audience: &mut Audience<'_>,
-) -> Option<Vec<(usize, CaseResult)>> {
+) -> Vec<(usize, CaseResult)> {
     let mut results = Vec::with_capacity(group.len());
     for run in group {
         let Ok(standing) = &stacks[run.stack].standing else { continue };
@@ -44,7 +44,7 @@ pub(super) fn run(
         let model = &standing.assembly.model;
         let ended = simulate(model, ground, &mut state, &mut scratch, &simulation, &mut watch);
         if watch.ending == Some(Ending::Interrupted) {
-            return None;
+            break;
         }
         let ending = watch.ending.unwrap_or(Ending::of_time(scenario));
         let ended = ended.map(|totals| Ended::of(&totals));
@@ -57,7 +57,7 @@ pub(super) fn run(
         (audience.tell)(&result);
         results.push((run.index, result));
     }
-    Some(results)
+    results
 }
 
 /// Watches what becomes of every body and what it bears, and nothing else.

@@ -52,6 +52,8 @@ impl Verdict {
                 let broken = energy.residual_ratio() > BOOKS_BROKEN;
                 let outcome = if broken {
                     Outcome::Invalid { reason: broken_books(&energy) }
+                } else if ending == Ending::Interrupted {
+                    Outcome::Interrupted
                 } else {
                     judge()
                 };
@@ -100,9 +102,9 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
 /// What the end of a run leaves open.
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
-        Ending::Interrupted => {
-            Some(format!("the run was stopped at {time:.3} s; the results hold until then"))
-        }
+        Ending::Interrupted => Some(format!(
+            "the run was stopped at {time:.3} s, before its end: its numbers hold until then, and it has no outcome"
+        )),
         // A stack that stands in the middle of a motion has not stood it.
         Ending::Duration if *outcome == Outcome::Stable && motion_end - time > CUT => {
             Some(format!(
