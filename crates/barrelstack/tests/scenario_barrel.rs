@@ -104,3 +104,21 @@ fn the_section_of_a_barrel_is_taken_above_the_rails() {
     assert_eq!(barrel.diameter_at(-0.4725), 0.555);
     assert_eq!(barrel.diameter_at(9.0), 0.555);
 }
+
+#[test]
+fn a_case_says_how_much_wine_is_in_its_barrels_by_their_size_and_fill() {
+    use barrelstack::ensemble::{Ensemble, Prepared};
+    let wine = |changes: &[&str]| {
+        let mut all = vec!["run.duration=0.01 s".to_owned(), "stack.view=transverse".to_owned()];
+        all.extend(changes.iter().map(|change| (*change).to_owned()));
+        let cases = vec![Prepared::new(Scenario::builtin("demo-napa", &all).unwrap()).unwrap()];
+        let found = Ensemble { cases, ..Ensemble::default() }.run().remove(0);
+        assert!(found.outcome.is_ok(), "{:?}", found.outcome);
+        found.wine / found.barrels as f64
+    };
+    assert!(close(wine(&["stack.levels=2"]), 0.225, 1e-12));
+    assert!(close(wine(&["stack.levels=2", "stack.barrel.capacity=300 L"]), 0.3, 1e-12));
+    let part = ["stack.levels=2", "stack.barrel.fill=part", "stack.barrel.filled=0.4"];
+    assert!(close(wine(&part), 0.09, 1e-12));
+    assert!(wine(&["stack.levels=2", "stack.barrel.fill=empty"]) == 0.0);
+}

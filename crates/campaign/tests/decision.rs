@@ -45,6 +45,8 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         integer("barrels", Role::Outcome, vec![Some(6); rows]),
         text("fall_heights", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.8"; n].join(";")))),
         text("fall_forces", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.1e6"; n].join(";")))),
+        text("fall_wine", Role::Outcome, say(&|n| (n > 0).then(|| vec!["0.225"; n].join(";")))),
+        number("wine", "m3", Role::Outcome, vec![Some(6.0 * 0.225); rows]),
         number("top_drift_ratio", "", Role::Demand, each(&|_, x, n| (n == 0).then_some(0.05 * x))),
     ];
     made(columns, "stripes", &["friction"], "record ", 12)
@@ -148,6 +150,49 @@ fn a_hazard_curve_gives_annual_rates_that_agree_with_the_closed_form() {
     assert!((site.limits[0].chance - chance).abs() < 1e-12);
     assert!(site.lost.as_ref().is_some_and(|lost| lost.fallen.low > 0.0 && lost.wine[1] > 0.0));
     assert!(site.limits[0].interval.unwrap().holds(rate.low));
+}
+
+#[test]
+fn wine_and_money_follow_what_is_in_the_barrels() {
+    let hazard = "pgv (cm/s),rate (1/year)\n5,0.1\n20,0.01\n200,0.001\n";
+    let lost = |each: f64| {
+        let mut collected = ordinary();
+        let mut columns = collected.table.columns().to_vec();
+        for column in &mut columns {
+            match (column.spec.name.as_str(), &mut column.values) {
+                ("fall_wine", Values::Text(all)) => {
+                    for one in all.iter_mut().flatten() {
+                        *one = one.replace("0.225", &each.to_string());
+                    }
+                }
+                ("wine", Values::Number(all)) => all.fill(Some(6.0 * each)),
+                _ => {}
+            }
+        }
+        collected.table = StudyTable::new(columns).unwrap();
+        let hazard = Some(SiteHazard::parse("site.csv", hazard).unwrap());
+        let found = decide(&collected, &Request { hazard, years: None }).unwrap();
+        for level in &found.losses.as_ref().unwrap().levels {
+            for (wine, burst) in level.wine.iter().zip(level.burst) {
+                assert!((wine - each * burst).abs() < 1e-12, "{wine} {burst}");
+            }
+        }
+        let lost = found.site.unwrap().lost.unwrap();
+        (lost.wine[1], lost.burst[1].low, lost.money)
+    };
+    let full = lost(0.225);
+    let (wine, burst, _) = full;
+    assert!((wine / burst / 0.225 - 1.0).abs() < 1e-9);
+    for each in [0.0, 0.09, 0.225, 0.5] {
+        let (wine, burst, money) = lost(each);
+        assert!((wine - full.0 * each / 0.225).abs() < 1e-9 * full.0, "{each} m³: {wine}");
+        // By hand: bottles of 0.75 L at US$4 to 20, barrels at US$400 to 1,200.
+        let by_hand = [(4.0, 400.0), (20.0, 1200.0)]
+            .map(|(bottle, barrel)| wine / 0.75e-3 * bottle + burst * barrel);
+        for (one, other) in money.iter().zip(by_hand) {
+            assert!((one - other).abs() <= 1e-9 * other, "{each} m³: {one} {other}");
+        }
+    }
 }
 
 #[test]

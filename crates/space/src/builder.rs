@@ -240,6 +240,7 @@ impl<'a> Builder<'a> {
             row,
             carrier: Some(carrier),
             size: 0.5 * spec.barrel.section_diameter,
+            wine: contents.wine(),
             ..Part::alone(&name, PartKind::Barrel)
         };
         self.add(body, part)

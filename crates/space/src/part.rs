@@ -25,6 +25,8 @@ pub struct Part {
     /// A length (m) that tells the size of the body: for a barrel the radius above the beams, for a rack
     /// half its width.
     pub size: f64,
+    /// Volume (m³) of the wine in a barrel; 0 for all else.
+    pub wine: f64,
     /// Of a rack which of its tubes lie on which of what is below, and carry which of its barrels, by their numbers.
     pub(crate) seats: Seats,
     /// Lines (m) in the frame of the body that show what of a device is fixed to it.
@@ -52,6 +54,7 @@ impl Part {
             carrier: None,
             supports: Vec::new(),
             size: 0.0,
+            wine: 0.0,
             seats: Seats::default(),
             lines: Vec::new(),
         }

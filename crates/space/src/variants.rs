@@ -57,6 +57,7 @@ impl Case {
         let told = CaseResult {
             outcome: Ok(run.outcome.clone()),
             barrels: barrels.len(),
+            wine: barrels.iter().map(|body| run.stack.parts[*body].wine).sum(),
             ending: Some(run.ending),
             cut: Some(if run.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(run.end_time),
@@ -73,6 +74,7 @@ impl Case {
             first_fall: run.first_fall,
             falls: barrels.iter().map(fall).collect(),
             fall_heights: run.fallen().map(|body| run.fates[body].drop).collect(),
+            fall_wine: run.fallen().map(|body| run.stack.parts[body].wine).collect(),
             fall_forces: run.fallen().map(|body| run.fates[body].fall_force).collect(),
             demands: demands(run, Span::UntilLoss),
             demands_whole_run: demands(run, Span::WholeRun),
@@ -108,9 +110,9 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     let barrel = |body: usize| {
         let part = &stack.parts[body];
         let center = stack.model.bodies()[body].pose.position.z;
-        (part.name.clone(), part.level, (center - part.size).max(0.0))
+        (part.name.clone(), part.level, (center - part.size).max(0.0), part.wine)
     };
-    let barrels: Vec<(String, u32, f64)> = stack.of_kind(PartKind::Barrel).map(barrel).collect();
+    let barrels: Vec<_> = stack.of_kind(PartKind::Barrel).map(barrel).collect();
     let from_level = first.map_or(1, |part| part.level.max(1));
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }

@@ -206,11 +206,11 @@ impl Stack<'_> {
             let center = assembly.model.bodies()[body].pose.position.z;
             (center - assembly.parts[body].size).max(0.0)
         };
-        let barrels: Vec<(String, u32, f64)> = assembly
+        let barrels: Vec<(String, u32, f64, f64)> = assembly
             .of_kind(PartKind::Barrel)
             .map(|body| {
                 let part = &assembly.parts[body];
-                (part.name.clone(), level(part), height(body))
+                (part.name.clone(), level(part), height(body), part.wine)
             })
             .collect();
         let first = (restless.error.body.as_str(), first.map_or(1, level));

@@ -109,6 +109,10 @@ pub struct Case {
     pub falls: Box<[f64]>,
     /// Largest force (N) on each of them since it had fallen; none where the study does not tell it.
     pub forces: Option<Box<[f64]>>,
+    /// Wine (m³) in each of them.
+    pub wines: Box<[f64]>,
+    /// Wine (m³) in all barrels of the stack.
+    pub wine: f64,
     /// Peak drift of the top over its height, while the stack stood; not a number where it is not known.
     drift: f64,
     /// Intensities (SI), one for each of [`Cases::measures`]; not a number where it has none.
@@ -262,6 +266,11 @@ impl Reading {
         let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
         let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
         let forces = table.texts("fall_forces");
+        let (wines, wine) = (table.texts("fall_wine"), table.numbers("wine"));
+        // A table that says what falls says what was in it.
+        if heights.is_some() && (wines.is_none() || wine.is_none()) {
+            return Err(DecisionError::Column("fall_wine"));
+        }
         let (drift, level) = (table.numbers("top_drift_ratio"), table.numbers("level"));
         let columns: Vec<Option<&[Option<f64>]>> =
             self.cases.measures.iter().map(|measure| table.numbers(&measure.name)).collect();
@@ -312,6 +321,11 @@ impl Reading {
                 let key: Vec<String> = std::iter::once(name.to_owned()).chain(factors).collect();
                 self.curves.of(&key.join("\n"))
             };
+            let (falls, lost) = (numbers("fall_heights", heights)?, numbers("fall_wine", wines)?);
+            if lost.len() != falls.len() {
+                let found = wines.and_then(|of| of[row].clone()).unwrap_or_default();
+                return Err(DecisionError::List { column: "fall_wine", found });
+            }
             self.cases.all.push(Arc::new(Case {
                 row: small(first + row),
                 record: self.records.of(name),
@@ -321,7 +335,9 @@ impl Reading {
                     .iter()
                     .any(|ending| ended[row].as_deref() == Some(ending.name())),
                 barrels: u32::try_from(barrels[row].unwrap_or(0)).unwrap_or(0),
-                falls: numbers("fall_heights", heights)?,
+                falls,
+                wines: lost,
+                wine: cell(wine).unwrap_or(0.0),
                 fell_at_rest,
                 forces: match forces.filter(|_| !fell_at_rest) {
                     Some(_) => Some(numbers("fall_forces", forces)?),
@@ -377,6 +393,11 @@ impl Cases {
     /// Most barrels that a stack of the study has.
     pub fn most_barrels(&self) -> u32 {
         self.all.iter().map(|case| case.barrels).max().unwrap_or(0)
+    }
+
+    /// Most wine (m³) that a stack of the study has.
+    pub fn most_wine(&self) -> f64 {
+        self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
     /// How many curves there are: motions, each with every combination of what is not drawn anew.

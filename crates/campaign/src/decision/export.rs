@@ -212,12 +212,12 @@ fn fragility(
     text
 }
 
-/// Share of the barrels of a stack that burst, by the central assumption.
-fn burst(case: &Case) -> f64 {
-    let chance = |fall: &f64| Breakage::RANGE[1].probability(*fall);
+/// Share of the wine of a stack that is lost in barrels that burst, by the central assumption; 0 where there is none.
+fn wine_lost(case: &Case) -> f64 {
+    let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
     // From 0, since a sum of nothing is -0.
-    case.falls.iter().map(chance).fold(0.0, |sum, chance| sum + chance)
-        / f64::from(case.barrels.max(1))
+    let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
+    if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
 /// Of what may scatter between 0 and 1 about a mean, no more than this share does: a beta distribution has
@@ -234,7 +234,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
         escaped(about)
     );
     let share_fallen: fn(&Case) -> f64 = Case::fallen_share;
-    for (name, of) in [("barrels", share_fallen), ("wine", burst)] {
+    for (name, of) in [("barrels", share_fallen), ("wine", wine_lost)] {
         let (mut means, mut scatter) = (Vec::new(), Vec::new());
         for (_, cases) in &groups {
             let n = cases.len() as f64;

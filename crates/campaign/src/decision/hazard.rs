@@ -8,7 +8,7 @@ use super::DecisionError;
 use super::cases::Cases;
 use super::curve::{LEVEL, LimitCurve};
 use super::limit::LimitState;
-use super::loss::{COST, Losses, WINE};
+use super::loss::{Losses, cost};
 use crate::measured::{Table, TableError};
 use crate::scenario::Dimension;
 
@@ -147,10 +147,12 @@ impl Site {
         let lost = losses.map(|losses| {
             let most = f64::from(losses.barrels);
             let burst = [0, 1, 2].map(|i| curve.expected(most, |x| losses.burst(x, i)));
+            let wine =
+                [0, 1, 2].map(|i| curve.expected(losses.most_wine, |x| losses.wine(x, i)).low);
             Lost {
                 fallen: curve.expected(most, |x| losses.fallen(x)),
-                wine: burst.map(|rate| rate.low * WINE),
-                money: COST.map(|cost| burst[1].low * cost),
+                money: cost(burst[1].low, wine[1]),
+                wine,
                 burst,
             }
         });

@@ -216,6 +216,8 @@ described! {
         pub barrels_fallen_interval: [Option<f64>; 2] as "barrels" = bounds(loss.interval),
         /// Mean number of barrels that burst, under each assumption.
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
+        /// Wine lost in them, under each assumption.
+        pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
         /// Mean number of barrels that burst, by the largest force on them; null where the study does not tell forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }

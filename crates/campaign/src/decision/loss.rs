@@ -43,13 +43,20 @@ impl Breakage {
 /// What lands on other barrels, or on a head of them, is caught more softly than on the floor: there both differ.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
-/// Wine in a barrel (m³) that is lost when it bursts: 225 L, all of it; what leaks from bungs of barrels that hold is
-/// not counted.
-pub(super) const WINE: f64 = 0.225;
+/// Wine of a bottle (m³).
+const BOTTLE: f64 = 0.75e-3;
 
-/// What a barrel that bursts costs (US$), from and to: the wine of 25 cases (The Californian 2014) at US$4 to US$20 a
-/// bottle, as the cellar could sell it, and a barrel of US$400 to US$1,200. Assumptions.
-pub(super) const COST: [f64; 2] = [300.0 * 4.0 + 400.0, 300.0 * 20.0 + 1200.0];
+/// What a bottle of wine that is lost costs (US$), from and to, as the cellar could sell it. An assumption; a barrel of
+/// 225 L holds 25 cases (The Californian 2014).
+const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
+
+/// What a barrel that bursts costs (US$) without its wine, from and to, whatever its size. An assumption.
+const BARREL_COST: [f64; 2] = [400.0, 1200.0];
+
+/// What so many barrels that burst cost (US$) with the wine (m³) that was in them, from and to.
+pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
+    [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
+}
 
 /// Expected losses of one stack at a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +71,10 @@ pub struct Loss {
     pub interval: Interval,
     /// Barrels expected to burst, under the three assumptions of [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// The same by the largest force on them; none where the study does not tell forces.
+    /// Wine (m³) expected to be lost in them, all that is in a barrel that bursts; what leaks from bungs of barrels that
+    /// hold is not counted.
+    pub wine: [f64; 3],
+    /// Barrels expected to burst by the largest force on them; none where the study does not tell forces.
     pub burst_by_force: Option<f64>,
 }
 
@@ -75,6 +85,8 @@ pub struct Losses {
     pub levels: Vec<Loss>,
     /// Barrels of a stack, the most of any case.
     pub barrels: u32,
+    /// Wine (m³) of a stack, the most of any case.
+    pub most_wine: f64,
 }
 
 impl Losses {
@@ -92,7 +104,7 @@ impl Losses {
         }
         let known = cases.with_known_falls();
         let levels = known.groups(known.main).iter().map(|(x, of)| at(*x, of)).collect();
-        Ok(Self { levels, barrels: cases.most_barrels() })
+        Ok(Self { levels, barrels: cases.most_barrels(), most_wine: cases.most_wine() })
     }
 
     /// Barrels expected to fall at an intensity.
@@ -103,6 +115,11 @@ impl Losses {
     /// Barrels expected to burst at an intensity, under one of the assumptions of [`Breakage::RANGE`].
     pub fn burst(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.burst[assumption])
+    }
+
+    /// Wine (m³) expected to be lost at an intensity, under one of the assumptions of [`Breakage::RANGE`].
+    pub fn wine(&self, intensity: f64, assumption: usize) -> f64 {
+        self.interpolated(intensity, |loss| loss.wine[assumption])
     }
 
     fn interpolated(&self, intensity: f64, of: impl Fn(&Loss) -> f64) -> f64 {
@@ -118,6 +135,10 @@ fn at(intensity: f64, of: &[&Case]) -> Loss {
         let falls = of.iter().flat_map(|case| case.falls.iter());
         falls.map(|fall| breakage.probability(*fall)).sum::<f64>() / count
     });
+    let wine = Breakage::RANGE.map(|breakage| {
+        let falls = of.iter().flat_map(|case| case.falls.iter().zip(&case.wines));
+        falls.map(|(fall, wine)| wine * breakage.probability(*fall)).sum::<f64>() / count
+    });
     let told: Option<Vec<&[f64]>> = of.iter().map(|case| case.forces.as_deref()).collect();
     let burst_by_force = told.map(|forces| {
         let all = forces.into_iter().flatten();
@@ -131,5 +152,5 @@ fn at(intensity: f64, of: &[&Case]) -> Loss {
     let most = of.iter().map(|case| case.barrels).max().map_or(0.0, f64::from);
     let share = grouped_mean(&records.into_values().collect::<Vec<_>>(), LEVEL);
     let interval = Interval { low: most * share.low, high: most * share.high };
-    Loss { intensity, cases: of.len(), fallen, interval, burst, burst_by_force }
+    Loss { intensity, cases: of.len(), fallen, interval, burst, wine, burst_by_force }
 }

@@ -6,7 +6,7 @@ use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, measure
 use super::cases::{Cases, Measure};
 use super::curve::{BandKind, LEVEL, LimitCurve};
 use super::hazard::{LimitRate, Site};
-use super::loss::{Breakage, Losses, WINE};
+use super::loss::{Breakage, Losses};
 use super::modes::ModeIncidence;
 use super::words::{self, count, percent, range};
 use super::{Decision, figures, matters};
@@ -283,7 +283,7 @@ fn losses(losses: &Losses, measure: &Measure) -> Table {
             Cell::text(format!("{} to {}", measured(few, 1), measured(many, 1))),
         ];
         cells.extend(by_force.then(|| Cell::measured(loss.burst_by_force, 1)));
-        cells.push(Cell::Measured(1000.0 * WINE * central, 0));
+        cells.push(Cell::Measured(1000.0 * loss.wine[1], 0));
         table.rows.push(cells);
     }
     table
@@ -318,10 +318,11 @@ fn assumptions() -> Vec<Block> {
              the central assumption for a fall on the floor, in other words. The two differ where barrels land on each \
              other, or on racks, and come down in steps; nobody has tested either."
                 .into(),
-            "A barrel that bursts costs US$1,600 to US$7,200: the wine of 25 cases at US$4 to US$20 a bottle, and a barrel of \
-             US$400 to US$1,200; assumptions."
+            "A barrel that bursts costs its wine, at US$4 to US$20 a bottle of 0.75 L, and a barrel of US$400 to US$1,200 whatever \
+             its size; assumptions."
                 .into(),
-            "A barrel that bursts loses its 225 L; barrels that hold lose nothing here, though bungs leak. What one stack \
+            "A barrel that bursts loses all its wine, by its size and fill in the scenario, and bursts like a full one however it \
+             is filled; barrels that hold lose nothing here, though bungs leak. What one stack \
              does to its neighbors, and racks and buildings, are not counted."
                 .into(),
             "Every case that counts here was followed until nothing moved; in a plane model every barrel stands for those \

@@ -141,6 +141,7 @@ impl<'a> Builder<'a> {
             carrier: draft.carrier,
             supports: draft.supports,
             size: draft.size * length,
+            wine: 0.0,
             foot: center.z * length,
             outlines: outlines.collect(),
             out_of_plane: touches.iter().map(|touch| touch.out_of_plane).collect(),
@@ -186,7 +187,7 @@ impl<'a> Builder<'a> {
                 inertia = barrel.inertia(spec.view);
                 offset += change.offset_x;
             }
-            barrels.push(self.add(Draft {
+            let body = self.add(Draft {
                 name: format!("B{level}.{column}"),
                 kind: PartKind::Barrel,
                 level: Some(level),
@@ -198,7 +199,9 @@ impl<'a> Builder<'a> {
                 solids: vec![Solid::exact(shape.clone(), Vec2::default(), Seat::None)],
                 carrier: Some(carrier),
                 supports: Vec::new(),
-            }));
+            });
+            self.parts[body].wine = barrel.wine();
+            barrels.push(body);
         }
         barrels
     }

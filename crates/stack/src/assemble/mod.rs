@@ -84,6 +84,8 @@ pub struct Part {
     pub supports: Vec<BodyId>,
     /// A length (m) that tells the size of the body: the radius of a barrel.
     pub size: f64,
+    /// Volume (m³) of the wine in a barrel as the scenario states it, whatever the length scale; 0 for all else.
+    pub wine: f64,
     /// Height (m) of the center of mass over what a rack stands with.
     pub foot: f64,
     /// Lines to draw, in the body frame.
@@ -103,6 +105,7 @@ impl Part {
             carrier: None,
             supports: Vec::new(),
             size: 0.0,
+            wine: 0.0,
             foot: 0.0,
             outlines: Vec::new(),
             out_of_plane: Vec::new(),

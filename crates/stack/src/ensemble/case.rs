@@ -47,6 +47,10 @@ pub struct CaseResult {
     pub fall_heights: Vec<f64>,
     /// Largest force (N) on each of them since it had fallen.
     pub fall_forces: Vec<f64>,
+    /// Wine (m³) in each of them.
+    pub fall_wine: Vec<f64>,
+    /// Wine (m³) in all barrels of the stack.
+    pub wine: f64,
     /// Demands on the stack until the first loss of seat; all none where it could not run or broke down.
     pub demands: Demands,
     /// The same over the whole run.
@@ -109,6 +113,7 @@ impl CaseResult {
         let told = Self {
             outcome: Ok(verdict.outcome),
             barrels: barrels.len(),
+            wine: barrels.iter().map(|body| assembly.parts[*body].wine).sum(),
             ending: Some(verdict.ending),
             cut: Some(if verdict.ending == Ending::Rest || left <= CUT { 0.0 } else { left }),
             end_time: Some(time),
@@ -125,6 +130,11 @@ impl CaseResult {
             falls: barrels.iter().map(fall).collect(),
             fall_heights: fallen().map(|fate| fate.drop).collect(),
             fall_forces: fallen().filter_map(|fate| fate.fall_force).collect(),
+            fall_wine: barrels
+                .iter()
+                .filter(|body| fates.fate(**body).fell_at.is_some())
+                .map(|body| assembly.parts[*body].wine)
+                .collect(),
             demands: demands(Span::UntilLoss),
             demands_whole_run: demands(Span::WholeRun),
             joints: joints.listed().into_iter().map(named).collect(),
@@ -137,15 +147,15 @@ impl CaseResult {
     /// A case whose stack falls under its own weight, before it is shaken: a collapse at the start, of the lowest body
     /// that does not stand (its name and level) and of all levels from there up, whose barrels count as fallen.
     ///
-    /// `barrels` are those of the whole stack, each by its name, its level and the height (m) over the floor, which
-    /// counts as its drop.
+    /// `barrels` are those of the whole stack, each by its name, its level, the height (m) over the floor, which counts
+    /// as its drop, and the wine (m³) in it.
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
         levels: u32,
-        barrels: &[(String, u32, f64)],
+        barrels: &[(String, u32, f64, f64)],
         reason: String,
     ) -> Self {
-        let falls = |(_, level, _): &&(String, u32, f64)| *level >= from_level;
+        let falls = |(_, level, ..): &&(String, u32, f64, f64)| *level >= from_level;
         let outcome = Outcome::Collapse {
             mode: CollapseMode::Gravity,
             time: 0.0,
@@ -162,7 +172,9 @@ impl CaseResult {
                 .iter()
                 .map(|barrel| (barrel.0.clone(), falls(&barrel).then_some(0.0)))
                 .collect(),
-            fall_heights: fallen().map(|(_, _, height)| *height).collect(),
+            fall_heights: fallen().map(|(.., height, _)| *height).collect(),
+            fall_wine: fallen().map(|(.., wine)| *wine).collect(),
+            wine: barrels.iter().map(|(.., wine)| wine).sum(),
             ending: Some(Ending::NotShaken),
             cut: Some(0.0),
             end_time: Some(0.0),
@@ -195,6 +207,8 @@ impl CaseResult {
             falls: Vec::new(),
             fall_heights: Vec::new(),
             fall_forces: Vec::new(),
+            fall_wine: Vec::new(),
+            wine: 0.0,
             demands: Demands::default(),
             demands_whole_run: Demands::default(),
             joints: Vec::new(),

@@ -32,14 +32,18 @@ named! {
 }
 
 impl Fill {
-    /// Mass (kg) of the contents of a barrel of a capacity (m³), filled to a share of it where it is so in part.
-    fn mass(self, capacity: f64, filled: f64) -> f64 {
-        let share = match self {
+    /// Share of the capacity that is wine, of a barrel that is filled to a share of it where it is so in part.
+    fn share(self, filled: f64) -> f64 {
+        match self {
             Self::FullFrozen | Self::FullFluid => 1.0,
             Self::Part => filled,
             Self::Empty => 0.0,
-        };
-        catalog::WINE_DENSITY * capacity * share
+        }
+    }
+
+    /// Mass (kg) of the contents of a barrel of a capacity (m³), filled to a share of it where it is so in part.
+    fn mass(self, capacity: f64, filled: f64) -> f64 {
+        catalog::WINE_DENSITY * capacity * self.share(filled)
     }
 }
 
@@ -92,6 +96,11 @@ impl Barrel {
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
+    }
+
+    /// Volume (m³) of the wine in it.
+    pub fn wine(&self) -> f64 {
+        self.capacity * self.fill.share(self.filled)
     }
 
     /// The barrel with another mass or other contents; a change of contents alone brings the mass
