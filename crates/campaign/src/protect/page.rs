@@ -143,7 +143,12 @@ fn sentences(all: &Ranking) -> Vec<String> {
 
 /// Barrels of an event in hundredths, of a year in two digits, which may be far below one.
 fn interval(all: &Ranking, estimate: &Estimate) -> String {
-    let shown = |x: f64| if is_site(all) { significant(x, 2) } else { format!("{x:.2}") };
+    let shown = |x: f64| match format!("{x:.2}") {
+        _ if is_site(all) => significant(x, 2),
+        // Next to nothing has no sign.
+        text if text == "-0.00" => "0.00".to_owned(),
+        text => text,
+    };
     format!("{} ({}–{})", shown(estimate.mean), shown(estimate.low), shown(estimate.high))
 }
 
