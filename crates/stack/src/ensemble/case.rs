@@ -189,7 +189,9 @@ impl CaseResult {
         match self.outcome {
             Ok(Outcome::Stable) => Some(false),
             Ok(Outcome::Collapse { .. }) => Some(true),
-            Ok(Outcome::NotJudged | Outcome::Invalid { .. }) | Err(_) => None,
+            Ok(Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => {
+                None
+            }
         }
     }
 
