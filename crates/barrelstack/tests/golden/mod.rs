@@ -231,7 +231,10 @@ impl Hash {
     fn outcome(&mut self, outcome: &Outcome) {
         self.bytes(outcome.kind().as_bytes());
         match outcome {
-            Outcome::Stable | Outcome::NotJudged | Outcome::Invalid { .. } => {}
+            Outcome::Stable
+            | Outcome::NotJudged
+            | Outcome::Interrupted
+            | Outcome::Invalid { .. } => {}
             Outcome::Collapse { mode, time, first, from_level, to_level } => {
                 self.bytes(mode.name().as_bytes());
                 self.number(*time);
