@@ -242,13 +242,14 @@ pub fn course(spread: &Spread) -> String {
 
 /// How many barrels fall: "4 to 8 of 10 barrels".
 fn barrels(fallen: Range, all: usize) -> String {
-    let Range { least, most, .. } = fallen;
-    if least < most {
-        format!("{least:.0} to {most:.0} of {all} barrels")
-    } else if most == all as f64 {
+    // As times are, and as the table says: of 5 to 95 % of the variants.
+    let [from, to] = [fallen.p05, fallen.p95].map(|count| format!("{count:.0}"));
+    if from != to {
+        format!("{from} to {to} of {all} barrels")
+    } else if to == all.to_string() {
         format!("all {all} barrels")
     } else {
-        format!("{most:.0} of {all} barrels")
+        format!("{to} of {all} barrels")
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::bail;
 use barrelstack_campaign::score::{Protocol, ScoreError, Sheet, score};
 use barrelstack_campaign::study::StudyError;
 
@@ -26,6 +27,12 @@ pub(crate) struct ScoreArgs {
 /// Runs the protocol, writes the sheet, prints it.
 pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
+    if args.scenario.record.is_some() {
+        bail!(
+            "--record: a score comes from the motions of its protocol, the same for all racks, and no other would count; \
+             leave it out"
+        );
+    }
     let (options, progress) = args.page.begin(&args.out)?;
     let protocol = Protocol::rockscore();
     let tell = |done, of| progress.counted(done, of, "runs");
