@@ -120,7 +120,7 @@ fn friction_laws() {
             ".tangential_damping_ratio=0"
         ]),
         Friction::Coulomb {
-            coefficient: 0.3,
+            coefficient: 0.22,
             static_coefficient: 0.3,
             tangential_stiffness_ratio: 0.5,
             tangential_damping_ratio: 0.0,
