@@ -218,7 +218,7 @@ fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() 
     let document = compare::document(&sides);
     assert_eq!(lanes(&document), ["ground acceleration", "ground velocity"]);
     // Counts of the headline are those of the shares and of the pairs.
-    let paired = &compare::Comparison::of(&sides[..]).paired[0];
+    let paired = &compare::Comparison::of(&sides[..], Vec::new()).paired[0];
     let counts =
         [&sides[0], &sides[1]].map(|side| side.summary.ensemble.as_ref().unwrap().collapsed);
     assert_eq!((paired.collapsed(), paired.pairs()), (counts, 6));

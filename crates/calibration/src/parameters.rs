@@ -191,9 +191,10 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
     let damping = match damping {
         Damping::Coefficient(damping) => damping,
         Damping::Restitution { restitution: ratio, reference: mass } => {
-            let ratio = match interface.normal {
-                NormalLaw::KelvinVoigt { .. } => restitution::kelvin_voigt_damping_ratio(ratio),
-                _ => restitution::speed_gap_damping_ratio(ratio),
+            let ratio = if matches!(interface.normal, NormalLaw::KelvinVoigt { .. }) {
+                restitution::kelvin_voigt_damping_ratio(ratio)
+            } else {
+                restitution::speed_gap_damping_ratio(ratio)
             };
             restitution::damping(stiffness, ratio.unwrap_or(0.0), mass)
         }

@@ -169,12 +169,14 @@ impl Pulse {
             return Kinematics::default();
         }
         let end = self.duration();
-        match self {
-            _ if t <= end => self.inside(t),
-            Self::Sine { .. } => {
-                Kinematics { displacement: self.inside(end).displacement, ..Kinematics::default() }
-            }
-            _ => self.inside(end).coast(t - end),
+        if t <= end {
+            return self.inside(t);
+        }
+        let last = self.inside(end);
+        if matches!(self, Self::Sine { .. }) {
+            Kinematics { displacement: last.displacement, ..Kinematics::default() }
+        } else {
+            last.coast(t - end)
         }
     }
 

@@ -113,7 +113,7 @@ pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
 /// A refusal of a damaged manifest.
 pub(super) fn damaged(folder: &Path, how: &str) -> StudyError {
     let reason = format!(
-        "holds a damaged {MANIFEST}: {how}; run the study whose file is study.toml there once more with this folder as --out, \
+        "holds a damaged {MANIFEST}: {how}; run the study whose file is study.toml there once more into this folder, \
          which writes {MANIFEST} anew and keeps every sound chunk"
     );
     StudyError::Folder { folder: folder.to_owned(), reason }

@@ -65,7 +65,6 @@ impl Bundle {
         let flat = if rack.contact == SeatContact::Nodes { 1.0 } else { 0.5 };
         let on_posts = rack.kind == RackKind::OnRacks;
         Self::of(match (pair, view) {
-            (StackPair::BarrelRack, View::Transverse) => behind,
             (StackPair::BarrelRack, View::Longitudinal) => 1.0,
             // A straight tube lies on its two ends.
             (StackPair::RackGround, View::Transverse) if rack.foot_height > 0.0 && !on_posts => {

@@ -116,6 +116,12 @@ pub struct Interface {
     pub friction: Friction,
 }
 
+/// Damping ratio of a law by its restitution; none where no damping gives it.
+type DampingRatio = fn(f64) -> Option<f64>;
+
+/// Restitution of a law by its damping ratio.
+type Restitution = fn(f64) -> f64;
+
 impl Interface {
     /// Multiplies its stiffness.
     pub fn stiffen(&mut self, factor: f64) {
@@ -130,22 +136,23 @@ impl Interface {
 
     /// Multiplies the damping of a linear law: its coefficient, or the damping ratio that gives its restitution.
     pub fn damp(&mut self, factor: f64) {
-        let (damping, there, back): (_, fn(f64) -> Option<f64>, fn(f64) -> f64) =
-            match &mut self.normal {
-                NormalLaw::SpeedGap { damping, .. } => {
-                    (damping, restitution::speed_gap_damping_ratio, restitution::speed_gap)
-                }
-                NormalLaw::KelvinVoigt { damping, .. } => {
-                    (damping, restitution::kelvin_voigt_damping_ratio, restitution::kelvin_voigt)
-                }
-                NormalLaw::HuntCrossley { .. }
-                | NormalLaw::Rebound { .. }
-                | NormalLaw::Hertz { .. } => return,
-            };
+        let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
+        {
+            NormalLaw::SpeedGap { damping, .. } => {
+                (damping, restitution::speed_gap_damping_ratio, restitution::speed_gap)
+            }
+            NormalLaw::KelvinVoigt { damping, .. } => {
+                (damping, restitution::kelvin_voigt_damping_ratio, restitution::kelvin_voigt)
+            }
+            NormalLaw::HuntCrossley { .. }
+            | NormalLaw::Rebound { .. }
+            | NormalLaw::Hertz { .. } => return,
+        };
         match damping {
             Damping::Coefficient(c) => *c *= factor,
             Damping::Restitution { restitution, .. } => {
-                *restitution = there(*restitution).map_or(1.0, |ratio| back(factor * ratio));
+                *restitution =
+                    to_ratio(*restitution).map_or(1.0, |ratio| from_ratio(factor * ratio));
             }
         }
     }
