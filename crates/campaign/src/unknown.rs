@@ -14,6 +14,12 @@ const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-rack", Some("fallen-rack-rack")),
 ];
 
+/// A value as TOML writes it: a bare number, or a quantity in quotes.
+fn toml(value: &str) -> String {
+    let bare = value.starts_with('"') || value.parse::<f64>().is_ok();
+    if bare { value.to_owned() } else { format!("\"{value}\"") }
+}
+
 /// The tables `[[factor]]` of a scenario: friction, stiffness and damping of its seats, about what it states.
 ///
 /// A free scene, and one whose variants differ in places and masses alone, has none.
@@ -41,7 +47,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
                  distribution = {{ kind = \"lognormal\", median = {}, dispersion = {dispersion}{cut} }}\n\n",
                 path(field),
                 also.join(", "),
-                median.value
+                toml(&median.value)
             );
         };
         let friction = "friction.coefficient";

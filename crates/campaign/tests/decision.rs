@@ -46,7 +46,7 @@ fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
         text("fall_heights", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.8"; n].join(";")))),
         text("fall_forces", Role::Outcome, say(&|n| (n > 0).then(|| vec!["1.1e6"; n].join(";")))),
         text("fall_wine", Role::Outcome, say(&|n| (n > 0).then(|| vec!["0.225"; n].join(";")))),
-        number("wine", "m3", Role::Outcome, vec![Some(6.0 * 0.225); rows]),
+        number("stack_wine", "m3", Role::Outcome, vec![Some(6.0 * 0.225); rows]),
         number("top_drift_ratio", "", Role::Demand, each(&|_, x, n| (n == 0).then_some(0.05 * x))),
     ];
     made(columns, "stripes", &["friction"], "record ", 12)
@@ -165,7 +165,7 @@ fn wine_and_money_follow_what_is_in_the_barrels() {
                         *one = one.replace("0.225", &each.to_string());
                     }
                 }
-                ("wine", Values::Number(all)) => all.fill(Some(6.0 * each)),
+                ("stack_wine", Values::Number(all)) => all.fill(Some(6.0 * each)),
                 _ => {}
             }
         }

@@ -23,6 +23,8 @@ pub struct FileRef {
     pub path: String,
     /// Folder of the file that wrote it; empty for the current folder.
     pub folder: PathBuf,
+    /// Whether the caller named it, and not a file.
+    is_of_caller: bool,
     /// What is in it, where that is at hand.
     bytes: Option<Arc<[u8]>>,
 }
@@ -30,7 +32,17 @@ pub struct FileRef {
 impl FileRef {
     /// A file by its path and the folder of the file that wrote it.
     pub fn new(path: impl Into<String>, folder: PathBuf) -> Self {
-        Self { path: path.into(), folder, bytes: None }
+        Self { path: path.into(), folder, is_of_caller: false, bytes: None }
+    }
+
+    /// A file that the caller names, by its path from the current folder.
+    pub fn of_caller(path: impl Into<String>) -> Self {
+        Self { is_of_caller: true, ..Self::new(path, PathBuf::new()) }
+    }
+
+    /// Whether the caller named it, and not a file: a scenario of somebody else names files, too.
+    pub fn is_of_caller(&self) -> bool {
+        self.is_of_caller
     }
 
     /// The path to open.

@@ -266,7 +266,7 @@ impl Reading {
         let barrels = table.integers("barrels").ok_or(DecisionError::Column("barrels"))?;
         let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
         let forces = table.texts("fall_forces");
-        let (wines, wine) = (table.texts("fall_wine"), table.numbers("wine"));
+        let (wines, wine) = (table.texts("fall_wine"), table.numbers("stack_wine"));
         // A table that says what falls says what was in it.
         if heights.is_some() && (wines.is_none() || wine.is_none()) {
             return Err(DecisionError::Column("fall_wine"));

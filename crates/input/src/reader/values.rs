@@ -216,13 +216,14 @@ impl Reader<'_> {
     /// A file, relative to the file that names it.
     pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
-        let folder = match self.entry(name).map(|node| node.origin) {
-            Some(Origin::File { file, .. }) => self.sources.files[file].folder.clone(),
-            Some(Origin::Override(_) | Origin::Whole(_) | Origin::Default) | None => {
-                std::path::PathBuf::new()
+        Ok(Some(match self.entry(name).map(|node| node.origin) {
+            Some(Origin::File { file, .. }) => {
+                FileRef::new(path, self.sources.files[file].folder.clone())
             }
-        };
-        Ok(Some(FileRef::new(path, folder)))
+            Some(Origin::Override(_) | Origin::Whole(_) | Origin::Default) | None => {
+                FileRef::of_caller(path)
+            }
+        }))
     }
 
     /// A member of a closed set.

@@ -150,6 +150,9 @@ pub(super) fn read_file(
 /// Whether a file lies outside the folder of the file that names it: a scenario of somebody else must not have a message
 /// quote what it was not given.
 fn is_outside(file: &FileRef) -> bool {
+    if file.is_of_caller() {
+        return false;
+    }
     let folder = if file.folder.as_os_str().is_empty() { Path::new(".") } else { &file.folder };
     match (file.resolve().canonicalize(), folder.canonicalize()) {
         (Ok(path), Ok(folder)) => !path.starts_with(folder),

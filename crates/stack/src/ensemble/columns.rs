@@ -134,7 +134,7 @@ columns! {
     /// wine in each of these barrels (m³), divided by semicolons
     fall_wine "m3": Outcome Text |case| Some(list(&case.fall_wine));
     /// wine in all barrels of the stack
-    wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
+    stack_wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
     /// peak displacement of the top over its height, until the first loss of seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
     /// largest slip of the bottom rack, until the first loss of seat
