@@ -149,7 +149,10 @@ fn a_manifest_that_states_fewer_chunks_is_refused_by_name_and_written_anew() {
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replace("\"chunks\": 3", "\"chunks\": 1")).unwrap();
     let said = Collected::read(place.path()).unwrap_err().to_string();
-    assert!(said.contains("holds a damaged study.json") && said.contains("once more into this folder"), "{said}");
+    assert!(
+        said.contains("holds a damaged study.json") && said.contains("once more into this folder"),
+        "{said}"
+    );
     let progress = run(&study, place.path()).unwrap();
     assert!(progress.manifest_healed && progress.before == 6 && progress.now == 0, "{progress:?}");
     assert_eq!(fs::read_to_string(&path).unwrap(), text);

@@ -19,7 +19,7 @@ Exit status:
   2    there is none: a mistake in what was asked for, or a file that could not be read or written
   3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
   4    chunks of a study are missing, and its table holds those that are there (study collect)
-  130  stopped by Ctrl-C or by SIGTERM: there is no verdict of what was not finished, and what was is printed and written
+  130  stopped by Ctrl-C or SIGTERM: unfinished work has no verdict; what is finished is printed and written
 
 With --json what has no result prints one document as well, of the schema `error`; see barrelstack schema.";
 

@@ -160,7 +160,10 @@ impl Quantity {
         let repaired = Decimal::take(trimmed).and_then(|(number, rest)| {
             let (number, rest) = (number.text, rest.trim());
             if rest.is_empty() {
-                return wanted.iter().map(|d| format!("{number} {}", d.si_unit())).find(reads);
+                // The unit of the example is the one that people write.
+                let units = wanted.iter().map(|d| d.example());
+                let units = units.filter_map(|text| Some(text.split_once(' ')?.1.to_owned()));
+                return units.map(|unit| format!("{number} {unit}")).find(reads);
             }
             let Some(fraction) = rest.strip_prefix(',') else { return with_unit(number, rest) };
             // Three digits behind a comma may be thousands.

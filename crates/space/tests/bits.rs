@@ -5,8 +5,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack_space::run::run;
+
+use common::soft_demo;
 
 /// FNV-1a over the bits of all frames.
 fn hash(frames: &[Vec<[f64; 7]>]) -> u64 {
@@ -20,7 +24,7 @@ fn hash(frames: &[Vec<[f64; 7]>]) -> u64 {
 fn a_collapse_in_space_has_the_bits_that_are_kept_and_is_as_much_work() {
     let changes = ["stack.view=spatial", "stack.levels=4", "run.duration='9 s'"];
     let changes = changes.map(str::to_owned);
-    let run = run(&Scenario::builtin("demo-napa", &changes).unwrap()).unwrap();
+    let run = run(&soft_demo(&changes)).unwrap();
     let fallen: Vec<&str> = run.fallen().map(|body| run.stack.parts[body].name.as_str()).collect();
     assert!(!fallen.is_empty(), "nothing falls, so impacts are not looked at");
     let work = (run.work.steps, run.work.evaluations, run.work.contact_evaluations);

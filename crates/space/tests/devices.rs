@@ -3,16 +3,20 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack::device::{DEVICES, Setting};
 use barrelstack_dynamics::{Element, Spatial, evaluate};
 use barrelstack_space::run::{Run, Standing, run, stand};
 
+use common::soft_demo;
+
 fn demo(changes: &[&str]) -> Scenario {
     let all: Vec<String> =
         ["stack.view=spatial"].iter().chain(changes).map(|change| (*change).to_owned()).collect();
-    Scenario::builtin("demo-napa", &all).unwrap()
+    soft_demo(&all)
 }
 
 /// The force upward (N) on a body from all that touches it.

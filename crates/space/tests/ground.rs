@@ -2,11 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::motion::AccelerationUnit;
 use barrelstack::{Record, Scenario};
 use barrelstack_dynamics::{Drive as _, Vec3};
 
 use barrelstack_space::Ground;
+
+use common::soft_demo;
 
 /// Ground (m/s) that goes east by a pulse and north by half of it, and what is said of it; `first` is the component
 /// that shakes the stack across its barrels.
@@ -23,7 +27,7 @@ fn peak(first: &str, azimuth: &str, names: [&str; 2]) -> (Vec3, Vec<String>) {
         format!("stack.azimuth={azimuth}"),
         format!("motion.component={first}"),
     ];
-    let scenario = Scenario::builtin("demo-napa", &changes).unwrap().with_record(&record).unwrap();
+    let scenario = soft_demo(&changes).with_record(&record).unwrap();
     let ground = Ground::of(&scenario).unwrap();
     (ground.at(1.5).1, ground.warnings)
 }

@@ -2,11 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack_space::{Ground, run};
+
+use common::soft_demo;
 
 /// How far (m) the top barrels go in the plane, how far from there they are in space, at most and in the first three
 /// seconds, and how far they leave the plane.
@@ -20,7 +24,7 @@ fn apart(view: [&str; 2]) -> [f64; 4] {
             "run.duration='6 s'",
             "record.frame_rate='50 Hz'",
         ];
-        Scenario::builtin("demo-napa", &changes.map(str::to_owned)).unwrap()
+        soft_demo(&changes.map(str::to_owned))
     };
     let plane = scenario(view[0]);
     let ground = plane.ground().unwrap();

@@ -2,16 +2,20 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Method, Simulation, Still, evaluate, simulate};
 use barrelstack_space::run::{Standing, stand};
 use barrelstack_space::{Stack, run};
 
+use common::soft_demo;
+
 fn demo(changes: &[&str]) -> Scenario {
     let all: Vec<String> =
         ["stack.view=spatial"].iter().chain(changes).map(|change| (*change).to_owned()).collect();
-    Scenario::builtin("demo-napa", &all).unwrap()
+    soft_demo(&all)
 }
 
 /// The force upward (N) on a body from all bodies of some parts.

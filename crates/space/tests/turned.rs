@@ -2,11 +2,15 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack_dynamics::{
     Drive, Method, Model, Quaternion, Scratch, Simulation, Spatial, State, Vec3, simulate,
 };
 use barrelstack_space::{Ground, Stack};
+
+use common::soft_demo;
 
 /// Ground that is turned about the vertical.
 struct Turned(Ground, Quaternion);
@@ -26,7 +30,7 @@ impl Drive<Spatial> for Turned {
 /// some hundredths of a millimeter beside, where rounding differs.
 fn ways(angle: f64) -> Vec<Vec3> {
     let changes = ["stack.view=spatial", "stack.levels=2", "stack.columns_along=2"];
-    let scenario = Scenario::builtin("demo-napa", &changes.map(str::to_owned)).unwrap();
+    let scenario = soft_demo(&changes.map(str::to_owned));
     let stack = Stack::of(&scenario).unwrap();
     let turn = Quaternion::turn(Vec3::new(0.0, 0.0, angle));
     let mut bodies = stack.model.bodies().to_vec();

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
+mod common;
+
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::View;
@@ -10,6 +12,8 @@ use barrelstack_dynamics::Vec3;
 use barrelstack_space::run::{run, stand};
 use barrelstack_space::{Heading, answer};
 
+use common::soft_demo;
+
 fn demo(changes: &[&str]) -> Scenario {
     seen("spatial", changes)
 }
@@ -17,7 +21,7 @@ fn demo(changes: &[&str]) -> Scenario {
 fn seen(view: &str, changes: &[&str]) -> Scenario {
     let view = format!("stack.view={view}");
     let all = std::iter::once(view).chain(changes.iter().map(|change| (*change).to_owned()));
-    Scenario::builtin("demo-napa", &all.collect::<Vec<_>>()).unwrap()
+    soft_demo(&all.collect::<Vec<_>>())
 }
 
 #[test]

@@ -18,6 +18,10 @@ pub struct Case {
     falls: Vec<(String, Option<f64>)>,
     /// Largest displacement of the top against the ground, over the height of the stack.
     drift: Option<f64>,
+    /// Largest load on a stave over its capacity, where one is stated.
+    stave_utilization: Option<f64>,
+    /// First sentence of what its reader should know.
+    warning: Option<String>,
     /// Time (s) of the motion that was left at the end.
     cut: Option<f64>,
     /// When (s) it ended.
@@ -55,6 +59,8 @@ impl Case {
             barrels: result.barrels,
             falls: result.falls.clone(),
             drift: result.demands.top_drift_ratio,
+            stave_utilization: result.demands.stave_utilization,
+            warning: result.warnings.first().cloned(),
             cut: result.cut,
             end_time: result.end_time,
         }
@@ -78,6 +84,8 @@ impl Case {
         let known = CaseResult::failed(String::new());
         let mut result = CaseResult { outcome, first_fall, barrels, falls, cut, end_time, ..known };
         result.demands.top_drift_ratio = self.drift;
+        result.demands.stave_utilization = self.stave_utilization;
+        result.warnings = self.warning.into_iter().collect();
         Ok(result)
     }
 }

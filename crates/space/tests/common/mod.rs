@@ -1,0 +1,27 @@
+//! The demo with the soft seats of the paper's contact nodes, on which stacks fall in a few seconds.
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use barrelstack::Scenario;
+
+/// Constants of one contact node of the paper for every seat, and the friction of its cases.
+const SOFT: [&str; 12] = [
+    "interface.rack-ground.basis=node",
+    "interface.rack-ground.stiffness=980 kN/m",
+    "interface.rack-ground.damping=2200 N*s/m",
+    "interface.rack-ground.friction.coefficient=0.5",
+    "interface.rack-ground.friction.tangential_stiffness_ratio=1",
+    "interface.barrel-rack.basis=node",
+    "interface.barrel-rack.stiffness=980 kN/m",
+    "interface.barrel-rack.damping=2200 N*s/m",
+    "interface.barrel-rack.friction.coefficient=0.22",
+    "interface.barrel-rack.friction.tangential_stiffness_ratio=1",
+    "interface.fallen-barrel-rack.friction.coefficient=0.22",
+    "interface.fallen-rack-ground.friction.coefficient=0.4",
+];
+
+/// The demo on soft seats, with further changes.
+pub(crate) fn soft_demo(changes: &[String]) -> Scenario {
+    let all: Vec<String> =
+        SOFT.iter().map(|&change| change.to_owned()).chain(changes.iter().cloned()).collect();
+    Scenario::builtin("demo-napa", &all).unwrap()
+}
