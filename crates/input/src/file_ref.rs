@@ -91,6 +91,10 @@ impl PartialEq for FileRef {
 }
 
 /// Without what is in it, which may be megabytes.
+#[expect(
+    clippy::missing_fields_in_debug,
+    reason = "keys of results hold this text, and who names a file changes no result"
+)]
 impl fmt::Debug for FileRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut all = f.debug_struct("FileRef");

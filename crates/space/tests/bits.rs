@@ -7,7 +7,6 @@
 
 mod common;
 
-use barrelstack::Scenario;
 use barrelstack_space::run::run;
 
 use common::soft_demo;

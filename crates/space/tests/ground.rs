@@ -5,7 +5,7 @@
 mod common;
 
 use barrelstack::motion::AccelerationUnit;
-use barrelstack::{Record, Scenario};
+use barrelstack::Record;
 use barrelstack_dynamics::{Drive as _, Vec3};
 
 use barrelstack_space::Ground;

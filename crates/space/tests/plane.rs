@@ -6,7 +6,6 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack_space::{Ground, run};
 

@@ -4,7 +4,6 @@
 
 mod common;
 
-use barrelstack::Scenario;
 use barrelstack_dynamics::{
     Drive, Method, Model, Quaternion, Scratch, Simulation, Spatial, State, Vec3, simulate,
 };
