@@ -40,13 +40,14 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
         let mut factor = |name: &str, field: &str, also: &[String], dispersion: f64, cut: &str| {
             let Some(median) = of(&path(field)).filter(|_| dispersion > 0.0) else { return };
             let also: Vec<String> = also.iter().map(|path| format!("\"{path}\"")).collect();
+            let also = also.join(", ");
+            let also = if also.is_empty() { also } else { format!("also = [{also}]\n") };
             // Writing to a String cannot fail.
             let _ = write!(
                 text,
-                "[[factor]]\nname = \"{name} {pair}\"\nfield = \"{}\"\nalso = [{}]\n\
+                "[[factor]]\nname = \"{name} {pair}\"\nfield = \"{}\"\n{also}\
                  distribution = {{ kind = \"lognormal\", median = {}, dispersion = {dispersion}{cut} }}\n\n",
                 path(field),
-                also.join(", "),
                 toml(&median.value)
             );
         };

@@ -97,7 +97,7 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
 /// Components of different length are cut to the shorter one.
 ///
 /// # Errors
-/// As [`crate::response`].
+/// As [`crate::response()`].
 pub fn rotated_spectrum(
     time_step: f64,
     first: &[f64],

@@ -4,8 +4,8 @@
 
 mod common;
 
-use barrelstack::motion::AccelerationUnit;
 use barrelstack::Record;
+use barrelstack::motion::AccelerationUnit;
 use barrelstack_dynamics::{Drive as _, Vec3};
 
 use barrelstack_space::Ground;
