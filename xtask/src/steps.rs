@@ -41,9 +41,9 @@ const STEPS: [Step; 6] = [
         remedy: "see the warning of rustdoc above",
     },
     Step {
-        arguments: &["test", "--workspace"],
+        arguments: &["test", "--workspace", "--no-fail-fast"],
         strict_docs: false,
-        remedy: "see the failed test above",
+        remedy: "see the failed tests above, named once more at the end of the step",
     },
     Step {
         arguments: &["test", "--profile", "dev", "--package", "barrelstack", "--test", "bits"],

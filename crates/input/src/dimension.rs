@@ -40,7 +40,7 @@ dimensions! {
     NONE = [0, 0, 0, 0], "a plain number", "1", "0.5";
     LENGTH = [2, 0, 0, 0], "a length", "m", "0.25 m";
     MASS = [0, 2, 0, 0], "a mass", "kg", "275 kg";
-    TIME = [0, 0, 2, 0], "a time", "s", "0.1 ms";
+    TIME = [0, 0, 2, 0], "a time", "s", "0.001 s";
     ANGLE = [0, 0, 0, 2], "an angle", "rad", "30 deg";
     FREQUENCY = [0, 0, -2, 0], "a frequency", "Hz", "60 Hz";
     VELOCITY = [2, 0, -2, 0], "a velocity", "m/s", "60 cm/s";
