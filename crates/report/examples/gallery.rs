@@ -1,6 +1,6 @@
-//! A synthetic document that shows every kind of block: `gallery FOLDER` writes it there.
+//! Writes a synthetic document with every kind of block: `gallery FOLDER`.
 //!
-//! The motions are formulas, not dynamics; they only give the pictures something to show.
+//! The motions are formulas, not dynamics; they only give the pictures content.
 
 use std::{error::Error, f64::consts::TAU, fs, path::PathBuf, sync::Arc};
 
@@ -473,7 +473,7 @@ fn document() -> Document {
     }
 }
 
-/// Blocks that hold nothing, to see that a page survives them.
+/// Empty blocks, which a page must tolerate.
 fn empty_blocks() -> Vec<Block> {
     let one = Scene {
         bodies: vec![SceneBody::barrel("B1", RADIUS)],

@@ -1,7 +1,7 @@
-//! A film as one file that plays by itself: GIF, and APNG, which is smaller and keeps its colors.
+//! A film as an animated image file: GIF, and APNG, which is smaller and keeps its colors.
 //!
-//! Only what changes from one picture to the next is stored, in a few colors and one that stands
-//! for "as before".
+//! Each picture stores only the pixels that differ from the one before, with a small palette; one
+//! palette index means "unchanged".
 
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
@@ -15,23 +15,23 @@ use crate::{
     raster::{rasterize, rgb},
 };
 
-/// How long the last picture stays before the film starts again (s).
+/// Time for which the last picture is held before the film repeats (s).
 const REST: f64 = 1.5;
 
-/// The index of "as before".
+/// Palette index of an unchanged pixel.
 const KEEP: u8 = 0;
 
-/// Pictures that are painted at a time.
+/// Number of pictures painted at a time, which bounds the memory.
 const BLOCK: usize = 32;
 
-/// A film as few colors and what each of its pictures changes.
+/// A film as a palette and the changes of each picture.
 pub struct Animation {
     palette: Vec<u8>,
     pictures: Vec<Picture>,
 }
 
 impl Animation {
-    /// Paints a film with at most `largest` pixels across and up. None for a film without pictures.
+    /// Paints a film with at most `largest` pixels on its longer side. `None` for a film without pictures.
     ///
     /// Players hold pictures for whole hundredths of a second, and few show more than 50 in one.
     pub fn of(film: &Film, largest: u32) -> Option<Self> {
@@ -62,15 +62,15 @@ impl Animation {
         Some(Self { palette: palette.bytes(), pictures })
     }
 
-    /// As a GIF that plays over and over at the speed of the run.
+    /// Encodes the film as a GIF that repeats at the speed of the run.
     pub fn gif(&self) -> Vec<u8> {
-        // Nothing but the memory can refuse, and the sizes agree.
+        // Writing to memory cannot fail, and every picture has the size that it states.
         self.write_gif().expect("a film in memory")
     }
 
     fn write_gif(&self) -> Result<Vec<u8>, gif::EncodingError> {
         let mut file = Vec::new();
-        // No side is longer than the largest that was asked for, which is a u16.
+        // No side exceeds `largest`, which is limited to a u16.
         let size = |sides: [usize; 2]| sides.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
         let [wide, high] = size(self.pictures.first().map_or([1, 1], |picture| picture.size));
         let mut encoder = gif::Encoder::new(&mut file, wide, high, &self.palette)?;
@@ -94,10 +94,10 @@ impl Animation {
         Ok(file)
     }
 
-    /// As an animated PNG that plays over and over at the speed of the run; what cannot play it
-    /// shows the first picture.
+    /// Encodes the film as an animated PNG that repeats at the speed of the run; viewers without
+    /// support for animation show the first picture.
     pub fn apng(&self) -> Vec<u8> {
-        // Nothing but the memory can refuse, and the sizes agree.
+        // Writing to memory cannot fail, and every picture has the size that it states.
         self.write_apng().expect("a film in memory")
     }
 
@@ -132,7 +132,7 @@ impl Animation {
     }
 }
 
-/// Pictures of these numbers, painted by all cores: width and colors of each.
+/// Paints the pictures of a range on all cores: width and RGB bytes of each.
 fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8>)> {
     let numbers: Vec<usize> = numbers.collect();
     let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -154,14 +154,14 @@ fn painted(film: &Film, numbers: Range<usize>, scale: f64) -> Vec<(usize, Vec<u8
     })
 }
 
-/// A time (s) in hundredths.
+/// Converts a time (s) to hundredths of a second.
 fn hundredths(time: f64) -> u32 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some minutes")]
     let whole = (100.0 * time).round().max(0.0) as u32;
     whole
 }
 
-/// What one picture changes of the one before, and how long it stays.
+/// The rectangle that a picture changes, and the time for which it is shown.
 struct Picture {
     corner: [usize; 2],
     size: [usize; 2],
@@ -176,7 +176,7 @@ impl Picture {
     }
 }
 
-/// The smallest rectangle that holds all changes; None when there are none, or nothing to compare.
+/// Returns the smallest rectangle that holds all changes; `None` without changes, or when the sizes differ.
 fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
     if before.len() != now.len() {
         return None;
@@ -201,18 +201,18 @@ fn change(before: &[u8], now: &[u8], wide: usize) -> Option<Picture> {
     Some(Picture { corner: [left, top], size, indices, hundredths: 0 })
 }
 
-/// The colors of a film; place 0 is kept for "as before".
+/// The palette of a film; index 0 means "unchanged".
 struct Palette {
     colors: Vec<[u8; 3]>,
     known: HashMap<[u8; 3], u8>,
 }
 
 impl Palette {
-    /// The commonest colors of some pictures of the film.
+    /// Builds the palette from a sample of the pictures.
     ///
-    /// Drawings are flat: a few colors fill them and edges blend those. So the commonest colors are
-    /// kept exactly, and of the rest only those that differ to the eye from what is there; the fewer
-    /// there are, the smaller is the file.
+    /// Drawings are flat: a few colors fill them and edges blend those. The most frequent colors are
+    /// kept exactly; of the rest only those that differ visibly from the ones kept, since fewer colors
+    /// make a smaller file.
     fn of(film: &Film, scale: f64) -> Self {
         const SAMPLES: usize = 8;
         const MOST: usize = 64;
@@ -237,11 +237,11 @@ impl Palette {
         Self { colors, known: HashMap::new() }
     }
 
-    /// The index of every color, that of the nearest one where it is not there.
+    /// Returns the palette index of each pixel, that of the nearest color where the exact one is absent.
     fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
         let mut last = None;
         let index = |color: &[u8; 3]| match last {
-            // Neighbors are mostly alike.
+            // Neighboring pixels mostly have the same color.
             Some((same, index)) if same == *color => index,
             _ => {
                 let index = self.index(*color);

@@ -1,4 +1,4 @@
-//! A column of results with its name, unit and values: what tables for programs are made of.
+//! Columns of results with name, unit and values, from which tables for programs are made.
 
 use std::fmt::Write as _;
 
@@ -7,23 +7,23 @@ use serde::{Deserialize, Serialize};
 use crate::described::{Described, Objects};
 use crate::{csv_field, described, escape::with_unit, shortest};
 
-/// What a column tells of a case.
+/// The role of a column in a table of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
-    /// Which case it is.
+    /// Identifies the case.
     Key,
-    /// A value that the study varies.
+    /// A factor that the study varies.
     Factor,
-    /// Which motion shook it, and how strongly it was asked to.
+    /// The motion and its target intensity.
     Motion,
-    /// How strong the motion was, as shaken.
+    /// Intensity of the motion as applied.
     Intensity,
-    /// What happened.
+    /// Outcome of the run.
     Outcome,
-    /// How far things went.
+    /// Response of the stack.
     Demand,
-    /// How it was computed, and what to know about that.
+    /// Settings and diagnostics of the computation.
     Run,
 }
 
@@ -33,7 +33,7 @@ impl Described for Role {
     }
 }
 
-/// What the values of a column are.
+/// The type of the values of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ValueKind {
@@ -51,7 +51,7 @@ impl Described for ValueKind {
     }
 }
 
-/// One value; every column may lack some.
+/// A single value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A whole number.
@@ -78,12 +78,12 @@ described! {
 }
 
 impl ColumnSpec {
-    /// What a column of a name holds.
+    /// Creates the description of a column.
     pub fn new(name: &str, unit: &str, role: Role, kind: ValueKind) -> Self {
         Self { name: name.to_owned(), unit: unit.to_owned(), role, kind }
     }
 
-    /// The name with its unit, as files have it: `pga (m/s2)`.
+    /// Returns the name with its unit, as in files: `pga (m/s2)`.
     pub fn heading(&self) -> String {
         with_unit(&self.name, &self.unit)
     }
@@ -102,7 +102,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// No values yet.
+    /// Creates an empty column of a kind.
     pub fn empty(kind: ValueKind) -> Self {
         match kind {
             ValueKind::Integer => Self::Integer(Vec::new()),
@@ -111,7 +111,7 @@ impl Values {
         }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         match self {
             Self::Integer(values) => values.len(),
@@ -120,12 +120,12 @@ impl Values {
         }
     }
 
-    /// Whether there are no rows.
+    /// `true` without rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The value in a row; `None` where there is none.
+    /// Returns the value in a row; `None` where there is none.
     pub fn get(&self, row: usize) -> Option<Value> {
         match self {
             Self::Integer(values) => values.get(row).copied().flatten().map(Value::Integer),
@@ -134,7 +134,7 @@ impl Values {
         }
     }
 
-    /// Takes off the values from a row on.
+    /// Splits off the values from `row` on and returns them.
     #[must_use]
     pub fn split_off(&mut self, row: usize) -> Self {
         match self {
@@ -147,7 +147,7 @@ impl Values {
     /// Appends values of the same kind.
     ///
     /// # Errors
-    /// When they are of another.
+    /// If they are of another kind.
     pub fn append(&mut self, more: Self) -> Result<(), String> {
         match (self, more) {
             (Self::Integer(values), Self::Integer(more)) => values.extend(more),
@@ -163,7 +163,7 @@ impl Values {
     /// Appends a value of the column's kind; a whole number may stand for a number.
     ///
     /// # Errors
-    /// When it is of another kind.
+    /// If it is of another kind.
     pub fn push(&mut self, value: Option<Value>) -> Result<(), String> {
         match (self, value) {
             (Self::Integer(values), None) => values.push(None),
@@ -189,34 +189,34 @@ impl Values {
 /// A column with its values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
-    /// What it holds.
+    /// Name, unit, role and kind.
     #[serde(flatten)]
     pub spec: ColumnSpec,
-    /// Its values, one a row.
+    /// The values, one per row.
     pub values: Values,
 }
 
 impl Column {
-    /// A column without rows.
+    /// Creates a column without rows.
     pub fn empty(spec: ColumnSpec) -> Self {
         Self { values: Values::empty(spec.kind), spec }
     }
 }
 
-/// Columns of one length as CSV: a heading line with units, then one line a row; nothing where there is no value.
+/// Writes columns of equal length as CSV: a heading line with units, then one line per row; missing values are empty.
 ///
 /// Numbers have the fewest digits that read back to the same bits.
 pub fn to_csv(columns: &[Column]) -> String {
     csv_heading(columns) + &csv_rows(columns)
 }
 
-/// The heading line of columns as CSV.
+/// Writes the heading line of columns as CSV.
 pub fn csv_heading(columns: &[Column]) -> String {
     let heading = |column: &Column| csv_field(&column.spec.heading());
     columns.iter().map(heading).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// Columns as CSV without their heading line.
+/// Writes columns as CSV without the heading line.
 pub fn csv_rows(columns: &[Column]) -> String {
     let mut text = String::new();
     for row in 0..columns.first().map_or(0, |column| column.values.len()) {

@@ -1,5 +1,5 @@
-//! Documents for programs: every field declared once, with its unit and meaning; the JSON Schema and the
-//! data dictionary are made from that.
+//! Documents for programs: every field is declared once, with its unit and meaning; the JSON Schema and the
+//! data dictionary are generated from the declaration.
 
 use std::collections::BTreeMap;
 
@@ -7,13 +7,13 @@ use serde_json::{Map, Value, json};
 
 use crate::escape::one_line;
 
-/// The objects of a document, by name: each is described once, wherever it stands, in itself too.
+/// The schemas of a document's objects, by name. An object may contain itself.
 pub type Objects = Map<String, Value>;
 
-/// What has a JSON Schema.
+/// A type that has a JSON Schema.
 pub trait Described {
-    /// The schema of its values, whose objects are added to those of the document; the unit of a number is told
-    /// under `unit`.
+    /// Returns the schema of the type and adds the objects that it refers to; the unit of a number stands under
+    /// `unit`.
     fn schema(objects: &mut Objects) -> Value;
 }
 
@@ -68,37 +68,37 @@ impl<T: Described, const N: usize> Described for [T; N] {
     }
 }
 
-/// Values by a name that only the document knows.
+/// Values by a name that is not known in advance.
 impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
     fn schema(objects: &mut Objects) -> Value {
         json!({ "type": "object", "additionalProperties": T::schema(objects) })
     }
 }
 
-/// A field of an object, as [`described!`](crate::described!) knows it.
+/// A field of an object, as declared with [`described!`](crate::described!).
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Its key.
     pub key: &'static str,
-    /// What it means, as written in its comment.
+    /// Meaning, as written in its doc comment.
     pub meaning: &'static str,
-    /// Unit; none where it has none of its own.
+    /// Unit; `None` without one.
     pub unit: Option<&'static str>,
-    /// The words that it may be, where those are known.
+    /// The values that a text may have, where they are fixed.
     pub words: &'static [&'static str],
-    /// How it is written: `flatten` puts its own fields in its place, `skip` leaves it out.
+    /// Serialization: `flatten` puts its fields in its place, `skip` omits it.
     pub how: Option<&'static str>,
     /// The schema of its type.
     pub schema: fn(&mut Objects) -> Value,
 }
 
-/// Describes an object under its name, once, and refers to it.
+/// Adds the schema of an object under its name, once, and returns a reference to it.
 pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]) -> Value {
     let reference = json!({ "$ref": format!("#/$defs/{name}") });
     if objects.contains_key(name) {
         return reference;
     }
-    // Where it stands in itself, it is known by then.
+    // Reserves the name first, so that an object that contains itself refers to it.
     objects.insert(name.to_owned(), Value::Null);
     let (mut properties, mut required) = (Map::new(), Vec::new());
     for field in fields.iter().filter(|field| field.how != Some("skip")) {
@@ -136,13 +136,13 @@ pub fn object(objects: &mut Objects, name: &str, meaning: &str, fields: &[Field]
     reference
 }
 
-/// What a schema refers to, or itself.
+/// Resolves a reference; returns any other schema unchanged.
 fn resolved<'a>(schema: &'a Value, objects: &'a Objects) -> &'a Value {
     let name = schema["$ref"].as_str().and_then(|at| at.strip_prefix("#/$defs/"));
     name.and_then(|name| objects.get(name)).unwrap_or(schema)
 }
 
-/// The schema of a whole document under a title.
+/// Returns the schema of a whole document with a title.
 pub fn document<T: Described>(title: &str) -> Value {
     let mut objects = Objects::new();
     let mut schema = T::schema(&mut objects);
@@ -152,8 +152,8 @@ pub fn document<T: Described>(title: &str) -> Value {
     schema
 }
 
-/// Every field of a document as key, unit and meaning, by key; what is in a list has `[]` behind the key of the
-/// list, what is under a free name `.*`. What an object holds that stands in itself is told once.
+/// Lists every field of a document as key, unit and meaning, by key; fields of list items have `[]` after the key of
+/// the list, those under a free name `.*`. An object that contains itself is listed once.
 pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
     let none = Objects::new();
     let mut walk = Walk {
@@ -165,10 +165,10 @@ pub fn dictionary(document: &Value) -> Vec<[String; 3]> {
     walk.rows
 }
 
-/// The way through a schema.
+/// Traversal of a schema.
 struct Walk<'a> {
     objects: &'a Objects,
-    /// The objects in which the walk is.
+    /// The objects that enclose the current position.
     within: Vec<&'a Value>,
     rows: Vec<[String; 3]>,
 }
@@ -204,11 +204,11 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Declares an object of a document: a struct that is written as JSON and knows its schema.
+/// Declares an object of a document: a struct that is serialized as JSON and has a JSON Schema.
 ///
-/// The comment of a field is its meaning. Behind the type follow, where there are any, the unit (`as "m/s"`,
-/// `as "1"` for a ratio), the words that it may be (`["a", "b"]`), and, in a struct that is made `of` one thing or
-/// several, its value.
+/// The doc comment of a field is its meaning. After the type follow, where they apply, the unit (`as "m/s"`,
+/// `as "1"` for a ratio), the permitted values (`["a", "b"]`) and, in a struct built `of` one or more arguments,
+/// the expression of its value.
 ///
 /// ```
 /// barrelstack_report::described! {

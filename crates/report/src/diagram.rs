@@ -12,11 +12,11 @@ use crate::{
 /// A scene at one instant with labels and arrows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
-    /// What stands there.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// The instant (s); the frame nearest to it is shown.
     pub time: f64,
-    /// Words at places (m).
+    /// Texts and their positions (m).
     pub labels: Vec<(Point, String)>,
     /// Arrows over the bodies.
     pub arrows: Vec<Arrow>,
@@ -25,11 +25,11 @@ pub struct Diagram {
 /// An arrow between two bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrow {
-    /// Where it starts (m).
+    /// Tail (m).
     pub from: Point,
-    /// Where its head is (m).
+    /// Head (m).
     pub to: Point,
-    /// What it says, for the table of its data.
+    /// Meaning, for the CSV of the figure.
     pub meaning: String,
 }
 

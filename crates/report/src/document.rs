@@ -2,7 +2,7 @@
 
 use crate::{Figure, Player, Players, Table};
 
-/// What a page says, free of any output format.
+/// The content of a page, independent of the output format.
 ///
 /// [`html`](crate::html) and [`markdown`](crate::markdown) read the same value, so a number
 /// shown in one is the number shown in the other.
@@ -14,21 +14,21 @@ pub struct Document {
     pub verdict: Verdict,
     /// Content in reading order.
     pub blocks: Vec<Block>,
-    /// What made the result: pairs of name and value, shown at the end.
+    /// Provenance: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
-    /// Words that not every reader knows, with what they mean: explained where they stand, and listed at the
-    /// end where they were used.
+    /// Technical terms with their meanings: explained where they occur, and those that occur are listed at the
+    /// end.
     pub words: Vec<Word>,
-    /// What the reader must know before trusting the result; shown right after the first player.
+    /// Limits that the reader must know before trusting the result; shown right after the first player.
     pub warnings: Vec<String>,
 }
 
-/// A word that not every reader knows.
+/// A technical term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// As it stands within a sentence.
+    /// The term as it stands within a sentence.
     pub word: &'static str,
-    /// What it means, in words that everybody knows.
+    /// Its meaning in everyday words.
     pub meaning: &'static str,
 }
 
@@ -37,9 +37,9 @@ pub struct Word {
 pub struct Verdict {
     /// One short sentence, the largest text of the page.
     pub headline: String,
-    /// What the reader may do about it, in a sentence of its own; may be empty.
+    /// Recommended action, as a sentence of its own; may be empty.
     pub advice: String,
-    /// A command that shows more of that; may be empty.
+    /// A command that shows the effect of the advice; may be empty.
     pub command: String,
     /// Sentences that back the headline, in order.
     pub sentences: Vec<String>,
@@ -56,7 +56,7 @@ pub enum Tone {
     Stands,
     /// Something came down.
     Falls,
-    /// The run is not to be trusted.
+    /// The result is not valid.
     Invalid,
     /// No verdict: a study, a comparison, a record.
     #[default]
@@ -64,7 +64,7 @@ pub enum Tone {
 }
 
 impl Tone {
-    /// The word shown beside the sign.
+    /// Returns the word shown beside the sign.
     pub fn word(self) -> &'static str {
         match self {
             Self::Stands => "Stands",
@@ -74,7 +74,7 @@ impl Tone {
         }
     }
 
-    /// The class that colors what is of this tone.
+    /// Returns the CSS class that sets the color.
     pub fn class(self) -> &'static str {
         match self {
             Self::Stands => "stands",
@@ -86,12 +86,12 @@ impl Tone {
 }
 
 impl Block {
-    /// A heading.
+    /// Creates a heading.
     pub fn heading(level: u8, text: impl Into<String>) -> Self {
         Self::Heading { level, text: text.into() }
     }
 
-    /// Blocks that are folded away under a line.
+    /// Creates a block that is folded away under a summary line.
     pub fn details(summary: impl Into<String>, blocks: Vec<Self>) -> Self {
         Self::Details { summary: summary.into(), blocks }
     }
@@ -111,7 +111,7 @@ pub enum Block {
     Heading {
         /// 2 opens a section and is listed in the page's contents.
         level: u8,
-        /// The words.
+        /// The text.
         text: String,
     },
     /// A paragraph of plain text.
@@ -131,7 +131,7 @@ pub enum Block {
     Details {
         /// The line that stays visible.
         summary: String,
-        /// What it hides.
+        /// The folded content.
         blocks: Vec<Block>,
     },
 }

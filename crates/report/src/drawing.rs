@@ -1,19 +1,19 @@
-//! A drawing: lines, shapes and words of known styles, free of any output format.
+//! A drawing: lines, shapes and texts of named styles, independent of the output format.
 
 /// A drawing of a known size; y grows downward (px).
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drawing {
     pub(crate) width: f64,
     pub(crate) height: f64,
-    /// What a reader who cannot see it is told.
+    /// Text alternative for screen readers.
     pub(crate) title: String,
     pub(crate) items: Vec<Item>,
 }
 
-/// Lines through points, each on its own.
+/// Separate polylines.
 pub(crate) type Runs = Vec<Vec<[f64; 2]>>;
 
-/// One piece of a drawing. A class is a list of names that the style sheet knows.
+/// One item of a drawing. A class is a list of class names of the style sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Item {
     Line {
@@ -31,14 +31,14 @@ pub(crate) enum Item {
         center: [f64; 2],
         radius: f64,
     },
-    /// Lines in pixels; `dash` goes before the style's own.
+    /// Polylines (px); `dash` precedes the dash pattern of the style.
     Path {
         class: String,
         dash: &'static str,
         runs: Runs,
         closed: bool,
     },
-    /// Lines in a body's own units (m), with the width of the pen in these units.
+    /// Polylines in a body's own units (m), with the pen width in the same units.
     Outline {
         class: String,
         pen: f64,
@@ -53,22 +53,22 @@ pub(crate) enum Item {
         degrees: f64,
         text: String,
     },
-    /// Items of which only what lies in a rectangle is seen; `id` differs within a page.
+    /// Items clipped to a rectangle; `id` is unique within a page.
     Clip {
         id: String,
         lower: [f64; 2],
         size: [f64; 2],
         items: Vec<Self>,
     },
-    /// Another drawing with its upper left corner at `at`, `scale` times as large.
+    /// Another drawing with its upper left corner at `at`, scaled by `scale`.
     Nested {
         at: [f64; 2],
         scale: f64,
         drawing: Drawing,
     },
-    /// Bodies in their own units (m), to be shown by [`Item::Scene`].
+    /// Bodies in their own units (m), drawn by [`Item::Scene`].
     Defined(Vec<Body>),
-    /// Bodies at their places in a world with z up: `scale` (px/m), the pixel of the origin.
+    /// Bodies placed in a world with z up: `scale` (px/m) and the pixel of the origin.
     Scene {
         scale: f64,
         origin: [f64; 2],
@@ -76,7 +76,7 @@ pub(crate) enum Item {
     },
 }
 
-/// A body that is drawn once and shown many times; `id` differs within a page.
+/// A body that is defined once and drawn many times; `id` is unique within a page.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Body {
     pub(crate) id: String,
@@ -91,7 +91,7 @@ pub(crate) struct Placed {
     pub(crate) pose: [f64; 3],
 }
 
-/// Which part of a text stands at its place.
+/// The part of a text that is aligned with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -137,13 +137,13 @@ impl Drawing {
         }
     }
 
-    /// Places another drawing inside this one.
+    /// Places another drawing inside this one, at its own size.
     pub(crate) fn nest(&mut self, at: [f64; 2], drawing: Self) {
         self.push(Item::Nested { at, scale: 1.0, drawing });
     }
 }
 
-/// How much room a drawing has across; letters are as large in either.
+/// The available width; the font size is the same in both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Room {
     /// A page on a desk, or on paper.
@@ -153,7 +153,7 @@ pub(crate) enum Room {
 }
 
 impl Room {
-    /// The length for this room.
+    /// Returns the length for this width.
     pub(crate) fn of(self, page: f64, phone: f64) -> f64 {
         match self {
             Self::Page => page,
@@ -162,13 +162,13 @@ impl Room {
     }
 }
 
-/// Width of a line of text at `size` px, on the generous side.
+/// Estimates the width of a line of text at `size` px, on the generous side.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-/// Lines of a text at `size` px that are no wider than `width` where it can be broken: after spaces
-/// and after the signs that join words.
+/// Breaks a text at `size` px into lines no wider than `width` where possible: after spaces
+/// and after characters that join words.
 pub(crate) fn broken(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for piece in text.split_inclusive([' ', '.', '-', '_', '/']) {

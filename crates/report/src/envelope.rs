@@ -1,4 +1,4 @@
-//! Stress around a body: at rest, before the largest during shaking.
+//! Stress around a body: static, in front of the largest dynamic.
 
 use crate::{
     Polyline,
@@ -8,14 +8,14 @@ use crate::{
     ticks::round_length,
 };
 
-/// Stress along a boundary, drawn outward along its normals.
+/// Stress along a boundary, drawn outward along the normals.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Envelope {
     /// The body's drawing (m).
     pub outline: Vec<Polyline>,
-    /// Places on the boundary in order along it.
+    /// Sample points in order along the boundary.
     pub samples: Vec<BoundarySample>,
-    /// The boundary returns to its start.
+    /// `true` if the boundary is closed.
     pub closed: bool,
     /// Stress from self-weight at each sample, never negative; NaN makes a gap.
     pub static_stress: Vec<f64>,
@@ -23,22 +23,22 @@ pub struct Envelope {
     pub dynamic_stress: Vec<f64>,
     /// Unit of both, such as `kPa` or `kN/m`.
     pub unit: String,
-    /// Ratio of dynamic to static stress as the caller defines it; stated when given.
+    /// Ratio of dynamic to static stress as the caller defines it; shown if given.
     pub amplification: Option<f64>,
-    /// What the coordinate of the samples is, such as `angle`; with its unit for the CSV.
+    /// Name and unit of the coordinate of the samples, such as `angle`, for the CSV.
     pub coordinate: (String, String),
 }
 
-/// A place on a boundary.
+/// A sample point on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundarySample {
-    /// Where (m).
+    /// Position (m).
     pub x: f64,
-    /// Where (m).
+    /// Position (m).
     pub z: f64,
-    /// Unit normal, out of the body.
+    /// Outward unit normal.
     pub nx: f64,
-    /// Unit normal, out of the body.
+    /// Outward unit normal.
     pub nz: f64,
     /// Coordinate along the boundary, for the CSV.
     pub coordinate: f64,
@@ -48,7 +48,7 @@ pub struct BoundarySample {
 const WIDTH: [f64; 2] = [520.0, 358.0];
 const SIDE: f64 = 24.0;
 const LEGEND: f64 = 62.0;
-/// Longest stress over the larger side of the body.
+/// Length of the largest stress over the larger side of the body.
 const REACH: f64 = 0.38;
 
 impl Envelope {
@@ -71,7 +71,7 @@ impl Envelope {
         }
         let size = extent.width().max(extent.height()).max(1e-6);
         let peak = self.peak();
-        // Length in meters of one unit of stress.
+        // Length (m) per unit of stress.
         let per_stress = if peak > 0.0 { REACH * size / peak } else { 0.0 };
         for at in 0..self.count() {
             for stress in [self.static_stress[at], self.dynamic_stress[at]] {
@@ -120,8 +120,8 @@ impl Envelope {
         [sample.x + sample.nx * length, sample.z + sample.nz * length]
     }
 
-    /// Stretches of samples under stress, each with the unloaded neighbors that end it, so that
-    /// a stretch closes onto the boundary. On a closed boundary a stretch may pass the seam.
+    /// Returns runs of loaded samples, each with the adjacent unloaded samples, so that its outline closes
+    /// on the boundary. On a closed boundary a run may pass the start.
     fn runs(&self, stresses: &[f64]) -> Vec<Vec<usize>> {
         let count = self.count();
         let loaded = |at: usize| stresses[at] > 0.0;
@@ -152,8 +152,8 @@ impl Envelope {
         runs
     }
 
-    /// What the shapes are, and what their length says: beside each other, on a phone one below the
-    /// other.
+    /// Draws the key of the shapes and the scale of stress: side by side on a page, one below the other
+    /// on a phone.
     fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest during shaking");

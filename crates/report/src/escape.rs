@@ -1,8 +1,8 @@
-//! Text made safe for HTML, SVG, JSON inside a script element, Markdown and CSV.
+//! Escaping for HTML, SVG, JSON inside a script element, Markdown and CSV.
 
 use crate::number;
 
-/// Text for an HTML or SVG element or a double-quoted attribute.
+/// Escapes text for an HTML or SVG element or a double-quoted attribute.
 ///
 /// Control characters that XML forbids become U+FFFD, so an SVG always parses.
 pub(crate) fn html(text: &str) -> String {
@@ -22,7 +22,7 @@ pub(crate) fn html(text: &str) -> String {
     out
 }
 
-/// Words with a capital letter at their start.
+/// Capitalizes the first letter of a text.
 ///
 /// ```
 /// assert_eq!(barrelstack_report::capital("it stands"), "It stands");
@@ -32,7 +32,7 @@ pub fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Words as a list: "a, b and c".
+/// Joins words into a list: "a, b and c".
 pub fn listed(words: impl IntoIterator<Item = impl Into<String>>) -> String {
     let mut words: Vec<String> = words.into_iter().map(Into::into).collect();
     match (words.pop(), words.len()) {
@@ -42,19 +42,19 @@ pub fn listed(words: impl IntoIterator<Item = impl Into<String>>) -> String {
     }
 }
 
-/// A name with its unit behind it, where it has one: `pga (m/s2)`.
+/// Appends the unit to a name, if any: `pga (m/s2)`.
 pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
 
-/// JSON text that cannot end the script element it sits in.
+/// Escapes JSON so that it cannot end the script element that contains it.
 ///
 /// In JSON `<` occurs only inside strings, where `\u003c` means the same.
 pub(crate) fn json_in_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
-/// Text for Markdown, on one line, with numbers tied to their units.
+/// Escapes text for Markdown, on one line, with numbers joined to their units.
 pub(crate) fn markdown(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let line = number::tied(&one_line(text));
@@ -75,10 +75,10 @@ pub(crate) fn markdown(text: &str) -> String {
     out
 }
 
-/// A CSV field, quoted when it must be.
+/// Escapes a CSV field, quoting it where necessary.
 ///
-/// Spreadsheets compute what begins with `=`, `+`, `-` or `@`, whoever wrote it: such a text gets an apostrophe before it,
-/// by which they take it as text, unless it is a number.
+/// Spreadsheets evaluate fields that begin with `=`, `+`, `-` or `@`, whatever their source. Such a field gets
+/// a leading apostrophe, which marks it as text, unless it is a number.
 ///
 /// ```
 /// use barrelstack_report::csv_field;
@@ -99,9 +99,9 @@ pub fn csv(text: &str) -> String {
     }
 }
 
-/// A name for files and anchors: lower case letters, digits and single hyphens.
+/// Converts a text to a name for files and anchors: lower-case letters, digits and single hyphens.
 ///
-/// Letters outside ASCII are dropped; a name of which nothing is left becomes `item`.
+/// Letters outside ASCII are dropped; an empty result becomes `item`.
 pub(crate) fn slug(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -115,7 +115,7 @@ pub(crate) fn slug(text: &str) -> String {
     if out.is_empty() { "item".into() } else { out.into() }
 }
 
-/// A text on one line, with single spaces between its words.
+/// Joins a text into one line with single spaces between its words.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -11,9 +11,9 @@ use crate::{
 /// One picture with a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Short name, made safe for files and anchors; a repeated one gets a number behind it.
+    /// Short name, made safe for files and anchors; a repeated one gets a number appended.
     pub id: String,
-    /// What the picture shows and how to read it.
+    /// Caption: content of the picture and how to read it.
     pub caption: String,
     /// The picture.
     pub kind: FigureKind,
@@ -47,7 +47,7 @@ macro_rules! kinds {
 kinds!(Plot, Panels, Strip, Envelope, Diagram);
 
 impl Figure {
-    /// A picture with its name and its caption.
+    /// Creates a figure.
     pub fn new(
         id: impl Into<String>,
         caption: impl Into<String>,
@@ -56,12 +56,12 @@ impl Figure {
         Self { id: id.into(), caption: caption.into(), kind: picture.into() }
     }
 
-    /// The picture as a standalone SVG document: white ground, text as text, f64 coordinates.
+    /// Returns the picture as a standalone SVG document: white ground, text as text, f64 coordinates.
     pub fn to_svg(&self) -> String {
         self.draw(&escape::slug(&self.id)).standalone()
     }
 
-    /// The picture in a format; `dpi` (dots per inch) is that of pixels.
+    /// Returns the picture in a format; `dpi` (dots per inch) applies to PNG.
     pub fn to_bytes(&self, format: Format, dpi: f64) -> Vec<u8> {
         match format {
             Format::Svg => self.to_svg().into_bytes(),
@@ -70,23 +70,22 @@ impl Figure {
         }
     }
 
-    /// The picture as a PNG of `dpi` dots per inch on white; its 12 px letters are 9 points high.
-    /// The words are drawn with the bundled font, so the same figure gives the same file anywhere.
+    /// Returns the picture as a PNG of `dpi` dots per inch on white; its 12 px letters are 9 points high.
+    /// Text is drawn with the bundled font, so the same figure gives the same file on every machine.
     pub fn to_png(&self, dpi: f64) -> Vec<u8> {
         raster::png(&self.draw(&escape::slug(&self.id)), dpi)
     }
 
-    /// The picture as a PDF page of its size: lines as lines, words as words in the bundled font.
+    /// Returns the picture as a PDF page of its size: vector lines, and text in the bundled font.
     pub fn to_pdf(&self) -> Vec<u8> {
         pages::figure_pdf(self)
     }
 
-    /// The picture's data as CSV at full precision.
+    /// Returns the picture's data as CSV at full precision.
     ///
-    /// A plot gives `x` columns beside `y` columns, one pair for each series; panels give their plots
-    /// one below the other, an empty line between; a strip gives one
-    /// row for each instant and body; an envelope one row for each sample; a diagram one row for each
-    /// arrow.
+    /// A plot gives one pair of `x` and `y` columns per series; panels their plots one below the other, separated
+    /// by an empty line; a strip one row per instant and body; an envelope one row per sample; a diagram one row
+    /// per arrow.
     pub fn to_csv(&self) -> String {
         match &self.kind {
             FigureKind::Plot(plot) => plot.to_csv(),
@@ -101,7 +100,7 @@ impl Figure {
         self.draw_in(id, Room::Page)
     }
 
-    /// The picture as it fits its room; a strip is one and the same in any, for its panels part.
+    /// Draws the picture for a width; a strip is the same for both, since its panels wrap.
     pub(crate) fn draw_in(&self, id: &str, room: Room) -> Drawing {
         match &self.kind {
             FigureKind::Plot(plot) => plot.draw(id, &self.caption, room),
@@ -113,7 +112,7 @@ impl Figure {
     }
 }
 
-/// A file that goes beside a document.
+/// A file that accompanies a document.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
     /// File name without a folder.
@@ -122,14 +121,14 @@ pub struct Attachment {
     pub bytes: Vec<u8>,
 }
 
-/// The pictures that a figure can become.
+/// The file formats of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Lines and words, for pages and for editing.
+    /// Vector graphics, for pages and for editing.
     Svg,
     /// Pixels.
     Png,
-    /// Lines and words, for typesetting.
+    /// Vector graphics, for typesetting.
     Pdf,
 }
 
@@ -137,7 +136,7 @@ impl Format {
     /// All formats.
     pub const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
 
-    /// How names of its files end, without the dot.
+    /// Returns the file extension, without the dot.
     pub fn extension(self) -> &'static str {
         match self {
             Self::Svg => "svg",
@@ -147,8 +146,8 @@ impl Format {
     }
 }
 
-/// Every figure of a document with the name of its files, in reading order; a player as its picture
-/// on paper.
+/// Returns every figure of a document with the name of its files, in reading order; players as their
+/// printed picture.
 pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     let mut found = Vec::new();
     let mut names = Names::default();
@@ -170,8 +169,8 @@ pub fn figures(document: &Document) -> Vec<(String, Figure)> {
     found
 }
 
-/// Every figure of a document as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
-/// picture on paper, then every table as `table-<n>.csv`, in reading order.
+/// Returns every figure of a document as `<id>.svg` and `<id>.csv`, every player as the SVG and CSV of its
+/// printed picture, then every table as `table-<n>.csv`, in reading order.
 pub fn attachments(document: &Document) -> Vec<Attachment> {
     let mut files = Vec::new();
     for (id, figure) in figures(document) {
@@ -188,7 +187,7 @@ pub fn attachments(document: &Document) -> Vec<Attachment> {
     files
 }
 
-/// Visits blocks in reading order, those that are folded away too.
+/// Visits blocks in reading order, including folded ones.
 pub(crate) fn walk(blocks: &[Block], visit: &mut dyn FnMut(&Block)) {
     for block in blocks {
         visit(block);
@@ -204,7 +203,7 @@ impl Attachment {
     }
 }
 
-/// Gives out names that differ, the same ones for the same document in every format.
+/// Assigns unique names, the same for one document in every format.
 #[derive(Default)]
 pub(crate) struct Names {
     taken: HashSet<String>,

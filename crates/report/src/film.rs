@@ -1,4 +1,4 @@
-//! A film: a scene as numbered pictures of one size, window and scale.
+//! A film: a scene as numbered pictures of equal size, window and scale.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::{
     strip::{View, define_bodies, picture},
 };
 
-/// A scene as pictures that follow each other at even steps of time.
+/// A scene as pictures at equal time steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     scene: Arc<Scene>,
@@ -21,42 +21,41 @@ const MOST: [f64; 2] = [900.0, 560.0];
 const HEADING: f64 = 26.0;
 
 impl Film {
-    /// Pictures `1/rate` (s) apart from the first frame to the last; each shows the frame nearest
-    /// to its time. A rate above that of the frames, or one that is not above zero, shows every
-    /// frame once.
+    /// Creates a film with pictures `1/rate` (s) apart from the first frame to the last; each shows the frame
+    /// nearest to its time. A rate above that of the frames, or one that is not positive, shows every frame once.
     pub fn of_run(scene: Arc<Scene>, rate: f64) -> Self {
         let frames = sampled(&scene, rate);
         let view = View::of(&scene, &frames, MOST, true);
         Self { scene, frames, view }
     }
 
-    /// Count of pictures.
+    /// Returns the number of pictures.
     pub fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// Whether there is nothing to show.
+    /// `true` without pictures.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// Time (s) of picture `at`; `None` beyond the last.
+    /// Returns the time (s) of picture `at`; `None` beyond the last.
     pub fn time(&self, at: usize) -> Option<f64> {
         self.scene.frames.times.get(*self.frames.get(at)?).copied()
     }
 
-    /// Width and height of every picture (px).
+    /// Returns width and height of every picture (px), rounded up to even numbers.
     pub(crate) fn size(&self) -> [f64; 2] {
         [self.view.width, self.view.height + HEADING].map(|side| 2.0 * (0.5 * side).ceil())
     }
 
-    /// Picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last. At 96
-    /// dots, and multiples, sides are even counts of pixels, as encoders of video ask for.
+    /// Returns picture `at` as a PNG of `dpi` dots per inch; `None` beyond the last. At multiples of 96 dpi both
+    /// sides are even numbers of pixels, as video encoders require.
     pub fn png(&self, at: usize, dpi: f64) -> Option<Vec<u8>> {
         self.drawing(at).map(|drawing| raster::png(&drawing, dpi))
     }
 
-    /// Picture `at` as a standalone SVG document; `None` beyond the last.
+    /// Returns picture `at` as a standalone SVG document; `None` beyond the last.
     pub fn svg(&self, at: usize) -> Option<String> {
         self.drawing(at).map(|drawing| drawing.standalone())
     }
@@ -73,7 +72,7 @@ impl Film {
 }
 
 impl Scene {
-    /// The scene from one time to another (s): its frames in between, and all that happened.
+    /// Returns the scene from one time to another (s): the frames in between, and all events.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let frames = &self.frames;
@@ -92,17 +91,17 @@ impl Scene {
     }
 }
 
-/// Frames nearest to even steps of time, each once.
+/// Returns the indices of the frames nearest to equal time steps, each once.
 pub(crate) fn sampled(scene: &Scene, rate: f64) -> Vec<usize> {
     sampled_times(&scene.frames.times[..scene.frames.len()], rate)
 }
 
-/// The same of times (s).
+/// Like [`sampled`], for times (s).
 pub(crate) fn sampled_times(times: &[f64], rate: f64) -> Vec<usize> {
     let mut frames = Vec::new();
     let mut due = f64::NEG_INFINITY;
     for (frame, &time) in times.iter().enumerate() {
-        // The nearest of two frames is the later one once the middle between them is passed.
+        // The later of two frames is nearer once the midpoint between them is passed.
         let next = times.get(frame + 1).copied().unwrap_or(f64::INFINITY);
         if due == f64::NEG_INFINITY || 0.5 * (time + next) > due {
             frames.push(frame);

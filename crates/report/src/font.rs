@@ -1,7 +1,7 @@
-//! The bundled font: which glyph a character has, how wide it is, what its outline is.
+//! The bundled font: glyphs of characters, their widths and outlines.
 //!
-//! Pictures and PDF look alike on every machine because the words in them are drawn with this font
-//! and none other; SVG names the reader's own.
+//! Pictures and PDF look alike on every machine because their text is drawn with this font alone;
+//! SVG refers to the fonts of the reader's system.
 
 use std::sync::LazyLock;
 
@@ -24,13 +24,13 @@ fn font(bytes: &'static [u8], name: &'static str) -> Font {
 }
 
 impl Font {
-    /// The font for plain words, or for strong ones.
+    /// Returns the regular or the bold font.
     pub(crate) fn of(strong: bool) -> &'static Self {
         if strong { &STRONG } else { &REGULAR }
     }
 
-    /// Glyphs of a text in order, each with its character and its width over the size of the text.
-    /// Control characters have none; what the font does not know is a box.
+    /// Returns the glyphs of a text in order, each with its character and its width over the font size.
+    /// Control characters have none; a character that the font lacks is a box.
     pub(crate) fn glyphs(&self, text: &str) -> impl Iterator<Item = (u16, char, f64)> {
         text.chars().filter(|c| !is_invisible(*c)).map(|c| {
             let glyph = self.face.glyph_index(c).unwrap_or(GlyphId(0));
@@ -38,18 +38,18 @@ impl Font {
         })
     }
 
-    /// Width of a glyph over the size of the text.
+    /// Returns the width of a glyph over the font size.
     pub(crate) fn advance(&self, glyph: u16) -> f64 {
         let advance = self.face.glyph_hor_advance(GlyphId(glyph)).unwrap_or(0);
         f64::from(advance) / self.units()
     }
 
-    /// Width of a line of text at `size`, in the unit of the size.
+    /// Returns the width of a line of text at `size`, in the unit of the size.
     pub(crate) fn width(&self, text: &str, size: f64) -> f64 {
         size * self.glyphs(text).map(|(_, _, width)| width).sum::<f64>()
     }
 
-    /// Units of outlines in the size of the text.
+    /// Returns the units per em of the outlines.
     pub(crate) fn units(&self) -> f64 {
         f64::from(self.face.units_per_em())
     }
@@ -59,13 +59,13 @@ impl Font {
         self.face.outline_glyph(GlyphId(glyph), pen);
     }
 
-    /// A length in the font's units over the size of the text.
+    /// Converts a length in font units to a fraction of the font size.
     pub(crate) fn share(&self, length: i16) -> f64 {
         f64::from(length) / self.units()
     }
 }
 
-/// Characters that steer and are not seen.
+/// `true` for invisible control characters.
 fn is_invisible(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')

@@ -1,14 +1,14 @@
-//! Words that not every reader knows: marked where they first stand in a section, listed at the end.
+//! Technical terms: marked at their first occurrence in a section, listed at the end.
 
 use crate::{Word, escape};
 
 /// The heading of the list.
 pub(crate) const TITLE: &str = "Words";
 
-/// The words of a page, and which of them stand in it.
+/// The terms of a page, and which of them occur in it.
 pub(crate) struct Glossary {
     words: Vec<Word>,
-    /// Whether a word was marked since the last heading, and anywhere.
+    /// For each term: marked since the last heading, marked anywhere.
     marked: Vec<[bool; 2]>,
 }
 
@@ -17,22 +17,22 @@ impl Glossary {
         Self { words: words.to_vec(), marked: vec![[false; 2]; words.len()] }
     }
 
-    /// A new section begins, in which words are marked once more.
+    /// Begins a section, in which terms are marked again.
     pub(crate) fn again(&mut self) {
         for [here, _] in &mut self.marked {
             *here = false;
         }
     }
 
-    /// Text as markup, with the words in it marked that were not yet in this section.
+    /// Returns text as markup, marking the terms that have not occurred in this section.
     ///
-    /// A mark can be reached by pointer, finger and keyboard, and says what the word means without a script.
+    /// A mark works with pointer, touch and keyboard, and states the meaning without scripts.
     pub(crate) fn marked(&mut self, text: &str) -> String {
         let mut out = String::new();
         let mut rest = text;
         loop {
             let new = (0..self.words.len()).filter(|at| !self.marked[*at][0]);
-            // Of two that begin at one place the longer one.
+            // Of two terms that begin at the same position, prefer the longer.
             let found = new
                 .filter_map(|at| Some((find(rest, self.words[at].word)?, at)))
                 .min_by_key(|(place, at)| (*place, usize::MAX - self.words[*at].word.len()));
@@ -53,7 +53,7 @@ impl Glossary {
         out + &escape::html(rest)
     }
 
-    /// All words that were marked, with what they mean; empty where none was.
+    /// Returns the list of all marked terms with their meanings; empty if there are none.
     pub(crate) fn list(&self) -> String {
         let used = self.marked.iter().enumerate().filter(|(_, [_, anywhere])| *anywhere);
         let rows: Vec<String> = used
@@ -75,12 +75,12 @@ impl Glossary {
     }
 }
 
-/// The words that stand in a text.
+/// Returns the terms that occur in a text.
 pub(crate) fn used<'a>(words: &'a [Word], text: &str) -> Vec<&'a Word> {
     words.iter().filter(|one| find(text, one.word).is_some()).collect()
 }
 
-/// Where a word stands in a text, as a whole or with the ending of its plural.
+/// Finds the first occurrence of a word in a text, whole or in its plural.
 fn find(text: &str, word: &str) -> Option<usize> {
     let (lower, word) = (text.to_ascii_lowercase(), word.to_ascii_lowercase());
     let letter = |c: char| c.is_alphanumeric() || c == '-';

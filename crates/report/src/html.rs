@@ -16,7 +16,7 @@ use crate::{
     trial::{self, Trial},
 };
 
-/// The document as one file that asks the network for nothing.
+/// Writes the document as one HTML file that makes no network requests.
 ///
 /// Order: verdict, then the blocks; warnings and a list of sections follow the first player (or
 /// open the content when there is none); provenance closes the page. Players and interactive
@@ -25,7 +25,7 @@ pub fn html(document: &Document) -> String {
     written(document, None)
 }
 
-/// As [`html`], with a program in it that starts with what the document is about.
+/// Writes the document like [`html`], with an embedded program that starts from the page's content.
 pub fn html_with(document: &Document, trial: &Trial<'_>) -> String {
     written(document, Some(trial))
 }
@@ -51,7 +51,7 @@ fn written(document: &Document, trial: Option<&Trial<'_>>) -> String {
     assemble(&document.title, &writer.out, writer.payload, trial)
 }
 
-/// Blocks for a page that is there already: their markup, and the data of their players and plots.
+/// Blocks for an existing page: their markup, and the data of their players and plots.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fragment {
     /// The markup.
@@ -60,7 +60,7 @@ pub struct Fragment {
     pub data: String,
 }
 
-/// Blocks as a part of a page, such as one that a [`Shell`](crate::Shell) makes, which is seen with its scripts alone.
+/// Writes blocks as part of a page, such as a [`Shell`](crate::Shell), that is only shown with its scripts.
 pub fn fragment(blocks: &[Block]) -> Fragment {
     let document = Document { blocks: blocks.to_vec(), ..Document::default() };
     let mut writer = Writer { prints: false, ..Writer::of(&document) };
@@ -68,7 +68,7 @@ pub fn fragment(blocks: &[Block]) -> Fragment {
     Fragment { markup: writer.out, data: writer.payload.into_json() }
 }
 
-/// Headings of level 2 outside details, with their anchors.
+/// Returns the headings of level 2 outside details, with their anchors.
 fn sections(blocks: &[Block]) -> Vec<(String, String)> {
     let mut names = Names::default();
     let mut list = Vec::new();
@@ -84,7 +84,7 @@ fn anchor(names: &mut Names, text: &str) -> String {
     names.take(&format!("section {text}"))
 }
 
-/// Letters of a cell that are not set one word below the other where there is little room.
+/// Length (bytes) above which a cell gets a minimum width.
 const LONG: usize = 60;
 
 pub(crate) struct Writer<'a> {
@@ -97,7 +97,7 @@ pub(crate) struct Writer<'a> {
     figures: usize,
     folded: usize,
     glossary: Glossary,
-    /// Whether players have pictures for paper and for pages without scripts.
+    /// `true` if players have pictures for print and for pages without scripts.
     pub(crate) prints: bool,
 }
 
@@ -128,13 +128,13 @@ impl<'a> Writer<'a> {
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
 
-    /// As [`Writer::element`], with the words that the document explains marked.
+    /// Like [`Writer::element`], with technical terms marked.
     fn explained(&mut self, open: &str, text: &str, close: &str) {
         let text = self.glossary.marked(&number::tied(text));
         let _ = writeln!(self.out, "{open}{text}{close}");
     }
 
-    /// What the words mean that were marked.
+    /// Writes the meanings of the marked terms.
     fn words(&mut self) {
         let list = self.glossary.list();
         self.put(&list);
@@ -155,7 +155,7 @@ impl<'a> Writer<'a> {
             self.explained("<p class=\"lead\">", &verdict.sentences.join(" "), "</p>");
         }
         if !verdict.command.is_empty() {
-            // Not tied: it is to be copied.
+            // Without non-breaking spaces, since it is to be copied.
             let command = escape::html(&verdict.command);
             self.put(&format!(
                 "<p class=\"command\">To see it side by side: <code>{command}</code></p>\n"
@@ -220,7 +220,7 @@ impl<'a> Writer<'a> {
                 Block::Heading { level, text } => {
                     let level = (*level).clamp(2, 4);
                     self.glossary.again();
-                    // Headings that are folded away are not listed and need no anchor.
+                    // Folded headings are not listed and need no anchor.
                     let open = if level == 2 && self.folded == 0 {
                         format!("<h2 id=\"{}\">", anchor(&mut self.anchors, text))
                     } else {
@@ -268,7 +268,7 @@ impl<'a> Writer<'a> {
             } else {
                 format!(" <span class=\"unit\">({})</span>", escape::html(&column.unit))
             };
-            // A cell without words heads nothing.
+            // An empty heading is no heading cell.
             if column.name.is_empty() && unit.is_empty() {
                 self.put("<td></td>");
             } else {
@@ -319,7 +319,7 @@ impl<'a> Writer<'a> {
         } else {
             let drawing = figure.draw(&id).inline();
             self.put(&format!("<div class=\"drawing\">{drawing}</div>\n"));
-            // What is drawn live fits any width by itself.
+            // Live plots adapt to any width.
             if live.is_none() {
                 let drawing = figure.draw_in(&format!("{id}-phone"), Room::Phone).inline();
                 self.put(&format!("<div class=\"drawing phone\">{drawing}</div>\n"));
@@ -347,12 +347,12 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// A tone as its sign and its word, in markup.
+/// Returns the markup of a tone: its sign and its word.
 pub fn badge(tone: Tone) -> String {
     format!("<p class=\"tone\">{}<span>{}</span></p>\n", sign(tone), escape::html(tone.word()))
 }
 
-/// A shape for each tone, so that color only repeats what it says.
+/// Returns a shape for each tone, so that no meaning rests on color alone.
 pub(crate) fn sign(tone: Tone) -> &'static str {
     match tone {
         Tone::Stands => {

@@ -5,8 +5,8 @@
 //! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures
 //! beside it, [`document_pdf`] into numbered pages. Every format reads the same numbers.
 //!
-//! A [`Figure`] is drawn once, as data; SVG, pixels and PDF are three ways to write the drawing, and
-//! all obey one style sheet. A [`Film`] is many such drawings, an [`Animation`] one file of them.
+//! A [`Figure`] is drawn once, as data, which is then written as SVG, pixels or PDF with one style
+//! sheet. A [`Film`] is many such drawings, an [`Animation`] one file of them.
 //!
 //! ```
 //! use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, html};

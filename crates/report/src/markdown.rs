@@ -1,4 +1,4 @@
-//! A document as Markdown with its figures beside it.
+//! A document as Markdown with its figures in separate files.
 
 use crate::{
     Attachment, Block, Document, Event, Player, Players, Table, Word, attachments, document::FINE,
@@ -10,11 +10,11 @@ use crate::{
 pub struct MarkdownBundle {
     /// The text.
     pub text: String,
-    /// Figures as SVG and CSV and tables as CSV, to be written into the folder that the text names.
+    /// Figures as SVG and CSV and tables as CSV, for the folder that the text refers to.
     pub files: Vec<Attachment>,
 }
 
-/// The document as GitHub-flavored Markdown, one sentence per line as given.
+/// Writes the document as GitHub-flavored Markdown, one sentence per line as given.
 ///
 /// `figure_dir` is the folder of the figures relative to the text, with `/` between its parts;
 /// empty means beside the text. A player becomes a strip of frames and a table of events.
@@ -121,7 +121,7 @@ impl Writer {
         let folder = if self.folder.is_empty() {
             String::new()
         } else {
-            // Spaces and brackets end a link; percent signs keep them in it.
+            // Spaces and parentheses would end the link.
             let safe = self.folder.replace('%', "%25").replace(' ', "%20");
             format!("{}/", safe.replace('(', "%28").replace(')', "%29"))
         };
@@ -147,7 +147,7 @@ impl Writer {
         self.events(events);
     }
 
-    /// Events with the mark of their pane; an empty one where there is only one.
+    /// Writes events with the mark of their pane, which is empty where there is only one.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {

@@ -1,4 +1,4 @@
-//! Numbers packed for the page: quantized, differenced, as variable-length bytes in base64.
+//! Numbers packed for the page: quantized, differenced, written as variable-length bytes in base64.
 //!
 //! A value becomes the nearest whole multiple of a quantum, a power of two, so that the
 //! decoder's product is exact and page and program agree to the bit.
@@ -18,11 +18,11 @@ pub const POSE_QUANTUM: f64 = 1.0 / 16384.0;
 /// Quantum of times (s): 2⁻²⁰, about 1 µs.
 pub const TIME_QUANTUM: f64 = 1.0 / 1_048_576.0;
 
-/// Largest multiple of the quantum that is stored; what lies beyond counts as missing.
+/// Largest multiple of the quantum that is stored; a larger one counts as missing.
 /// Second differences of such numbers stay exact in the decoder's doubles.
 const LIMIT: f64 = (1_u64 << 48) as f64;
 
-/// Columns no longer than this are written as plain numbers, exact to the last digit.
+/// Columns up to this length are written as plain numbers, exact to the last digit.
 const PLAIN: usize = 512;
 
 fn quantize(value: f64, quantum: f64) -> Option<i64> {
@@ -56,7 +56,7 @@ fn pack_channel(values: impl Iterator<Item = Option<i64>>, order: u8, out: &mut 
     }
 }
 
-/// Packs channels one after the other; `order` is whichever of 1 and 2 gives fewer bytes.
+/// Packs channels one after the other, with the order (1 or 2) that gives fewer bytes.
 fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     let with = |order: u8| {
         let mut bytes = Vec::new();
@@ -69,7 +69,7 @@ fn pack(channels: &[Vec<Option<i64>>]) -> (u8, Vec<u8>) {
     if second.len() < first.len() { (2, second) } else { (1, first) }
 }
 
-/// The page's form of channels of equal length `count`, quantized with one quantum.
+/// Packs channels of equal length `count` with one quantum.
 pub(crate) fn channels(channels: &[Vec<f64>], count: usize, quantum: f64) -> Value {
     let whole: Vec<Vec<Option<i64>>> = channels
         .iter()
@@ -79,7 +79,7 @@ pub(crate) fn channels(channels: &[Vec<f64>], count: usize, quantum: f64) -> Val
     json!({ "q": quantum, "n": count, "c": channels.len(), "o": order, "d": BASE64.encode(&bytes) })
 }
 
-/// The page's form of one column: plain numbers when short or when `exact`, packed otherwise.
+/// Writes one column: plain numbers when short or `exact`, packed otherwise.
 ///
 /// The quantum of a packed column is at most 2⁻¹⁶ of its range, finer than any screen shows.
 pub(crate) fn column(values: &[f64], exact: bool) -> Value {
@@ -91,7 +91,7 @@ pub(crate) fn column(values: &[f64], exact: bool) -> Value {
     channels(&[values.to_vec()], values.len(), quantum_for(values))
 }
 
-/// A power of two at most 2⁻¹⁶ of the range of the finite values.
+/// Returns a power of two at most 2⁻¹⁶ of the range of the finite values.
 pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let low = finite().fold(f64::INFINITY, f64::min);
@@ -106,21 +106,21 @@ pub(crate) fn quantum_for(values: &[f64]) -> f64 {
     }
 }
 
-/// Bytes in base64, for a text that holds a file.
+/// Encodes bytes in base64, to embed a file in a text.
 pub fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
 }
 
-/// Bytes in gzip, in [`letters`].
+/// Compresses bytes with gzip and encodes them with [`letters`].
 pub(crate) fn gzip_letters(bytes: &[u8]) -> String {
     let mut packer = GzEncoder::new(Vec::new(), Compression::best());
     // Writing to memory cannot fail.
     letters(&packer.write_all(bytes).and_then(|()| packer.finish()).unwrap_or_default())
 }
 
-/// Bytes in 85 letters: their count, a space, and five letters for every four bytes, the highest first.
+/// Encodes bytes in base 85: their number, a space, and five letters for every four bytes, most significant first.
 ///
-/// That takes a sixteenth less than base64. Letters go on from `!` and leave out `<`, so that no script ends in them.
+/// A sixteenth shorter than base64. The alphabet starts at `!` and omits `<`, so that it cannot end a script element.
 pub(crate) fn letters(packed: &[u8]) -> String {
     let mut text = format!("{} ", packed.len());
     for four in packed.chunks(4) {

@@ -1,4 +1,4 @@
-//! The page around a document's blocks: style, script, and the data they read.
+//! The page around a document's blocks: style, scripts and their data.
 
 use std::{collections::HashMap, fmt::Write as _};
 
@@ -17,7 +17,7 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
-/// The player's scripts, in the order they depend on each other.
+/// The player's scripts, in order of dependency.
 const PLAYER: [&str; 12] = [
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
@@ -33,23 +33,23 @@ const PLAYER: [&str; 12] = [
     include_str!("../assets/player.js"),
 ];
 
-/// What a report has beside them.
+/// Further scripts of a report.
 const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../assets/page.js")];
 
-/// The icon is an empty data address and the policy forbids every address but this page, so a
-/// browser asks for nothing else.
+/// The icon is an empty data address and the policy forbids every other address, so a browser makes
+/// no further request.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
 
-/// What unpacks what a page holds.
+/// The script that unpacks embedded data.
 const HELD: &str = include_str!("../assets/held.js");
 
-/// The same for a page that holds a program: it may run that, also in workers.
+/// The policy of a page with an embedded program: it may run it, also in workers.
 const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                               script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
                               img-src data: blob:; base-uri 'none'; form-action 'none'";
 
-/// Data for the scripts, gathered while blocks are written.
+/// Data for the scripts, collected while blocks are written.
 #[derive(Default)]
 pub(crate) struct Payload {
     pub(crate) players: Vec<Value>,
@@ -59,7 +59,7 @@ pub(crate) struct Payload {
 }
 
 impl Payload {
-    /// Adds a live plot and gives its place.
+    /// Adds a live plot and returns its index.
     pub(crate) fn add_plot(&mut self, id: &str, plot: &Plot) -> usize {
         let series: Vec<Value> = plot
             .series
@@ -67,7 +67,7 @@ impl Payload {
             .enumerate()
             .map(|(at, s)| {
                 let count = s.x.len().min(s.y.len());
-                // A log axis shows small values as large as great ones, so they stay exact.
+                // A log axis shows small values as large as great ones, so values stay exact.
                 let exact = plot.x.scale == Scale::Log || plot.y.scale == Scale::Log;
                 let shown = |axis: &Axis, values: &[f64]| -> Vec<f64> {
                     values.iter().map(|v| if axis.shows(*v) { *v } else { f64::NAN }).collect()
@@ -105,7 +105,7 @@ impl Payload {
         self.plots.len() - 1
     }
 
-    /// The place of a column; equal columns are stored once.
+    /// Returns the index of a column; equal columns are stored once.
     fn column(&mut self, column: Value) -> usize {
         let key = column.to_string();
         if let Some(&place) = self.known.get(&key) {
@@ -116,7 +116,7 @@ impl Payload {
         self.columns.len() - 1
     }
 
-    /// What the scripts read.
+    /// Writes the data as JSON.
     pub(crate) fn into_json(self) -> String {
         json!({
             "players": self.players,
@@ -141,7 +141,7 @@ fn axis(axis: &Axis) -> Value {
     })
 }
 
-/// The whole file.
+/// Assembles the whole file.
 pub(crate) fn assemble(
     title: &str,
     body: &str,
@@ -149,7 +149,7 @@ pub(crate) fn assemble(
     trial: Option<&Trial<'_>>,
 ) -> String {
     let live = !payload.plots.is_empty();
-    // Tables and figures that stand still are scripted, too: they can be saved and copied.
+    // Static tables and figures need the scripts, too, which save and copy them.
     let scripted = live
         || trial.is_some()
         || !payload.players.is_empty()
@@ -167,7 +167,7 @@ pub(crate) fn assemble(
         );
     }
     if live {
-        // The license asks that its text goes with every copy.
+        // The license requires its text in every copy.
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
@@ -184,7 +184,7 @@ pub(crate) fn assemble(
     out
 }
 
-/// The start of a file, up to its body: with its policy, and style sheets before and after that of all pages.
+/// Writes the file up to its body, with its policy and with style sheets before and after the common one.
 fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     let title = escape::html(title);
     let palette = palette_css();
@@ -198,11 +198,11 @@ fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     )
 }
 
-/// A page that holds a program: what it shows, and what it runs, in the look and with the player of all pages.
+/// A page with an embedded program, in the style and with the player of all pages.
 ///
-/// Its policy lets it run what is in it, also in workers, and ask for nothing.
-/// What it holds for later stands at its end, behind its scripts, so that it is seen and can be used before all of it
-/// is read.
+/// Its policy lets it run the embedded program, also in workers, and forbids every request.
+/// Large data stand at the end, after the scripts, so that the page is visible and usable before the file is
+/// fully loaded.
 #[derive(Clone, Copy, Debug)]
 pub struct Shell<'a> {
     /// Title of the file.
@@ -211,18 +211,18 @@ pub struct Shell<'a> {
     pub style: &'a str,
     /// Its body, as markup.
     pub body: &'a str,
-    /// Bytes that its scripts find when they start, each under the id of an element.
+    /// Bytes available to its scripts at start, each under the id of an element.
     pub at_hand: &'a [(&'a str, &'a [u8])],
     /// The script of its workers, in the element `worker`.
     pub worker: &'a str,
-    /// Its scripts, which see those of the player.
+    /// Its scripts, which can access those of the player.
     pub scripts: &'a [&'a str],
-    /// Bytes in gzip that it holds for later, each under the id of an element.
+    /// Bytes in gzip that are loaded last, each under the id of an element.
     pub held: &'a [(&'a str, &'a [u8])],
 }
 
 impl Shell<'_> {
-    /// The whole file.
+    /// Returns the whole file.
     pub fn html(&self) -> String {
         let mut out = head(self.title, PROGRAM_POLICY, "", self.style);
         out.push_str(self.body);
@@ -232,7 +232,7 @@ impl Shell<'_> {
         hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
         let player: String = PLAYER.into_iter().chain([HELD]).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
-        // In a block of their own, so that equal names of constants are no mistake.
+        // In a block of its own, so that constants may have the names of the player's.
         out += &strict(&format!("{player}{{\n{own}}}\n"));
         for (id, packed) in self.held {
             hold(&mut out, "text/plain", id, &pack::letters(packed));
@@ -242,26 +242,26 @@ impl Shell<'_> {
     }
 }
 
-/// Scripts in an element, whose names nobody else sees.
+/// Wraps scripts in an element with a scope of their own.
 fn strict(scripts: &str) -> String {
     format!("<script>\n(() => {{\n\"use strict\";\n{scripts}}})();\n</script>\n")
 }
 
-/// Writes what scripts read into an element of its own.
+/// Writes data for scripts into an element of its own.
 fn hold(out: &mut String, kind: &str, id: &str, text: &str) {
     // Writing to a String cannot fail.
     let _ = writeln!(out, "<script type=\"{kind}\" id=\"{id}\">{text}</script>");
 }
 
-/// A script without indents and without lines that only explain: a fifth shorter. None of ours has a text that goes
-/// over several lines.
+/// Removes indents and comment lines from a script, which makes it a fifth shorter. The scripts must not contain
+/// multi-line strings.
 fn lean(script: &str) -> String {
     let lines = script.lines().map(str::trim);
     let kept = lines.filter(|line| !line.is_empty() && !line.starts_with("//"));
     kept.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// The palette as custom properties: light, dark where asked for, light again on paper.
+/// The palette as CSS custom properties: light; dark on screen if the reader prefers it.
 fn palette_css() -> String {
     let list = |pick: fn(&(&str, &str, &str)) -> String| -> String {
         PALETTE.iter().map(pick).collect::<Vec<_>>().join(";")

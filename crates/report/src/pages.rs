@@ -1,4 +1,4 @@
-//! A document on pages: text, tables and figures set one below the other, with numbered feet.
+//! A document in pages: text, tables and figures one below the other, with numbered footers.
 
 use pdf_writer::types::StructRole;
 
@@ -27,7 +27,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// Width and height (points).
+    /// Returns width and height (points).
     fn size(self) -> [f64; 2] {
         match self {
             Self::A4 => [595.28, 841.89],
@@ -36,11 +36,10 @@ impl Paper {
     }
 }
 
-/// The document as a PDF: the same words and numbers as [`html`](crate::html), figures as lines,
-/// words as words, a list of sections, the title and the number of the page at every foot, and tags by
-/// which a reader of the screen finds its way.
+/// Writes the document as a PDF: the same text and numbers as [`html`](crate::html), vector figures, selectable
+/// text, an outline of sections, the title and page number in every footer, and tags for screen readers.
 ///
-/// A player that opens the document is shown amid its falls, on the first page; what the page folds
+/// A player that opens the document is shown during its falls, on the first page; content that the page folds
 /// away is in an appendix.
 pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     let mut flow = Flow::new(document, paper);
@@ -59,7 +58,7 @@ pub fn document_pdf(document: &Document, paper: Paper) -> Vec<u8> {
     pdf(&document.title, &pages, tags, 1.0)
 }
 
-/// A figure alone on a page of its size; a px of it is three quarters of a point.
+/// Writes a figure alone on a page of its size; one px is three quarters of a point.
 pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
     let drawing = figure.draw(&escape::slug(&figure.id));
     let mut structure = Tags::new();
@@ -69,26 +68,26 @@ pub(crate) fn figure_pdf(figure: &Figure) -> Vec<u8> {
 }
 
 const POINTS_PER_PX: f64 = 0.75;
-/// Empty on either side, above, and below (points); the foot stands in the last.
+/// Margins left and right, top, and bottom (points); the bottom one contains the footer.
 const MARGIN: [f64; 3] = [54.0, 52.0, 60.0];
-/// From one baseline to the next, over the size of the letters.
+/// Distance between baselines over the font size.
 const LEADING: f64 = 1.4;
-/// Between one block and the next (points).
+/// Distance between blocks (points).
 const GAP: f64 = 8.0;
 
 struct Flow<'a> {
     document: &'a Document,
     size: [f64; 2],
     pages: Vec<Page>,
-    /// Where the next block starts on the last page, from its top.
+    /// Top of the next block on the last page, from the top of the page.
     y: f64,
     names: Names,
     tables: usize,
     figures: usize,
-    /// What the page folds away, for the appendix.
+    /// Folded content, for the appendix.
     folded: Vec<(&'a str, &'a [Block])>,
     tags: Tags,
-    /// The element that is being written.
+    /// The current element.
     current: usize,
 }
 
@@ -114,12 +113,12 @@ impl<'a> Flow<'a> {
         self.size[0] - 2.0 * MARGIN[0]
     }
 
-    /// Where the last line of a page may end.
+    /// Lowest position of a line on a page.
     fn floor(&self) -> f64 {
         self.size[1] - MARGIN[2]
     }
 
-    /// Writes an element: what is painted meanwhile, and by no element in it, is part of it.
+    /// Writes an element, to which all items belong that are drawn meanwhile outside of nested elements.
     fn tagged(&mut self, role: StructRole, words: Option<&str>, write: impl FnOnce(&mut Self)) {
         self.settle(Some(self.current));
         let before = self.current;
@@ -129,14 +128,14 @@ impl<'a> Flow<'a> {
         self.current = before;
     }
 
-    /// Says whose is what was painted since this was said last.
+    /// Tags all items drawn since the last call with `element`.
     fn settle(&mut self, element: Option<usize>) {
         if let Some(page) = self.pages.last_mut() {
             page.tags.resize(page.drawing.items.len(), element);
         }
     }
 
-    /// Starts a page.
+    /// Starts a new page.
     fn turn(&mut self) {
         self.settle(Some(self.current));
         let drawing = Drawing::new(self.size[0], self.size[1], "");
@@ -144,7 +143,7 @@ impl<'a> Flow<'a> {
         self.y = MARGIN[1];
     }
 
-    /// Starts a page unless `height` is left on this one, or on none.
+    /// Starts a new page unless `height` is left on this one, or this one is empty.
     fn need(&mut self, height: f64) {
         if self.y + height > self.floor() && self.y > MARGIN[1] {
             self.turn();
@@ -152,17 +151,17 @@ impl<'a> Flow<'a> {
     }
 
     fn page(&mut self) -> &mut Page {
-        // A flow starts with a page and never takes one away.
+        // A flow starts with a page and never removes one.
         self.pages.last_mut().expect("a page")
     }
 
-    /// A paragraph, `indent` (points) from the left margin.
+    /// Writes a paragraph, `indent` (points) from the left margin.
     fn text(&mut self, class: &'static str, indent: f64, text: &str) {
         let style = Style::of(Tag::Text, class);
         let leading = LEADING * style.font_size;
         let font = Font::of(style.strong);
         let lines = wrap(font, style.font_size, text, self.width() - indent);
-        // No page ends with the first line of a paragraph.
+        // No page ends with the first line of a longer paragraph.
         self.need(leading * if lines.len() > 1 { 2.0 } else { 1.0 });
         for line in lines {
             self.need(leading);
@@ -181,7 +180,7 @@ impl<'a> Flow<'a> {
         const INDENT: f64 = 11.0;
         self.tagged(StructRole::L, None, |flow| {
             for item in items {
-                // The dot stays with the first two lines.
+                // The bullet stays with the first two lines.
                 flow.need(LEADING * 9.5 * 2.0);
                 let dot = [MARGIN[0] + 2.0, flow.y + 9.5];
                 flow.tagged(StructRole::LI, None, |flow| {
@@ -197,7 +196,7 @@ impl<'a> Flow<'a> {
         self.y += GAP - 1.5;
     }
 
-    /// A heading, which stays with `follows` points of what comes after it.
+    /// Writes a heading, kept together with `follows` points of the content after it.
     fn heading(&mut self, class: &'static str, text: &str, follows: f64) {
         let above = if self.y > MARGIN[1] { 6.0 } else { 0.0 };
         let height = LEADING * Style::of(Tag::Text, class).font_size;
@@ -265,7 +264,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(Vec::new(), rows, vec![false; 2], self.width()));
     }
 
-    /// What was folded away, and what is folded away in it.
+    /// Writes the folded content, including what is folded in it.
     fn appendix(&mut self) {
         if self.folded.is_empty() {
             return;
@@ -305,7 +304,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// How much of what follows must stand under its heading (points).
+    /// Returns the height (points) of the following content that must be on the page of its heading.
     fn least(&self, blocks: &[Block]) -> f64 {
         let Some((first, rest)) = blocks.split_first() else { return 0.0 };
         let figure = |figure: &Figure| self.picture(figure, "measured").1 + 24.0;
@@ -316,7 +315,7 @@ impl<'a> Flow<'a> {
             Block::Table(_) => 66.0,
             Block::Heading { .. } => 24.0 + self.least(rest),
             Block::Details { .. } => 24.0,
-            // A paragraph in front of a figure leads over to it.
+            // A paragraph before a figure introduces it.
             Block::Paragraph(_) if matches!(rest.first(), Some(Block::Figure(_))) => {
                 40.0 + self.least(rest)
             }
@@ -325,8 +324,8 @@ impl<'a> Flow<'a> {
         least.min(0.8 * (self.floor() - MARGIN[1]))
     }
 
-    /// The drawing of a figure and its height on the page: as large as the page lets it be, and
-    /// never larger than it was drawn.
+    /// Returns the drawing of a figure, its height on the page and its scale: as large as the page allows,
+    /// and never enlarged.
     fn picture(&self, figure: &Figure, id: &str) -> (Drawing, f64, f64) {
         let drawing = figure.draw(id);
         let most = self.floor() - MARGIN[1] - 60.0;
@@ -354,10 +353,10 @@ impl<'a> Flow<'a> {
         self.y += GAP;
     }
 
-    /// A player as a picture: amid its falls where it opens the document and anything falls.
+    /// Returns a player as a picture: during its falls if it opens the document and anything falls.
     fn still(&self, player: &Player) -> Figure {
         let mut falls = player.scene.events.iter().filter(|event| event.kind == EventKind::Fall);
-        // At the second fall the first can be seen, too.
+        // At the second fall the first is visible, too.
         let first = falls.next();
         let Some(fall) = falls.next().or(first).filter(|_| self.figures == 0) else {
             return player.paper_figure(&self.document.blocks);
@@ -393,7 +392,7 @@ impl<'a> Flow<'a> {
         self.rows(&Sheet::new(head, rows, table.numeric(), self.width()));
     }
 
-    /// The rows of a table, its head again on every page.
+    /// Writes the rows of a table, repeating its head on every page.
     fn rows(&mut self, sheet: &Sheet) {
         self.tagged(StructRole::Table, None, |flow| flow.tagged_rows(sheet));
         self.y += GAP + 2.0;
@@ -412,7 +411,7 @@ impl<'a> Flow<'a> {
                 open = false;
             }
             if let (false, Some(head)) = (open, &head) {
-                // A head that comes again on a further page says nothing new.
+                // A repeated head is no content.
                 self.row(sheet, head, "page-small-bold", (at == 0).then_some(StructRole::TH));
                 self.rule("page-line");
             }
@@ -422,7 +421,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// A row of cells of a role; without one it only decorates.
+    /// Writes a row of cells of a role; without a role it is decoration.
     fn row(
         &mut self,
         sheet: &Sheet,
@@ -460,7 +459,7 @@ impl<'a> Flow<'a> {
         self.settle(None);
     }
 
-    /// The pages with their feet, and the structure.
+    /// Returns the pages with their footers, and the structure.
     fn finish(mut self) -> (Vec<Page>, Tags) {
         self.settle(Some(self.current));
         let (right, y) = (MARGIN[0] + self.width(), self.size[1] - 34.0);

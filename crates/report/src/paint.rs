@@ -1,4 +1,4 @@
-//! From a drawing to strokes, fills and words at their places, for formats that know no styles.
+//! Converts a drawing to strokes, fills and text in absolute positions, for formats without style sheets.
 
 use std::collections::HashMap;
 
@@ -8,46 +8,46 @@ use crate::{
     style::{Ink, Style, Tag, dashes},
 };
 
-/// What paints: pixels, or the content of a page. Lengths in px from the upper left corner, y down.
+/// A drawing target: pixels, or the content of a page. Lengths in px from the upper left corner, y down.
 pub(crate) trait Painter {
-    /// Lines through points; the style's lengths are already to scale.
+    /// Draws polylines; the lengths of the style are already scaled.
     fn lines(&mut self, runs: &[Vec<[f64; 2]>], closed: bool, style: &Style);
-    /// A circle.
+    /// Draws a circle.
     fn circle(&mut self, center: [f64; 2], radius: f64, style: &Style);
-    /// A word whose baseline starts at a point.
+    /// Draws a text whose baseline starts at a point.
     fn word(&mut self, word: &Word<'_>);
-    /// From here on only what lies in this rectangle, and in those before it, is seen.
+    /// Clips further items to this rectangle, in addition to those in force.
     fn clip(&mut self, lower: [f64; 2], size: [f64; 2]);
-    /// Forgets the last rectangle.
+    /// Removes the last clip rectangle.
     fn unclip(&mut self);
 }
 
-/// A line of text at its place.
+/// A line of text in its position.
 pub(crate) struct Word<'a> {
     pub(crate) text: &'a str,
-    /// Where its baseline starts.
+    /// Start of its baseline.
     pub(crate) at: [f64; 2],
-    /// Turned clockwise about `at`.
+    /// Clockwise rotation about `at`.
     pub(crate) degrees: f64,
     pub(crate) size: f64,
     pub(crate) strong: bool,
     pub(crate) ink: Ink,
 }
 
-/// Paints what a drawing holds, `scale` times as large, its upper left corner at the origin.
+/// Paints the items of a drawing, scaled by `scale`, with its upper left corner at the origin.
 pub(crate) fn paint(items: &[Item], scale: f64, painter: &mut dyn Painter) {
     let mut walk = Walk { painter, bodies: HashMap::new(), styles: HashMap::new() };
     walk.items(items, &Place { origin: [0.0; 2], scale, turn: [1.0, 0.0], up: false });
 }
 
-/// From the coordinates of an item to those of the picture.
+/// Transform from the coordinates of an item to those of the picture.
 #[derive(Clone, Copy)]
 struct Place {
     origin: [f64; 2],
     scale: f64,
-    /// Cosine and sine of a turn, clockwise as seen.
+    /// Cosine and sine of the rotation, clockwise on the page.
     turn: [f64; 2],
-    /// Whether the item's second coordinate points up.
+    /// `true` if the item's second coordinate points up.
     up: bool,
 }
 
@@ -153,7 +153,7 @@ impl<'d> Walk<'d, '_> {
         let [x, z, angle] = placed.pose;
         let (sin, cos) = angle.sin_cos();
         let origin = Place { up: true, ..*world }.at([x, z]);
-        // Counterclockwise in a world with z up is clockwise with a minus.
+        // A counterclockwise rotation with z up is a negative clockwise one.
         self.items(&body.items, &Place { origin, turn: [cos, -sin], up: true, ..*world });
     }
 

@@ -5,24 +5,24 @@ use crate::{
     drawing::{Anchor, Drawing, Room, broken, text_width},
 };
 
-/// Height (px) of the title above everything, and of that above a row.
+/// Height (px) of the title.
 const TITLE: f64 = 26.0;
-/// Gap (px) between plots beside each other.
+/// Gap (px) between plots.
 const GAP: f64 = 10.0;
 
-/// Plots in rows under a title; all plots of a row stand at the same height.
+/// Plots in rows under a title; the axes of a row are aligned at the bottom.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Panels {
-    /// What is shown, above all.
+    /// Title.
     pub title: String,
-    /// Further words below the title, one line each.
+    /// Further lines of text below the title.
     pub lines: Vec<String>,
     /// The rows from top to bottom.
     pub rows: Vec<Vec<Plot>>,
 }
 
 impl Panels {
-    /// The plots in their rows; on a phone all below each other.
+    /// Draws the plots in their rows; on a phone all one below the other.
     pub(crate) fn draw(&self, id: &str, caption: &str, room: Room) -> Drawing {
         let drawn: Vec<Vec<Drawing>> = self
             .rows
@@ -64,7 +64,7 @@ impl Panels {
             let height = tall(&row);
             let mut left = 0.0;
             for plot in row {
-                // What is higher for its labels stands with its axis where the others have theirs.
+                // Aligned at the bottom, so that higher plots keep their axes level with the others.
                 let at = [left, top + height - plot.height];
                 left += plot.width + GAP;
                 drawing.nest(at, plot);

@@ -1,4 +1,4 @@
-//! Drawings as pages of a PDF: lines as lines, words as words in the bundled font.
+//! Writes drawings as pages of a PDF: vector lines, and text in the bundled font.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::Write as _;
@@ -18,16 +18,16 @@ use crate::{
     tags::Tags,
 };
 
-/// A page: a drawing, and the headings that a reader's list of sections leads to.
+/// A page: a drawing, and the headings for the outline of the document.
 pub(crate) struct Page {
     pub(crate) drawing: Drawing,
-    /// Words and height (in the drawing, from its top) of each.
+    /// Text and position (in the drawing, from its top) of each.
     pub(crate) sections: Vec<(String, f64)>,
-    /// The element that each item of the drawing belongs to; none for what only decorates.
+    /// The structure element of each item of the drawing; `None` for decoration.
     pub(crate) tags: Vec<Option<usize>>,
 }
 
-/// Pages as a PDF with a title, whose structure is `tags`; `scale` is the count of points for a unit of
+/// Writes pages as a PDF with a title and the structure `tags`; `scale` is the number of points per unit of
 /// the drawings.
 pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Vec<u8> {
     let mut file = File { pdf: Pdf::new(), last: 0, ink: Used::default() };
@@ -60,7 +60,7 @@ pub(crate) fn pdf(title: &str, pages: &[Page], mut tags: Tags, scale: f64) -> Ve
     file.pdf.finish()
 }
 
-/// A PDF as it grows.
+/// A PDF under construction.
 struct File {
     pdf: Pdf,
     last: i32,
@@ -70,13 +70,13 @@ struct File {
 /// Fonts and opacities that pages use.
 #[derive(Default)]
 struct Used {
-    /// By whether they are strong.
+    /// By weight: `true` for bold.
     fonts: BTreeMap<bool, Glyphs>,
     /// In percent.
     opacities: BTreeSet<u8>,
 }
 
-/// Glyphs of a font by their number in the file, with the character that each stands for.
+/// Glyphs of a font by their number in the file, with their characters.
 #[derive(Default)]
 struct Glyphs {
     numbers: GlyphRemapper,
@@ -89,7 +89,7 @@ impl File {
         Ref::new(self.last)
     }
 
-    /// Writes a page, and gives the elements that are painted on it by their numbers.
+    /// Writes a page and returns the elements painted on it, by their numbers.
     fn page(
         &mut self,
         (at, page, id): (usize, &Page, Ref),
@@ -134,7 +134,7 @@ impl File {
         painted
     }
 
-    /// What all pages share.
+    /// Writes the resources that all pages share.
     fn resources(&mut self, id: Ref) {
         let used = std::mem::take(&mut self.ink);
         let fonts: Vec<(String, Ref)> = used
@@ -158,11 +158,11 @@ impl File {
         }
     }
 
-    /// A font of which only the glyphs in use are in the file.
+    /// Embeds a font, reduced to the glyphs in use.
     fn font(&mut self, strong: bool, glyphs: &Glyphs) -> Ref {
         let font = Font::of(strong);
         let [id, descendant, descriptor, program, unicode] = std::array::from_fn(|_| self.next());
-        // Should the font ever refuse to be cut, all of it serves as well.
+        // If the font cannot be reduced, embed all of it.
         let bytes = subsetter::subset(font.bytes, 0, &glyphs.numbers)
             .unwrap_or_else(|_| font.bytes.to_vec());
         let name = format!("BRLSTK+{}", font.name);
@@ -186,7 +186,7 @@ impl File {
         let bounds = font.face.global_bounding_box();
         let [left, foot, right, top] =
             [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(thousandths);
-        // A font that does not tell it has capitals of seven tenths, as most.
+        // Without a stated height, assume capitals of seven tenths, as in most fonts.
         let cap_height = font.face.capital_height().map_or(700.0, thousandths);
         self.pdf
             .font_descriptor(descriptor)
@@ -218,7 +218,7 @@ impl File {
         id
     }
 
-    /// The list of sections; None when there are none.
+    /// Writes the outline of sections; `None` without sections.
     fn sections(&mut self, pages: &[Page], ids: &[Ref], scale: f64) -> Option<Ref> {
         let found: Vec<(&str, Ref, f64)> = pages
             .iter()
@@ -264,7 +264,7 @@ fn deflated(bytes: &[u8]) -> Vec<u8> {
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory")
 }
 
-/// A hundredth of a point is enough anywhere, and fewer digits make a smaller file.
+/// Rounds to hundredths of a point: enough everywhere, and fewer digits make a smaller file.
 #[expect(clippy::cast_possible_truncation, reason = "a page is some thousand points high")]
 fn short(value: f64) -> f32 {
     ((100.0 * value).round() / 100.0) as f32
@@ -273,7 +273,7 @@ fn short(value: f64) -> f32 {
 /// Writes the content of one page.
 struct Writer<'a> {
     content: Content,
-    /// Of the page (points): there y starts at the foot.
+    /// Height of the page (points): in PDF, y starts at the bottom.
     height: f64,
     used: &'a mut Used,
 }
@@ -290,7 +290,7 @@ impl Writer<'_> {
         self.content.set_parameters(Name(opacity_name(percent).as_bytes()));
     }
 
-    /// Fills and strokes what `trace` draws, each with its own opacity.
+    /// Fills and strokes the path drawn by `trace`, each with its own opacity.
     fn draw(&mut self, style: &Style, trace: &dyn Fn(&mut Self)) {
         if let Some(ink) = style.fill {
             self.opacity(ink.opacity);
@@ -333,7 +333,7 @@ impl Painter for Writer<'_> {
                     if at == 0 {
                         writer.content.move_to(x, y);
                     }
-                    // A lone point is a step of no length, which round caps turn into a dot.
+                    // A single point is a segment of zero length, which round caps turn into a dot.
                     if at > 0 || run.len() == 1 {
                         writer.content.line_to(x, y);
                     }
@@ -346,7 +346,7 @@ impl Painter for Writer<'_> {
     }
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &Style) {
-        /// Where the handles of a cubic that follows a quarter of a circle lie, over the radius.
+        /// Distance of the control points of a cubic that approximates a quarter circle, over the radius.
         const HANDLE: f64 = 0.552_284_75;
         self.draw(style, &|writer| {
             let spot = |u: f64, v: f64| writer.at([x + radius * u, y + radius * v]);
@@ -377,7 +377,7 @@ impl Painter for Writer<'_> {
         let [red, green, blue] = color(word.ink);
         let [x, y] = self.at(word.at);
         let (sin, cos) = word.degrees.to_radians().sin_cos();
-        // The matrix needs more digits than places do: it turns and never moves.
+        // The matrix needs more digits than positions do.
         #[expect(clippy::cast_possible_truncation, reason = "between −1 and 1")]
         let [sin, cos] = [sin as f32, cos as f32];
         self.content.set_fill_rgb(red, green, blue).begin_text();

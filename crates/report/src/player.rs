@@ -1,4 +1,4 @@
-//! Players: scenes in motion with controls, alone or several on one clock.
+//! Players: animated scenes with controls, alone or several in step.
 
 use std::sync::Arc;
 
@@ -9,17 +9,17 @@ use crate::{Block, Figure, FigureKind, History, Panel, Scene, Strip, Tone, Trace
 pub struct Player {
     /// Short name, made safe for anchors and file names.
     pub id: String,
-    /// What is shown and how to read it.
+    /// Caption: content of the scene and how to read it.
     pub caption: String,
-    /// What moves.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// Points whose paths are drawn.
     pub traces: Vec<Trace>,
 }
 
 impl Player {
-    /// The player where nothing can play, in a document of these blocks: a strip of six frames,
-    /// or the first frame with names when the document shows a strip of this scene anyway.
+    /// Returns the static picture of the player in a document of these blocks: a strip of six frames,
+    /// or the first frame with names if the document contains a strip of this scene anyway.
     pub fn paper_figure(&self, blocks: &[Block]) -> Figure {
         let scene = Arc::clone(&self.scene);
         let strip =
@@ -28,25 +28,25 @@ impl Player {
     }
 }
 
-/// Several scenes side by side on one clock, drawn to one scale.
+/// Several scenes side by side, in step and at one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Players {
     /// Short name, made safe for anchors and file names.
     pub id: String,
-    /// What is shown and how to read it.
+    /// Caption: content of the scenes and how to read them.
     pub caption: String,
     /// The scenes, in reading order.
     pub panes: Vec<Pane>,
     /// Histories shown in the strip under the stages, in place of those of the scenes.
     pub ground: Vec<History>,
-    /// What a switch is called that draws the bodies of the first scene over all others; none without it.
+    /// Label of a switch that draws the bodies of the first scene over all others; `None` without it.
     pub overlay: Option<String>,
 }
 
-/// One scene among others.
+/// One of several scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pane {
-    /// A letter or so, which stands for it in lists.
+    /// A short mark, such as a letter, by which lists refer to it.
     pub mark: String,
     /// Its name, short enough for a heading above a third of the page.
     pub name: String,
@@ -54,17 +54,17 @@ pub struct Pane {
     pub verdict: String,
     /// The kind of its verdict.
     pub tone: Tone,
-    /// What moves.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// Points whose paths are drawn.
     pub traces: Vec<Trace>,
 }
 
-/// Pictures of each scene on paper.
+/// Pictures of each scene in print.
 const ON_PAPER: usize = 4;
 
 impl Players {
-    /// The scenes where nothing can play: a strip for each, all at the same times.
+    /// Returns the static pictures of the scenes: a strip for each, all at the same times.
     pub fn paper_figures(&self) -> Vec<Figure> {
         let times = self.paper_times();
         self.panes
@@ -79,7 +79,7 @@ impl Players {
             .collect()
     }
 
-    /// The instants that tell most about the scene in which most happens.
+    /// Returns the most informative instants of the scene with the most events.
     fn paper_times(&self) -> Vec<f64> {
         let richest = self.panes.iter().rev().max_by_key(|pane| pane.scene.events.len());
         let strip = richest.map(|pane| Strip::of_run(Arc::clone(&pane.scene), ON_PAPER));

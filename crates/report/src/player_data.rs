@@ -1,4 +1,4 @@
-//! The page's form of a player: panes with bodies, packed frames and events, and what they share.
+//! Data of a player for the page: panes with bodies, packed frames and events, and what the panes share.
 
 use std::cmp::Ordering;
 
@@ -12,7 +12,7 @@ use crate::{
     simplify::simplify,
 };
 
-/// A single player.
+/// Returns the data of a single player.
 ///
 /// Poses are multiples of 2⁻¹⁴ (m and rad), times of 2⁻²⁰ s, places of forces of 2⁻¹⁰ m and
 /// forces of a power of two at most 2⁻¹² of the largest component.
@@ -22,7 +22,7 @@ pub(crate) fn of_player(player: &Player, id: &str) -> Value {
     together(id, &[alone], &scene.ground, [&**scene])
 }
 
-/// What panes share.
+/// Returns the data that panes share.
 fn together<'a>(
     id: &str,
     panes: &[Value],
@@ -38,7 +38,7 @@ fn together<'a>(
     })
 }
 
-/// Which pane a player opens on: the first to fall, or else the first that has a moment.
+/// Index of the pane on which a player opens: the first to fall, or else the first that has a moment.
 fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
     let moments = scenes.into_iter().map(|scene| scene.moment.as_ref()).enumerate();
     let known = moments
@@ -50,13 +50,13 @@ fn opens<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<usize> {
         .map(|(at, _)| at)
 }
 
-/// Time (s) before the ground moves strongly at which the player starts.
+/// Time (s) before strong ground motion at which the player starts.
 const LEAD_IN: f64 = 1.0;
 
-/// Share of the peak of a history at which the ground moves strongly.
+/// Fraction of the peak of a history from which ground motion counts as strong.
 const STRONG: f64 = 0.1;
 
-/// Where a player starts (s): shortly before the first of the histories of the ground is strong.
+/// Returns the time (s) at which a player starts: shortly before the earliest strong ground motion.
 fn begins(ground: &[History]) -> Option<f64> {
     let strong = ground.iter().filter_map(|history| {
         let peak = history.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -66,7 +66,7 @@ fn begins(ground: &[History]) -> Option<f64> {
     strong.reduce(f64::min).map(|time| time - LEAD_IN)
 }
 
-/// Several panes, all to one scale: every window is as large as the largest, their feet level.
+/// Returns the data of several panes at one scale: all windows have the largest size, their bottoms aligned.
 pub(crate) fn of_players(players: &Players, id: &str) -> Value {
     let windows: Vec<Extent> = players.panes.iter().map(|p| whole_window(&p.scene)).collect();
     let most = |size: fn(&Extent) -> f64| windows.iter().map(size).fold(0.0, f64::max);
@@ -165,7 +165,7 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
 }
 
 fn polyline(line: &Polyline) -> Value {
-    // A tenth of a millimeter, like the poses; it keeps the numbers short.
+    // A tenth of a millimeter, finer than the poses need; it keeps the numbers short.
     let short = |v: f64| (v * 1e4).round() / 1e4;
     let finite = line.points.iter().filter(|p| p.iter().all(|v| v.is_finite()));
     let points: Vec<f64> = finite.flatten().map(|v| short(*v)).collect();
@@ -182,17 +182,17 @@ fn history(history: &History) -> Value {
     })
 }
 
-/// Quantum of ghosts (m, rad): four millimeters, which no line of theirs shows.
+/// Quantum of ghosts (m, rad): four millimeters, too little to be visible.
 const GHOST_QUANTUM: f64 = 1.0 / 256.0;
 
-/// How far (m) the line of a ghost may be from its way.
+/// Largest distance (m) of a drawn line of a ghost from its path.
 const GHOST_TOLERANCE: f64 = 0.01;
 
-/// Ways as two channels with gaps between them; ends as three channels and a list of bodies.
+/// Packs paths as two channels separated by gaps; final poses as three channels and a list of bodies.
 fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     let mut line: Vec<Point> = Vec::new();
     for way in &ghosts.ways {
-        // The rule counts in steps that no line need show: here tolerances, on a screen pixels.
+        // `simplify` works on a grid of pixels: here one tolerance stands for one pixel.
         let steps: Vec<Point> = way.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
         line.extend(simplify(&steps, 1.0).into_iter().map(|p| p.map(|v| v * GHOST_TOLERANCE)));
         line.push([f64::NAN; 2]);
@@ -210,10 +210,10 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     })
 }
 
-/// Share of all values above zero at which the scale of a tint ends: impacts go far beyond what else happens.
+/// Quantile of the positive values at which the scale of a tint ends: impacts far exceed everything else.
 const TINT_ENDS: f64 = 0.99;
 
-/// A tint, cut at the end of its scale, in steps of a 64th of that, or finer.
+/// Packs a tint, capped at the end of its scale, in steps of a 64th of that, or finer.
 fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     let value = |frame: usize, body: usize| {
         tint.values.get(frame).and_then(|list| list.get(body)).map_or(f64::NAN, |v| v.max(0.0))
@@ -236,7 +236,7 @@ fn tint(tint: &Tint, bodies: usize, count: usize) -> Value {
     json!({ "label": tint.label, "unit": tint.unit, "v": pack::channels(&channels, count, quantum) })
 }
 
-/// Forces as four channels with a slot for each place in the longest list; absent ones are gaps.
+/// Packs forces as four channels with a slot for each position in the longest list; absent forces are gaps.
 fn forces(frames: &[Vec<ContactForce>], count: usize) -> Value {
     let frames = &frames[..frames.len().min(count)];
     let slots = frames.iter().map(Vec::len).max().unwrap_or(0);

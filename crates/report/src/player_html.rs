@@ -1,4 +1,4 @@
-//! Players as markup: stages, controls, the pictures on paper, and the list of events.
+//! Players as markup: stages, controls, printed pictures and the list of events.
 
 use crate::{
     Event, FigureKind, Pane, Player, Players, escape,
@@ -6,13 +6,13 @@ use crate::{
     number, player_data,
 };
 
-/// Events shown without unfolding.
+/// Number of events shown without unfolding.
 const OPEN_EVENTS: usize = 4;
 
-/// Controls, with a place for the stages.
+/// Controls, with a placeholder for the stages.
 const CONTROLS: &str = include_str!("../assets/player.html");
 
-/// Where the drawing of one scene comes.
+/// Container for the drawing of one scene.
 const STAGE: &str = include_str!("../assets/stage.html");
 
 impl Writer<'_> {
@@ -71,13 +71,13 @@ impl Writer<'_> {
         self.put("</figure>\n");
     }
 
-    /// Events with the mark of their pane; an empty one where there is only one.
+    /// Writes events with the mark of their pane, which is empty where there is only one.
     fn events(&mut self, mut events: Vec<(&str, &Event)>) {
         events.retain(|(_, event)| event.time.is_finite());
         if events.is_empty() {
             return;
         }
-        // A fold that hides a single line would cost that line.
+        // Folding a single line would save nothing.
         let open = if events.len() > OPEN_EVENTS + 1 { OPEN_EVENTS } else { events.len() };
         let (first, rest) = events.split_at(open);
         self.event_list(first);
@@ -111,7 +111,7 @@ impl Writer<'_> {
     }
 }
 
-/// The name and the verdict above a pane.
+/// Returns the name and the verdict above a pane.
 fn pane_head(pane: &Pane) -> String {
     format!(
         "<div class=\"pane-head {}\">{}<p><b><span class=\"mark\">{}</span> {}</b> <span>{}</span></p></div>\n",

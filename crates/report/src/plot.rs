@@ -13,14 +13,14 @@ pub struct Plot {
     pub y: Axis,
     /// The lines.
     pub series: Vec<Series>,
-    /// Upright lines at chosen x.
+    /// Vertical lines at given x.
     pub marks: Vec<Mark>,
-    /// Level lines at chosen y.
+    /// Horizontal lines at given y.
     pub levels: Vec<Mark>,
-    /// Shaded stretches of x.
+    /// Shaded intervals of x.
     pub bands: Vec<Band>,
-    /// Drawn live in the page, with readout and zoom. Needs x that never decreases in every
-    /// series; a plot that breaks this (a hysteresis loop) is drawn as SVG everywhere.
+    /// Drawn live in the page, with readout and zoom. Requires x that never decreases in every
+    /// series; otherwise (a hysteresis loop) the plot is drawn as SVG.
     pub interactive: bool,
     /// x is the time of the run (s): cursor and zoom are shared with the player and with every
     /// other such plot. Only for interactive plots.
@@ -34,40 +34,40 @@ pub struct Axis {
     pub label: String,
     /// Unit, shown in parentheses; empty for a pure number.
     pub unit: String,
-    /// How values map to lengths.
+    /// Scale of the axis.
     pub scale: Scale,
     /// Shown range; from the data when `None`, or when it is empty, reversed or not finite.
     pub range: Option<[f64; 2]>,
-    /// Names of an upright axis that stand for numbers: the first is 1, on top, the next below it is
-    /// 2. They take the place of ticks, and nothing else is shown of the axis.
+    /// Category names of a vertical axis, from top to bottom: the first stands for 1, the next for 2.
+    /// They replace the ticks.
     pub names: Vec<String>,
 }
 
 impl Axis {
-    /// A linear axis ranged by its data.
+    /// Creates a linear axis with the range of its data.
     pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), ..Self::default() }
     }
 
-    /// The same axis with a logarithmic scale; values at or below zero become gaps.
+    /// Returns the axis with a logarithmic scale; values at or below zero become gaps.
     #[must_use]
     pub fn log(mut self) -> Self {
         self.scale = Scale::Log;
         self
     }
 
-    /// An axis of names from top to bottom; what belongs to the name at `place` (from 0) is drawn at
+    /// Creates an axis of category names from top to bottom; data of the name at `place` (from 0) have the ordinate
     /// [`Axis::row`].
     pub fn named(names: Vec<String>) -> Self {
         Self { range: Some([-(names.len() as f64) - 0.5, -0.5]), names, ..Self::default() }
     }
 
-    /// The ordinate of the name at a place (from 0).
+    /// Returns the ordinate of the name at an index (from 0).
     pub fn row(place: usize) -> f64 {
         -(place as f64) - 1.0
     }
 
-    /// What an ordinate is told as: the nearest name, where there are names.
+    /// Formats an ordinate for CSV: the nearest name, on an axis with names.
     fn told(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
         match rows.map(|place| escape::csv(&self.names[place])).next() {
@@ -76,7 +76,7 @@ impl Axis {
         }
     }
 
-    /// Name and unit as printed.
+    /// Returns name and unit as printed.
     pub(crate) fn title(&self) -> String {
         if self.label.is_empty() {
             return self.unit.clone();
@@ -84,13 +84,13 @@ impl Axis {
         escape::with_unit(&self.label, &self.unit)
     }
 
-    /// Whether the axis can show `value`.
+    /// `true` if the axis can show `value`.
     pub(crate) fn shows(&self, value: f64) -> bool {
         value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
     }
 }
 
-/// How values map to lengths.
+/// Mapping of values to lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Scale {
     /// Equal differences, equal lengths.
@@ -109,15 +109,15 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates; a value that is not finite makes a gap.
     pub y: Vec<f64>,
-    /// How far each ordinate may be off, from and to: a filled band about a line, a bar through each
-    /// of [`SeriesStyle::points`]. Empty where nothing is known.
+    /// Lower and upper bound of each ordinate: a filled band about a line, a bar through each
+    /// of [`SeriesStyle::points`]. Empty if not known.
     pub range: Vec<[f64; 2]>,
-    /// How it is drawn.
+    /// Drawing style.
     pub style: SeriesStyle,
 }
 
 impl Series {
-    /// A plain line.
+    /// Creates a plain line.
     pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
         Self { label: label.into(), x, y, ..Self::default() }
     }
@@ -127,53 +127,53 @@ impl Series {
     }
 }
 
-/// How a series is drawn.
+/// Drawing style of a series.
 #[expect(clippy::struct_excessive_bools, reason = "each is a trait that goes with most others")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SeriesStyle {
-    /// Which color and dash pattern, from 0; the place in the plot when `None`. Colors repeat after
+    /// Index of color and dash pattern, from 0; the position in the plot when `None`. Colors repeat after
     /// six, each time with other dashes.
     pub index: Option<usize>,
-    /// Shade between the line and zero (or the foot of the plot).
+    /// Shade between the line and zero (or the bottom of the plot).
     pub area: bool,
     /// Draw a dot at every point, for measured or sparse data.
     pub dots: bool,
-    /// Dots alone, which no line joins: single measurements, raw fractions.
+    /// Dots without a line: single measurements, raw fractions.
     pub points: bool,
-    /// A line as thick as a bar, for stretches of an axis with names.
+    /// A line as thick as a bar, for intervals on an axis with names.
     pub bar: bool,
     /// Thin and gray: context, such as single motions behind their mean.
     pub muted: bool,
 }
 
-/// A place on an axis worth a line and a word.
+/// A labeled position on an axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// Where, in the axis's unit.
+    /// Position, in the axis's unit.
     pub at: f64,
-    /// The word.
+    /// Label.
     pub label: String,
 }
 
-/// A shaded stretch of the horizontal axis.
+/// A shaded interval of the horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Band {
     /// Start, in the axis's unit.
     pub from: f64,
     /// End.
     pub to: f64,
-    /// The word.
+    /// Label.
     pub label: String,
 }
 
 impl Plot {
-    /// Lines over time (s), with chosen times, which the page draws live.
+    /// Creates a plot of lines over time (s) with marks, drawn live in the page.
     pub fn over_time(y: Axis, series: Vec<Series>, marks: Vec<Mark>) -> Self {
         let x = Axis::new("time", "s");
         Self { x, y, series, marks, interactive: true, ..Self::default() }
     }
 
-    /// Whether the page may draw it live: asked for, x never decreases, and no names or ranges.
+    /// `true` if the page can draw it live: requested, x never decreases, and no names or ranges.
     pub(crate) fn is_live(&self) -> bool {
         self.interactive
             && self.y.names.is_empty()
@@ -189,12 +189,12 @@ impl Plot {
         self.series[at].style.index.unwrap_or(at)
     }
 
-    /// Which of the six colors a series has.
+    /// Returns the index of a series' color, from 0 to 5.
     pub(crate) fn look(&self, at: usize) -> usize {
         self.index(at) % 6
     }
 
-    /// The dash pattern of a series, which differs where a color comes again.
+    /// Returns the dash pattern of a series, which differs where a color repeats.
     pub(crate) fn dash(&self, at: usize) -> &'static str {
         let round = self.index(at) / 6;
         let style = &self.series[at].style;

@@ -10,17 +10,17 @@ use crate::{
 /// Width (px) on a page and on a phone.
 const WIDTH: [f64; 2] = [680.0, 358.0];
 const PLOT_HEIGHT: f64 = 230.0;
-/// Height (px) of a row of an axis with names, and most of the width that they take.
+/// Height (px) of a row of an axis with names, and the largest share of the width that the names take.
 const ROW: f64 = 36.0;
 const NAMES: f64 = 0.4;
-/// Height (px) of a line of words.
+/// Height (px) of a line of text.
 const LINE: f64 = 15.0;
 const FONT: f64 = 12.0;
 /// Height of a row of notes above the plot: marks lowest, bands above them.
 const NOTE: f64 = 16.0;
-/// Width of the sample of a series before its name.
+/// Width of the sample of a series beside its name.
 const SAMPLE: f64 = 26.0;
-/// Most rows of labels of marks; what finds no room in them is left to the caption.
+/// Largest number of rows of mark labels; labels that do not fit are omitted.
 const MARK_ROWS: usize = 3;
 
 /// A range of data and the pixels it maps to.
@@ -46,16 +46,16 @@ impl Map {
     }
 }
 
-/// A mark with the place (px) of its line and of its label.
+/// A mark with the positions (px) of its line and of its label.
 struct PlacedMark<'a> {
     at: f64,
     label: &'a str,
     center: f64,
-    /// Counted from the plot upward; None where no row has room.
+    /// Counted from the plot upward; `None` if no row has room.
     row: Option<usize>,
 }
 
-/// A series in the legend: where its words begin, and its lines of words.
+/// A series in the legend: the position of its text, and the lines of the text.
 struct Entry {
     series: usize,
     corner: [f64; 2],
@@ -66,7 +66,7 @@ impl Plot {
     pub(crate) fn draw(&self, id: &str, title: &str, room: Room) -> Drawing {
         let width = room.of(WIDTH[0], WIDTH[1]);
         let x_range = self.x.data_range(self.series.iter().map(|s| &s.x[..s.len()]), false);
-        // A dot on the frame would be cut in two.
+        // A dot on the frame would be clipped.
         let spare = self.series.iter().any(|s| s.style.points || s.style.bar);
         let x_range = if spare { self.x.with_air(x_range) } else { x_range };
         let areas = self.series.iter().any(|s| s.style.area);
@@ -105,7 +105,7 @@ impl Plot {
         self.draw_axes(&mut drawing, &x, &y, &y_ticks);
         draw_names(&mut drawing, &names, &x, &y);
         for (line, text) in x_title.iter().enumerate() {
-            // Under the plot's middle, as far as the words stay in the picture.
+            // Centered below the plot, as far as the text stays in the picture.
             let half = 0.5 * text_width(text, FONT);
             let middle = (0.5 * (left + right)).min(width - half).max(half);
             let at = [middle, bottom + 37.0 + LINE * line as f64];
@@ -128,7 +128,7 @@ impl Plot {
         drawing
     }
 
-    /// What a series looks like, for its name: its left end is `from`.
+    /// Draws the sample of a series for the legend, with its left end at the given position.
     fn draw_sample(&self, drawing: &mut Drawing, at: usize, [x, y]: [f64; 2]) {
         let series = &self.series[at];
         let (style, look) = (series.style, self.look(at));
@@ -164,8 +164,8 @@ impl Plot {
         Item::Circle { class: format!("dot s{}", self.look(at)), center, radius }
     }
 
-    /// Where each legend entry goes, its words in lines, and the height they take together; entries
-    /// that would not fit beside the axis start at `edge`.
+    /// Lays out the legend: position and lines of each entry, and the total height; if an entry does not fit
+    /// beside the axis, all start at `edge`.
     fn legend_layout(&self, edge: f64, left: f64, right: f64) -> (Vec<Entry>, f64) {
         let named = || self.series.iter().filter(|series| !series.label.is_empty());
         let wide = |label: &str| SAMPLE + 6.0 + text_width(label, FONT);
@@ -199,7 +199,7 @@ impl Plot {
             drawing.line("grid", [left, at], [right, at]);
             drawing.text("tick", [left - 7.0, at + 4.0], Anchor::End, label);
         }
-        // A label and the gap to the next take some fifty pixels.
+        // A label with its gap takes some fifty pixels.
         let most = if right - left < 400.0 { 5 } else { 8 };
         let x_ticks = self.x.ticks(x.range, most);
         for (value, label) in x_ticks.values.iter().zip(&x_ticks.labels) {
@@ -216,7 +216,7 @@ impl Plot {
         drawing.turned_text("label", [13.0, middle], Anchor::Middle, -90.0, &self.y.title());
     }
 
-    /// Bands from top to bottom, their labels at a height of their own.
+    /// Draws bands from top to bottom, with their labels in the row at `row`.
     fn draw_bands(&self, drawing: &mut Drawing, x: &Map, [top, bottom]: [f64; 2], row: f64) {
         for band in &self.bands {
             if !(self.x.shows(band.from) && self.x.shows(band.to)) {
@@ -233,7 +233,7 @@ impl Plot {
 
     fn draw_series(&self, x: &Map, y: &Map) -> Vec<Item> {
         let mut items = Vec::new();
-        // Context first, so that it lies under what it is the context of.
+        // Muted series first, so that they lie below the others.
         let mut order: Vec<usize> = (0..self.series.len()).collect();
         order.sort_by_key(|&at| !self.series[at].style.muted);
         for at in order {
@@ -272,7 +272,7 @@ impl Plot {
         items
     }
 
-    /// The band about a line, or the bars through points.
+    /// Draws the band about a line, or the bars through points.
     fn draw_range(&self, at: usize, x: &Map, y: &Map) -> Option<Item> {
         let series = &self.series[at];
         let count = series.len().min(series.range.len());
@@ -302,11 +302,11 @@ impl Plot {
         Some(Item::Path { class, dash: "", runs: bands.collect(), closed: true })
     }
 
-    /// Runs of points between gaps, in pixels.
+    /// Returns runs of points between gaps, in pixels.
     fn runs(&self, at: usize, x: &Map, y: &Map) -> Runs {
         let series = &self.series[at];
         let shown = |k: &usize| self.x.shows(series.x[*k]) && self.y.shows(series.y[*k]);
-        // Far outside the window a line needs no exact place, and short numbers suffice.
+        // Far outside the window, positions may be clamped, which keeps the numbers short.
         let spot = |k: &usize| -> [f64; 2] {
             [x.at(series.x[*k]), y.at(series.y[*k])].map(|v| v.clamp(-9999.0, 9999.0))
         };
@@ -315,18 +315,18 @@ impl Plot {
         runs.map(|run| simplify(&run.iter().map(spot).collect::<Vec<_>>(), 0.1)).collect()
     }
 
-    /// Marks in sight from left to right, their labels each in the lowest row that has room.
+    /// Lays out the visible marks from left to right, each label in the lowest row that has room.
     fn mark_layout<'a>(&'a self, x: &Map) -> Vec<PlacedMark<'a>> {
         let [left, right] = x.pixels;
         let mut marks: Vec<_> =
             self.marks.iter().filter(|m| self.x.shows(m.at) && x.holds(m.at)).collect();
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
-        // Where every row ends so far.
+        // Right end of every row so far.
         let mut ends: Vec<f64> = Vec::new();
         let place = |mark: &'a Mark| {
             let half = 0.5 * text_width(&mark.label, 11.0);
             let at = x.at(mark.at);
-            // What is wider than the plot may begin before it, and never ends behind it.
+            // A label wider than the plot extends to its left, never to its right.
             let center = at.clamp((left + half).min(right - half), right - half);
             let free = ends.iter().position(|end| center - half > *end);
             let row = free.or(Some(ends.len()).filter(|row| *row < MARK_ROWS));
@@ -356,7 +356,7 @@ impl Plot {
     }
 }
 
-/// Names of the rows, each before its own.
+/// Draws the names of the rows, each to the left of its row.
 fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
     let ([left, right], height) = (x.pixels, 0.5 * (y.at(-1.0) - y.at(-2.0)).abs());
     for (place, lines) in names.iter().enumerate() {
@@ -373,9 +373,9 @@ fn draw_names(drawing: &mut Drawing, names: &[Vec<String>], x: &Map, y: &Map) {
 }
 
 impl Axis {
-    /// The range to show: the given one when usable, otherwise that of the data with some air.
+    /// Returns the range to show: the given one when usable, otherwise that of the data.
     ///
-    /// Data of no extent get a range around them; no data at all give 0 to 1 (1 to 10 for logs).
+    /// Constant data get a range around them; without data it is 0 to 1 (1 to 10 for logs).
     pub(crate) fn data_range<'a>(
         &self,
         columns: impl Iterator<Item = &'a [f64]>,
@@ -414,7 +414,7 @@ impl Axis {
         }
     }
 
-    /// A linear range from data, widened so that no line runs along the frame.
+    /// Widens a linear range of data so that no line runs along the frame.
     fn with_air(&self, [low, high]: [f64; 2]) -> [f64; 2] {
         if self.scale == Scale::Log || self.range == Some([low, high]) {
             return [low, high];

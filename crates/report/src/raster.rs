@@ -1,4 +1,4 @@
-//! A drawing as pixels.
+//! Rasterizes drawings to pixels.
 
 use std::collections::HashMap;
 
@@ -16,13 +16,13 @@ use crate::{
     style::{Ink, Style},
 };
 
-/// A px is 1/96 of an inch, as in a style sheet.
+/// CSS pixels per inch.
 const PX_PER_INCH: f64 = 96.0;
 
-/// Largest side of a picture (pixels); what asks for more gets a coarser one.
+/// Longest side of a picture (pixels); a larger request is scaled down.
 const LARGEST: f64 = 16_000.0;
 
-/// A drawing as a PNG of `dpi` dots per inch, on white.
+/// Returns a drawing as a PNG of `dpi` dots per inch, on white.
 pub(crate) fn png(drawing: &Drawing, dpi: f64) -> Vec<u8> {
     let pixels = rasterize(drawing, dpi / PX_PER_INCH);
     let mut file = Vec::new();
@@ -33,7 +33,7 @@ pub(crate) fn png(drawing: &Drawing, dpi: f64) -> Vec<u8> {
     let per_meter = whole(dpi / 0.0254);
     let unit = Unit::Meter;
     encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_meter, yppu: per_meter, unit }));
-    // Nothing but the memory can refuse, and the sizes agree.
+    // Writing to memory cannot fail, and the sizes agree.
     encoder
         .write_header()
         .and_then(|mut writer| writer.write_image_data(&rgb(&pixels)))
@@ -41,17 +41,17 @@ pub(crate) fn png(drawing: &Drawing, dpi: f64) -> Vec<u8> {
     file
 }
 
-/// Red, green and blue of every pixel; a picture on white has no holes.
+/// Returns red, green and blue of every pixel, which are opaque on white.
 pub(crate) fn rgb(pixels: &Pixmap) -> Vec<u8> {
     pixels.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect()
 }
 
-/// Paints a drawing on white, `scale` pixels for every px of it.
+/// Paints a drawing on white at `scale` pixels per px.
 pub(crate) fn rasterize(drawing: &Drawing, scale: f64) -> Pixmap {
     let scale = scale.min(LARGEST / drawing.width.max(drawing.height).max(1.0));
     let side = |length: f64| whole((length * scale).ceil().max(1.0));
     let (width, height) = (side(drawing.width), side(drawing.height));
-    // Both sides are between 1 and LARGEST, so there is a picture of that size.
+    // Both sides are between 1 and LARGEST, so a picture of that size exists.
     let mut pixels = Pixmap::new(width, height).expect("a picture of this size");
     pixels.fill(Color::WHITE);
     let mut painter =
@@ -69,7 +69,7 @@ fn whole(value: f64) -> u32 {
     value as u32
 }
 
-/// Coordinates as the rasterizer takes them.
+/// Converts a coordinate for the rasterizer.
 #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more digits")]
 fn short(value: f64) -> f32 {
     value as f32
@@ -77,9 +77,9 @@ fn short(value: f64) -> f32 {
 
 struct Pixels {
     canvas: Pixmap,
-    /// What may be painted; None where everything may.
+    /// Area that may be painted; `None` for all.
     mask: Option<Mask>,
-    /// Lower and upper corners of the rectangles in force, each within the one before.
+    /// Lower and upper corners of the clip rectangles in force, each within the one before.
     clips: Vec<[f64; 4]>,
     glyphs: HashMap<(bool, u16), Option<Path>>,
 }
@@ -104,7 +104,7 @@ impl Pixels {
         }
     }
 
-    /// Makes the mask anew from the rectangles in force.
+    /// Rebuilds the mask from the clip rectangles.
     fn remask(&mut self) {
         let (width, height) = (self.canvas.width(), self.canvas.height());
         self.mask = self.clips.last().and_then(|&[left, top, right, bottom]| {
@@ -117,7 +117,7 @@ impl Pixels {
             }
             let mut mask = Mask::new(width, height)?;
             let edges = [left, top, right, bottom].map(|v| short(v.round()));
-            // A rectangle of no extent hides everything: an empty mask does.
+            // An empty rectangle hides everything, as does an empty mask.
             if let Some(rect) = Rect::from_ltrb(edges[0], edges[1], edges[2], edges[3]) {
                 let path = PathBuilder::from_rect(rect);
                 mask.fill_path(&path, FillRule::Winding, false, Transform::identity());
@@ -147,7 +147,7 @@ impl Painter for Pixels {
             if closed {
                 path.close();
             } else if run.len() == 1 {
-                // A step of no length, which round caps turn into a dot.
+                // A segment of zero length, which round caps turn into a dot.
                 path.line_to(x, y);
             }
         }
@@ -203,7 +203,7 @@ impl Painter for Pixels {
     }
 }
 
-/// A glyph on its way to a path.
+/// Converts the outline of a glyph to a path.
 struct Outline(PathBuilder);
 
 impl OutlineBuilder for Outline {

@@ -1,4 +1,4 @@
-//! A scene: rigid bodies in a vertical plane, their poses over time, what happened to them.
+//! A scene: rigid bodies in a vertical plane, their poses over time, and events.
 
 use std::f64::consts::TAU;
 
@@ -8,27 +8,27 @@ pub type Point = [f64; 2];
 /// A pose `[x, z, angle]` (m, m, rad), angle counterclockwise, of a body's frame in the world.
 pub type Pose2 = [f64; 3];
 
-/// A broken line.
+/// A polyline.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Polyline {
-    /// Its corners (m).
+    /// Vertices (m).
     pub points: Vec<Point>,
-    /// Whether the last point joins the first.
+    /// `true` if the last point joins the first.
     pub closed: bool,
 }
 
 impl Polyline {
-    /// A line that ends where it ends.
+    /// Creates an open polyline.
     pub fn open(points: Vec<Point>) -> Self {
         Self { points, closed: false }
     }
 
-    /// A line that returns to its start.
+    /// Creates a closed polyline.
     pub fn closed(points: Vec<Point>) -> Self {
         Self { points, closed: true }
     }
 
-    /// A circle about the origin drawn with `sides` corners (at least 3).
+    /// Creates a circle about the origin with `sides` vertices (at least 3).
     pub fn circle(radius: f64, sides: usize) -> Self {
         let sides = sides.max(3);
         let corner = |k: usize| {
@@ -38,16 +38,16 @@ impl Polyline {
         Self::closed((0..sides).map(corner).collect())
     }
 
-    /// A rectangle with these lower left and upper right corners.
+    /// Creates a rectangle from its lower left and upper right corners.
     pub fn rectangle(lower: Point, upper: Point) -> Self {
         Self::closed(vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]])
     }
 }
 
-/// What a body is, for its color and its line; files for ParaView number them in this order, from 0.
+/// The role of a body, for its color and its line; files for ParaView number the roles in this order, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Moves with the ground; drawn without a name and left out of "follow the stack".
+    /// Moves with the ground; drawn without a name and ignored by "follow the stack".
     Ground,
     /// Wood.
     Barrel,
@@ -71,26 +71,26 @@ impl Role {
     }
 }
 
-/// A body's drawing, in its own frame.
+/// The drawing of a body, in its own frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneBody {
     /// Name shown at the body's origin.
     pub name: String,
-    /// What it is.
+    /// Role.
     pub role: Role,
     /// Its outlines; closed ones are filled.
     pub outlines: Vec<Polyline>,
-    /// Lines that make its rotation visible. The first is drawn strong (a bung), others thin.
+    /// Lines that make rotation visible. The first is drawn strong (a bung), others thin.
     pub marks: Vec<Polyline>,
 }
 
 impl SceneBody {
-    /// A body without marks.
+    /// Creates a body without marks.
     pub fn new(name: impl Into<String>, role: Role, outlines: Vec<Polyline>) -> Self {
         Self { name: name.into(), role, outlines, marks: Vec::new() }
     }
 
-    /// A barrel seen from its head: a circle with a strong bung mark at the top and stave marks.
+    /// Creates a barrel viewed from its head: a circle with a strong bung mark at the top and stave marks.
     pub fn barrel(name: impl Into<String>, radius: f64) -> Self {
         let spoke = |angle: f64, from: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -113,9 +113,9 @@ impl SceneBody {
 /// A force on a body at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
-    /// Where it acts (m).
+    /// Point of action (m).
     pub x: f64,
-    /// Where it acts (m).
+    /// Point of action (m).
     pub z: f64,
     /// Component along x (N).
     pub fx: f64,
@@ -125,31 +125,31 @@ pub struct ContactForce {
 
 /// Poses over time.
 ///
-/// Lengths that disagree are never an error: frames without a time are not shown, a body
-/// without a pose (or with one that is not finite) is not drawn in that frame.
+/// Mismatched lengths are no error: frames without a time are not shown, a body without a pose (or with one
+/// that is not finite) is not drawn in that frame.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Frames {
     /// Times of the frames (s), not decreasing.
     pub times: Vec<f64>,
     /// For each frame, the pose of each body in the order of [`Scene::bodies`].
     pub poses: Vec<Vec<Pose2>>,
-    /// For each frame, contact forces; empty when there are none to show.
-    /// The same contact at the same place of the list in every frame packs best.
+    /// For each frame, contact forces; empty without forces.
+    /// They pack best if a contact has the same position in the list of every frame.
     pub forces: Vec<Vec<ContactForce>>,
 }
 
 impl Frames {
-    /// Count of frames that have a time and poses.
+    /// Returns the number of frames that have a time and poses.
     pub fn len(&self) -> usize {
         self.times.len().min(self.poses.len())
     }
 
-    /// Whether there is nothing to show.
+    /// `true` without frames.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The frame nearest in time to `time`; the earlier of two equally near.
+    /// Returns the frame nearest in time to `time`; the earlier of two equally near.
     pub fn nearest(&self, time: f64) -> Option<usize> {
         let count = self.len();
         let times = self.times.get(..count)?;
@@ -165,7 +165,7 @@ impl Frames {
     }
 }
 
-/// What kind of thing happened.
+/// The kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EventKind {
     /// A contact opened.
@@ -181,7 +181,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// The word shown to the reader.
+    /// Returns the word shown to the reader.
     pub fn word(self) -> &'static str {
         match self {
             Self::Uplift => "uplift",
@@ -197,25 +197,25 @@ impl EventKind {
     }
 }
 
-/// Something that happened at an instant.
+/// An event at an instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When (s).
+    /// Time (s).
     pub time: f64,
-    /// To which body, by its place in [`Scene::bodies`].
+    /// The body concerned, by its index in [`Scene::bodies`].
     pub body: Option<usize>,
-    /// What kind.
+    /// Kind.
     pub kind: EventKind,
-    /// One plain sentence.
+    /// Description in one plain sentence.
     pub text: String,
 }
 
-/// One quantity over time.
+/// A quantity over time.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct History {
     /// Name.
     pub label: String,
-    /// Unit of the values, for people; may be empty.
+    /// Unit of the values as displayed; may be empty.
     pub unit: String,
     /// Times (s).
     pub times: Vec<f64>,
@@ -226,48 +226,48 @@ pub struct History {
 /// A line between a point of one body and a point of another, such as a strap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {
-    /// The bodies, by their places in [`Scene::bodies`].
+    /// The bodies, by their indices in [`Scene::bodies`].
     pub bodies: [usize; 2],
     /// The points, each in the frame of its body (m).
     pub points: [Point; 2],
-    /// When it tears (s); it is not drawn after that.
+    /// Time at which it tears (s); it is not drawn after that.
     pub torn_at: Option<f64>,
 }
 
-/// The instant that says most about a scene, on which its player opens.
+/// The most informative instant of a scene, on which its player opens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
-    /// When (s).
+    /// Time (s).
     pub time: f64,
-    /// The body to look at, by its place in [`Scene::bodies`].
+    /// The body concerned, by its index in [`Scene::bodies`].
     pub body: usize,
-    /// What it does there, such as "here rack R3 leaves its seat".
+    /// Description, such as "here rack R3 leaves its seat".
     pub text: String,
-    /// Whether something comes down then; of several scenes, one that falls opens them all.
+    /// `true` if something falls then; of several scenes, one that falls opens the player.
     pub falls: bool,
 }
 
-/// A quantity of every body over the frames, by which bodies are tinted when the reader asks for it.
+/// A quantity of every body over the frames, by which bodies are tinted on request.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Tint {
     /// Name.
     pub label: String,
-    /// Unit of the values, for people.
+    /// Unit of the values as displayed.
     pub unit: String,
-    /// For each frame, the value of each body in the order of [`Scene::bodies`], none below zero.
+    /// For each frame, the value of each body in the order of [`Scene::bodies`]; never negative.
     pub values: Vec<Vec<f64>>,
 }
 
-/// Other runs of the same scene, which can be laid over it: where points went and where bodies ended.
+/// Other runs of the same scene as an overlay: paths of points and final poses of bodies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Ghosts {
-    /// What they are, for the switch that shows them.
+    /// Label of the switch that shows them.
     pub label: String,
-    /// How many runs.
+    /// Number of runs.
     pub count: usize,
-    /// Ways (m) against the body of the role [`Role::Ground`].
+    /// Paths (m) relative to the body of the role [`Role::Ground`].
     pub ways: Vec<Vec<Point>>,
-    /// Bodies by their places in [`Scene::bodies`], each with where it ended, against the same body.
+    /// Bodies by their indices in [`Scene::bodies`], with their final poses relative to the same body.
     pub ends: Vec<(usize, Pose2)>,
 }
 
@@ -276,24 +276,24 @@ pub struct Ghosts {
 pub struct Scene {
     /// The bodies, drawn in this order.
     pub bodies: Vec<SceneBody>,
-    /// Lines between them, drawn over them.
+    /// Lines between bodies, drawn over them.
     pub ties: Vec<Tie>,
     /// Their poses.
     pub frames: Frames,
-    /// What happened, in order of time.
+    /// Events, in order of time.
     pub events: Vec<Event>,
     /// Histories shown in the strip under the player.
     pub ground: Vec<History>,
-    /// The instant on which its player opens; the first frame without.
+    /// The instant on which its player opens; the first frame if `None`.
     pub moment: Option<Moment>,
-    /// What bodies are tinted by on request.
+    /// Quantity by which bodies are tinted on request.
     pub tint: Option<Tint>,
     /// Other runs, shown on request.
     pub ghosts: Option<Ghosts>,
 }
 
 impl Scene {
-    /// The ends of a tie at a frame; none where it is torn or a body is not drawn.
+    /// Returns the ends of a tie at a frame; `None` where it is torn or a body is not drawn.
     pub(crate) fn ends(&self, tie: &Tie, frame: usize) -> Option<[Point; 2]> {
         let time = *self.frames.times.get(frame)?;
         let end = |at: usize| Some(place(self.frames.pose(frame, tie.bodies[at])?, tie.points[at]));
@@ -301,7 +301,7 @@ impl Scene {
         if whole { Some([end(0)?, end(1)?]) } else { None }
     }
 
-    /// The name of body `body`; "body 3" when it has no entry.
+    /// Returns the name of body `body`; "body 3" when it has no entry.
     pub fn name(&self, body: usize) -> String {
         self.bodies.get(body).map_or_else(|| format!("body {}", body + 1), |b| b.name.clone())
     }
@@ -310,7 +310,7 @@ impl Scene {
 /// A point of a body whose path is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// The body, by its place in [`Scene::bodies`].
+    /// The body, by its index in [`Scene::bodies`].
     pub body: usize,
     /// The point in the body's frame (m).
     pub point: Point,
@@ -318,7 +318,7 @@ pub struct Trace {
     pub label: String,
 }
 
-/// An axis-aligned box that grows.
+/// An axis-aligned bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extent {
     pub lower: Point,
@@ -370,7 +370,7 @@ pub(crate) fn place(pose: Pose2, point: Point) -> Point {
     [pose[0] + cos * point[0] - sin * point[1], pose[1] + sin * point[0] + cos * point[1]]
 }
 
-/// Extent of body `body` at frame `frame`; empty when it is not drawn there.
+/// Returns the extent of body `body` at frame `frame`; empty if it is not drawn there.
 fn body_extent(scene: &Scene, frame: usize, body: usize) -> Extent {
     let mut extent = Extent::EMPTY;
     if let (Some(drawn), Some(pose)) = (scene.bodies.get(body), scene.frames.pose(frame, body)) {
@@ -385,13 +385,13 @@ fn moving(scene: &Scene) -> impl Iterator<Item = usize> {
     (0..scene.bodies.len()).filter(|&at| scene.bodies[at].role != Role::Ground)
 }
 
-/// Highest share of the larger side of the first frame by which a window grows to the left and
-/// the right, and upward: what falls over lies within its height, and rolls on from there.
+/// Largest growth of a window to the left and the right, and upward, over the larger side of the first
+/// frame: a body that falls over lies within the height, and rolls on from there.
 const REACH: [f64; 2] = [1.75, 0.15];
 
-/// The window that shows `frames`: the place of the first frame and what stays or lands near it.
+/// Returns the window that shows `frames`: the first frame, and bodies that stay or land near it.
 ///
-/// A body that goes far leaves the picture; it never shrinks what remains.
+/// A body that goes far leaves the picture, so that the rest is not reduced.
 pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     let mut all = Extent::EMPTY;
     for body in moving(scene) {
@@ -428,12 +428,12 @@ pub(crate) fn window(scene: &Scene, frames: &[usize]) -> Extent {
     }
 }
 
-/// Short strokes below the line of the ground, `spacing` (m) apart and as long, between `from` and
+/// Returns short strokes below the line of the ground, `spacing` (m) apart and as long, between `from` and
 /// `to` (m) along x, in the frame of the line.
 pub(crate) fn hatch(line: &Polyline, spacing: f64, [from, to]: [f64; 2]) -> Vec<[Point; 2]> {
     let mut strokes = Vec::new();
     let finite = [spacing, from, to].iter().all(|v| v.is_finite());
-    // The bound keeps a wrong window from asking for a forest.
+    // Limits the number of strokes if the window is wrong.
     if !(finite && spacing > 0.0 && (to - from) / spacing < 5000.0) {
         return strokes;
     }

@@ -1,4 +1,4 @@
-//! A table on paper: how wide its columns are, and which lines its cells break into.
+//! Layout of a table in print: column widths and line breaks of cells.
 
 use crate::{
     drawing::Anchor,
@@ -6,13 +6,13 @@ use crate::{
     style::{Style, Tag},
 };
 
-/// Between one column and the next (points).
+/// Distance between columns (points).
 const GUTTER: f64 = 10.0;
-/// From one baseline to the next, and above and below the lines of a row together (points).
+/// Distance between baselines, and the padding above and below the lines of a row together (points).
 const LEADING: f64 = 11.0;
 const AIR: f64 = 4.5;
 
-/// Cells of a table, set to a width.
+/// Cells of a table, laid out to a width.
 pub(crate) struct Sheet {
     head: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -21,7 +21,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// A table of rows as long as `numeric` in at most `width` points; `head` may be empty.
+    /// Lays out rows as long as `numeric` in at most `width` points; `head` may be empty.
     pub(crate) fn new(
         head: Vec<String>,
         rows: Vec<Vec<String>>,
@@ -48,12 +48,12 @@ impl Sheet {
         self.rows.len()
     }
 
-    /// Lines of every cell of the head; None when there is no head.
+    /// Returns the lines of every cell of the head; `None` without a head.
     pub(crate) fn head(&self) -> Option<Vec<Vec<String>>> {
         (!self.head.is_empty()).then(|| self.broken(true, &self.head))
     }
 
-    /// Lines of every cell of a row.
+    /// Returns the lines of every cell of a row.
     pub(crate) fn row(&self, at: usize) -> Vec<Vec<String>> {
         self.broken(false, &self.rows[at])
     }
@@ -61,11 +61,11 @@ impl Sheet {
     fn broken(&self, bold: bool, cells: &[String]) -> Vec<Vec<String>> {
         let size = size(bold);
         let cells = cells.iter().zip(&self.widths);
-        // What fits by the same sum must not be broken by rounding.
+        // The margin keeps rounding from breaking what fits exactly.
         cells.map(|(cell, width)| wrap(Font::of(bold), size, cell, width + 1e-6)).collect()
     }
 
-    /// Where a column's lines stand, from the left edge (points), and by which end.
+    /// Returns the position of a column's lines from the left edge (points), and their alignment.
     pub(crate) fn place(&self, column: usize) -> (f64, Anchor) {
         let left = self.widths[..column].iter().map(|width| width + GUTTER).sum::<f64>();
         if self.numeric[column] {
@@ -76,12 +76,12 @@ impl Sheet {
     }
 }
 
-/// Where a line of a row stands, from the row's top (points).
+/// Returns the baseline of a line of a row, from the row's top (points).
 pub(crate) fn baseline(line: usize) -> f64 {
     0.5 * AIR + 8.5 + LEADING * line as f64
 }
 
-/// Height of a row (points).
+/// Returns the height of a row (points).
 pub(crate) fn row_height(cells: &[Vec<String>]) -> f64 {
     AIR + LEADING * cells.iter().map(Vec::len).max().unwrap_or(1).max(1) as f64
 }
@@ -94,8 +94,8 @@ fn measure(bold: bool, text: &str) -> f64 {
     Font::of(bold).width(text, size(bold))
 }
 
-/// Widths of columns in `room`: what they wish where there is room, else what they need at least and
-/// a part of the rest by what they lack; where even that is too much, all shrink alike.
+/// Distributes `room` over columns: their preferred widths if they fit, else their minimum widths and shares
+/// of the rest in proportion to what is missing; below the minimum, all shrink in proportion.
 fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     let sum = |widths: &[f64]| widths.iter().sum::<f64>();
     if sum(wish) <= room {
@@ -110,7 +110,7 @@ fn shared(wish: &[f64], least: &[f64], room: f64) -> Vec<f64> {
     wish.iter().zip(least).map(|(wish, least)| least + (wish - least) * spare).collect()
 }
 
-/// Lines of a text that are no wider than `width`; a word that is wider alone is cut.
+/// Breaks a text into lines no wider than `width`; a single word that is wider is split.
 pub(crate) fn wrap(font: &Font, size: f64, text: &str, width: f64) -> Vec<String> {
     let fits = |line: &str| font.width(line, size) <= width;
     let mut lines: Vec<String> = Vec::new();

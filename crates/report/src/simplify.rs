@@ -1,10 +1,10 @@
-//! Fewer points for the same line: what a screen or a page cannot show is left out.
+//! Simplification of polylines: points that make no visible difference are omitted.
 
 /// Drops points of `run` so that the line moves by no more than about `tolerance` (px).
 ///
 /// Long runs that advance along x are first thinned to the first, lowest, highest and last
-/// point of every half pixel, which no eye can tell from the whole; then the
-/// Ramer–Douglas–Peucker rule removes what lies on straight stretches.
+/// point of every half pixel, which is visually the same; then the Ramer–Douglas–Peucker
+/// algorithm removes points on straight stretches.
 pub(crate) fn simplify(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     if run.len() < 3 {
         return run.to_vec();

@@ -1,4 +1,4 @@
-//! A strip: the scene at chosen instants side by side, all in one window and to one scale.
+//! A strip: a scene at selected instants side by side, with equal windows and scales.
 
 use std::{fmt::Write as _, sync::Arc};
 
@@ -9,10 +9,10 @@ use crate::{
     scene::{Extent, hatch, window},
 };
 
-/// A scene at chosen instants.
+/// A scene at selected instants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip {
-    /// What moves.
+    /// The scene.
     pub scene: Arc<Scene>,
     /// The instants, in reading order. Each shows the frame nearest to its time.
     pub panels: Vec<Panel>,
@@ -21,37 +21,37 @@ pub struct Strip {
 /// One picture of a strip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Time asked for (s); the caption states the time of the frame shown.
+    /// Requested time (s); the caption states the time of the frame shown.
     pub time: f64,
-    /// A few words; may be empty.
+    /// A short note; may be empty.
     pub note: String,
 }
 
-/// Largest width and height of a panel's picture (px); the widest strip of one row.
+/// Largest width and height of a panel's picture (px); of a single picture; width of a row; gap.
 const PANEL: [f64; 2] = [165.0, 235.0];
 const STILL: [f64; 2] = [480.0, 380.0];
 const ROW: f64 = 760.0;
 const GAP: f64 = 12.0;
-/// Room below the lowest body for the ground's hatch, and for the caption (px).
+/// Space below the lowest body for the hatch of the ground, and for the caption (px).
 const FOOT: f64 = 13.0;
 const CAPTION: f64 = 38.0;
 /// Distance of the strokes of the ground's hatch (px).
 const HATCH: f64 = 10.0;
 
-/// One window and one scale for all pictures of a scene.
+/// Common window and scale of all pictures of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct View {
     extent: Extent,
-    /// Pixels for a meter.
+    /// Pixels per meter.
     scale: f64,
     pub(crate) width: f64,
     pub(crate) height: f64,
-    /// Whether bodies are named.
+    /// `true` if bodies are labeled.
     names: bool,
 }
 
 impl View {
-    /// What shows these frames of a scene in at most `most` (px) across and up.
+    /// Fits these frames of a scene into at most `most` (px) across and up.
     pub(crate) fn of(scene: &Scene, shown: &[usize], most: [f64; 2], names: bool) -> Self {
         let extent = window(scene, shown);
         let (wide, high) = (extent.width().max(1e-6), extent.height().max(1e-6));
@@ -60,7 +60,7 @@ impl View {
         Self { extent, scale, width, height, names }
     }
 
-    /// Where the origin of the scene lies (px): centered across when the window is narrower than the
+    /// Returns the position of the scene's origin (px): centered across if the window is narrower than the
     /// panel.
     fn origin(&self) -> [f64; 2] {
         let (extent, scale) = (&self.extent, self.scale);
@@ -70,7 +70,7 @@ impl View {
         ]
     }
 
-    /// Where a point of the scene (m) lies (px).
+    /// Converts a point of the scene (m) to the page (px).
     pub(crate) fn on_page(&self, [x, z]: Point) -> [f64; 2] {
         let [x0, z0] = self.origin();
         [x0 + x * self.scale, z0 - z * self.scale]
@@ -78,9 +78,9 @@ impl View {
 }
 
 impl Strip {
-    /// A strip of `count` panels that tell the run: the first and the last frame, the events
-    /// that matter most (falls before losses of seat before others, earlier before later), and
-    /// instants amid the widest gaps where events are too few.
+    /// Creates a strip of `count` panels that summarize the run: the first and the last frame, the most
+    /// important events (falls before losses of seat before others, earlier before later), and the middle of
+    /// the longest gaps where events are too few.
     pub fn of_run(scene: Arc<Scene>, count: usize) -> Self {
         use crate::EventKind::{Fall, LossOfSeat, Note, Slip, Uplift};
         let times = &scene.frames.times[..scene.frames.len()];
@@ -106,7 +106,7 @@ impl Strip {
             }
         }
         panels.sort_by(|a, b| a.time.total_cmp(&b.time));
-        // From the first event on there is more to see than before it.
+        // Little is visible before the first event.
         let quiet = usize::from(panels.len() > 2);
         while panels.len() < count && span > 0.0 {
             let gap = |k: usize| panels[k + 1].time - panels[k].time;
@@ -118,15 +118,15 @@ impl Strip {
         Self { scene, panels }
     }
 
-    /// One large picture of the first frame, with the names of the bodies.
+    /// Creates one large picture of the first frame, with the names of the bodies.
     pub(crate) fn still(scene: Arc<Scene>) -> Self {
         let first = scene.frames.times[..scene.frames.len()].first().copied();
         let panels = first.map(|time| Panel { time, note: "start".into() });
         Self { scene, panels: panels.into_iter().collect() }
     }
 
-    /// Panels as drawings of equal size. Bodies are defined in the first one that is drawn, under
-    /// names that start with `id`, and used by all.
+    /// Draws the panels at equal size. Bodies are defined in the first drawing, with ids that start with `id`,
+    /// and used by all.
     pub(crate) fn drawings(&self, id: &str) -> Vec<Drawing> {
         let frames: Vec<Option<usize>> =
             self.panels.iter().map(|p| self.scene.frames.nearest(p.time)).collect();
@@ -159,7 +159,7 @@ impl Strip {
         let drawings = self.drawings(id);
         let (wide, high) = drawings.first().map_or((PANEL[0], 0.0), |d| (d.width, d.height));
         let most = (1..drawings.len()).take_while(|n| *n as f64 * (wide + GAP) + wide <= ROW);
-        // As many as fit a row, and no last row that holds a single one where two rows could share.
+        // As many as fit a row, balanced so that the last row is not left with a single one.
         let rows = drawings.len().div_ceil(most.count() + 1).max(1);
         let per_row = drawings.len().div_ceil(rows).max(1);
         let mut whole = Drawing::new(
@@ -192,7 +192,7 @@ impl Strip {
     }
 }
 
-/// Defines every body of a scene, under names that start with `id`.
+/// Defines every body of a scene, with ids that start with `id`.
 pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize]) -> Item {
     let define = |(at, body): (usize, &SceneBody)| {
         let outlines = body.outlines.iter().map(|line| {
@@ -209,12 +209,12 @@ pub(crate) fn define_bodies(scene: &Scene, id: &str, view: &View, shown: &[usize
     Item::Defined(scene.bodies.iter().enumerate().map(define).collect())
 }
 
-/// What a body is called within a page.
+/// Returns the id of a body within a page.
 fn name(id: &str, body: usize) -> String {
     format!("{id}-b{body}")
 }
 
-/// The hatch under the part of the ground that some frame shows.
+/// Returns the hatch below the part of the ground that any frame shows.
 fn ground_hatch(scene: &Scene, body: usize, view: &View, shown: &[usize]) -> Item {
     let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
     let spare = view.width / view.scale;
@@ -232,7 +232,7 @@ fn ground_hatch(scene: &Scene, body: usize, view: &View, shown: &[usize]) -> Ite
     }
 }
 
-/// The bodies of a scene as they stand at a frame, in a frame of their own.
+/// Draws the bodies of a scene at a frame, within a border.
 pub(crate) fn picture(scene: &Scene, id: &str, frame: Option<usize>, view: &View) -> Drawing {
     let mut drawing = Drawing::new(view.width, view.height, "");
     drawing.rect("frame", [0.5, 0.5], [view.width - 1.0, view.height - 1.0]);
@@ -269,7 +269,7 @@ fn shape(class: String, line: &Polyline, pen: f64) -> Item {
     Item::Outline { class, pen, runs: vec![line.points.clone()], closed: line.closed }
 }
 
-/// A note that fits under its panel.
+/// Shortens a note to the width of its panel.
 fn fit(note: &str, width: f64) -> String {
     if text_width(note, 11.0) <= width {
         return note.into();

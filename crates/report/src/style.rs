@@ -1,4 +1,4 @@
-//! How drawings look: the palette, and the style sheet that every format of a figure obeys.
+//! Appearance of drawings: the palette and the style sheet, common to every format of a figure.
 
 use std::sync::LazyLock;
 
@@ -32,16 +32,16 @@ pub(crate) const PALETTE: &[(&str, &str, &str)] = &[
     ("bad", "#b84a00", "#f08a4b"),
 ];
 
-/// Dash patterns of the series, by the same index as their colors.
+/// Dash patterns of the series, with the same indices as their colors.
 pub(crate) const DASHES: [&str; 6] = ["", "8 4", "2 3", "9 3 2 3", "14 5", "5 3"];
 
-/// The rules that figures inside a page share.
+/// The style sheet of figures inside a page.
 pub(crate) const STYLE: &str = include_str!("../assets/figure.css");
 
-/// What only a document on paper needs.
+/// Additional rules for documents in print.
 const PAPER: &str = include_str!("../assets/paper.css");
 
-/// The style of a standalone figure: the page's rules with the colors of white paper.
+/// Returns the style of a standalone figure: the style sheet with the colors of white paper.
 pub(crate) fn standalone_style() -> String {
     on_white(STYLE)
 }
@@ -54,7 +54,7 @@ fn on_white(style: &str) -> String {
     style
 }
 
-/// The rules as they are read where no browser reads them.
+/// The style sheet, parsed for formats that no browser renders.
 static SHEET: LazyLock<StyleSheet<'static>> = LazyLock::new(|| {
     static TEXT: LazyLock<String> = LazyLock::new(|| on_white(&[STYLE, PAPER].concat()));
     StyleSheet::parse(&TEXT)
@@ -67,7 +67,7 @@ pub(crate) struct Ink {
     pub(crate) opacity: f64,
 }
 
-/// How a shape or a word is painted on paper. Lengths in px.
+/// Style of a shape or a text. Lengths in px.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Style {
     pub(crate) fill: Option<Ink>,
@@ -79,7 +79,7 @@ pub(crate) struct Style {
     pub(crate) strong: bool,
 }
 
-/// What the rules can tell apart.
+/// Element types that rules distinguish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Tag {
     Shape,
@@ -87,7 +87,7 @@ pub(crate) enum Tag {
 }
 
 impl Style {
-    /// What the rules say of an element of these classes; SVG's own defaults where they are silent.
+    /// Computes the style of an element of these classes; SVG's defaults where no rule applies.
     pub(crate) fn of(tag: Tag, classes: &str) -> Self {
         let mut style = Self {
             fill: Some(Ink { rgb: [0; 3], opacity: 1.0 }),
@@ -115,7 +115,7 @@ impl Style {
                     "stroke-linecap" => style.round &= value == "round",
                     "font-size" => style.font_size = length(value),
                     "font-weight" => style.strong = length(value) >= 600.0,
-                    // Families, caps and digits are settled by the bundled font and by the joins.
+                    // The bundled font and the joins determine families, caps and digits.
                     _ => {}
                 }
             }
@@ -129,12 +129,12 @@ impl Style {
     }
 }
 
-/// Lengths of dashes and gaps, as in a style sheet.
+/// Parses the lengths of dashes and gaps.
 pub(crate) fn dashes(value: &str) -> Vec<f64> {
     value.split_whitespace().map(length).collect()
 }
 
-/// A number, in px where it is a length.
+/// Parses a number, in px if it is a length.
 fn length(value: &str) -> f64 {
     value.trim_end_matches("px").parse().unwrap_or(0.0)
 }
@@ -145,9 +145,9 @@ fn ink(value: &str) -> Option<Ink> {
     Some(Ink { rgb: [part(0)?, part(2)?, part(4)?], opacity: 1.0 })
 }
 
-/// An element as the rules see it: in a drawing, which is of the class `bs`.
+/// An element for selector matching: in a drawing, which is of the class `bs`.
 struct Node<'a> {
-    /// None for the drawing itself.
+    /// `None` for the drawing itself.
     tag: Option<Tag>,
     classes: &'a str,
 }

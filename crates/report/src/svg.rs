@@ -1,4 +1,4 @@
-//! A drawing as SVG, inside a page or on its own.
+//! Drawings as SVG, inside a page or standalone.
 
 use std::fmt::{Arguments, Write as _};
 
@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl Drawing {
-    /// For a page that carries the style.
+    /// Writes the drawing for a page that contains the style.
     pub(crate) fn inline(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(
@@ -19,7 +19,7 @@ impl Drawing {
         )
     }
 
-    /// With its own style and a white ground.
+    /// Writes the drawing with its own style on white.
     pub(crate) fn standalone(&self) -> String {
         let [w, h] = [self.width, self.height].map(coordinate);
         format!(
@@ -181,7 +181,7 @@ impl Writer {
     }
 }
 
-/// A coordinate to a hundredth of a pixel without trailing zeros; zero when not finite.
+/// Formats a coordinate to a hundredth of a pixel without trailing zeros; zero when not finite.
 fn coordinate(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
@@ -191,7 +191,7 @@ fn coordinate(value: f64) -> String {
     if text == "-0" { "0".into() } else { text.into() }
 }
 
-/// Path data through runs of points: absolute starts, then relative steps to 0.05 px.
+/// Path data of runs of points: absolute starts, then relative steps to 0.05 px.
 ///
 /// Each step starts from the rounded end of the one before, so rounding never adds up.
 fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
@@ -217,7 +217,7 @@ fn path_data(runs: &[Vec<[f64; 2]>], closed: bool) -> String {
         if closed {
             out.push('z');
         } else if !drawn {
-            // A lone point: a step of no length, which round caps turn into a dot.
+            // A single point: a segment of zero length, which round caps turn into a dot.
             out.push_str("h0");
         }
     }

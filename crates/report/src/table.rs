@@ -5,11 +5,11 @@ use crate::{escape, number};
 /// A table with a caption.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// What the table holds; plain text.
+    /// Caption; plain text.
     pub caption: String,
     /// The columns, left to right.
     pub columns: Vec<Column>,
-    /// The rows. A short row is filled with [`Cell::Missing`], surplus cells are not shown.
+    /// The rows. Short rows are filled with [`Cell::Missing`], surplus cells are not shown.
     pub rows: Vec<Vec<Cell>>,
 }
 
@@ -23,7 +23,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column; `unit` may be empty.
+    /// Creates a column; `unit` may be empty.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into() }
     }
@@ -33,14 +33,14 @@ impl Column {
     }
 }
 
-/// A judgment of a value.
+/// Rating of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rating {
-    /// As wanted.
+    /// Favorable.
     Good,
-    /// To be looked at.
+    /// Needs attention.
     Fair,
-    /// To be avoided.
+    /// Unfavorable.
     Poor,
 }
 
@@ -59,11 +59,11 @@ impl Rating {
 pub enum Cell {
     /// Plain text.
     Text(String),
-    /// Text with a judgment, which it must also say in words or by a sign: the color only repeats it.
+    /// Text with a rating, which the text or a sign must state too: the color only repeats it.
     Rated(Rating, String),
-    /// A number and the count of significant digits to show; CSV keeps every digit.
+    /// A number and its number of significant digits; CSV keeps every digit.
     Number(f64, usize),
-    /// A number as it was measured, shown to at most so many decimals by [`measured`](crate::measured);
+    /// A measured number, shown with at most so many decimals by [`measured`](crate::measured);
     /// CSV keeps every digit.
     Measured(f64, usize),
     /// No value: shown as a dash, empty in CSV.
@@ -71,22 +71,22 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// A cell of text.
+    /// Creates a cell of text.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(text.into())
     }
 
-    /// A cell of text, where there is one.
+    /// Creates a cell of text, or a missing one.
     pub fn maybe(text: Option<impl Into<String>>) -> Self {
         text.map_or(Self::Missing, Self::text)
     }
 
-    /// A number, where there is one, and the count of its significant digits.
+    /// Creates a number with significant digits, or a missing cell.
     pub fn number(value: Option<f64>, digits: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Number(value, digits))
     }
 
-    /// A measured number, where there is one, and the most of its decimals.
+    /// Creates a measured number with at most so many decimals, or a missing cell.
     pub fn measured(value: Option<f64>, decimals: usize) -> Self {
         value.map_or(Self::Missing, |value| Self::Measured(value, decimals))
     }
@@ -101,18 +101,17 @@ impl Cell {
     }
 }
 
-/// A column of a table of things: its name, its unit, and its cell of a thing.
+/// A column of a table of items: its name, its unit, and the function that returns its cell.
 pub type ColumnOf<'a, T> = (&'a str, &'a str, &'a dyn Fn(&T) -> Cell);
 
 impl Table {
-    /// An empty table with these columns, given as pairs of name and unit.
+    /// Creates an empty table with these columns, given as pairs of name and unit.
     pub fn new(caption: impl Into<String>, columns: &[(&str, &str)]) -> Self {
         let columns = columns.iter().map(|(name, unit)| Column::new(*name, *unit)).collect();
         Self { caption: caption.into(), columns, rows: Vec::new() }
     }
 
-    /// A table with a row for each of some things: its columns by their name, their unit and what their cell
-    /// tells of a thing.
+    /// Creates a table with a row for each item.
     pub fn of<T>(
         caption: impl Into<String>,
         things: impl IntoIterator<Item = T>,
@@ -123,7 +122,7 @@ impl Table {
         Self { rows: things.into_iter().map(row).collect(), ..Self::new(caption, &heads) }
     }
 
-    /// The table as CSV: a header with units, then every row at full precision.
+    /// Writes the table as CSV: a header with units, then every row at full precision.
     pub fn to_csv(&self) -> String {
         let mut out = String::new();
         let header: Vec<_> = self.columns.iter().map(|c| escape::csv(&c.heading())).collect();
@@ -145,13 +144,13 @@ impl Table {
         out
     }
 
-    /// The cells of a row as people read them, one for each column.
+    /// Returns the cells of a row as displayed, one for each column.
     pub(crate) fn shown<'a>(&'a self, row: &'a [Cell]) -> impl Iterator<Item = String> + 'a {
         let cells = row.iter().chain(std::iter::repeat(&Cell::Missing));
         cells.take(self.columns.len()).map(Cell::shown)
     }
 
-    /// Which columns are numeric: those that hold a number and no text.
+    /// Returns for each column whether it is numeric: it holds a number and no text.
     pub(crate) fn numeric(&self) -> Vec<bool> {
         let numeric = |column: usize| {
             let cells = || self.rows.iter().filter_map(|row| row.get(column));

@@ -1,4 +1,4 @@
-//! The structure of a document on pages: which of what is painted is a heading, a cell, a figure.
+//! Logical structure of a PDF: headings, table cells, figures.
 
 use pdf_writer::{
     Finish as _, Pdf, Ref, TextStr,
@@ -13,16 +13,16 @@ pub(crate) struct Tags {
 struct Element {
     role: StructRole,
     parent: usize,
-    /// What it is in words, for a picture.
+    /// Text alternative, for a figure.
     words: Option<String>,
     kids: Vec<Kid>,
 }
 
-/// What an element holds.
+/// Child of an element.
 enum Kid {
     /// Another element.
     Element(usize),
-    /// What is painted on a page under a number.
+    /// Content of a page, by its marked-content identifier.
     Painted { page: usize, number: i32 },
 }
 
@@ -33,7 +33,7 @@ impl Tags {
         Self { elements: vec![document] }
     }
 
-    /// A new element at the end of another, and its place.
+    /// Appends a new element to another and returns its index.
     pub(crate) fn open(&mut self, parent: usize, role: StructRole, words: Option<&str>) -> usize {
         let place = self.elements.len();
         let words = words.map(str::to_owned);
@@ -46,13 +46,13 @@ impl Tags {
         self.elements[place].role
     }
 
-    /// Notes that what an element is made of is painted on a page under a number.
+    /// Records that content of an element is on a page under a marked-content identifier.
     pub(crate) fn paint(&mut self, place: usize, page: usize, number: i32) {
         self.elements[place].kids.push(Kid::Painted { page, number });
     }
 
-    /// Writes the tree; `pages` are those of the document, `painted` the elements of each by the numbers
-    /// under which they are painted, `next` gives new names.
+    /// Writes the tree; `pages` are those of the document, `painted` the elements of each page by their
+    /// marked-content identifiers, `next` allocates references.
     pub(crate) fn write(
         &self,
         pdf: &mut Pdf,

@@ -1,28 +1,27 @@
-//! A scene and a history as lines of characters, for a terminal.
+//! Scenes and histories as lines of characters, for a terminal.
 
 use crate::{
     Polyline, Role, Scene,
     scene::{Extent, Point, place, window},
 };
 
-/// Which characters a terminal shows.
+/// Character set of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Characters {
     /// Dots of Braille cells and blocks of eight heights.
     #[default]
     Unicode,
-    /// Those on every keyboard.
+    /// ASCII alone.
     Ascii,
 }
 
-/// Most columns and rows of a picture.
+/// Largest number of columns and rows of a picture.
 const MOST: [usize; 2] = [72, 16];
 /// Dots in a cell, across and down.
 const CELL: [usize; 2] = [2, 4];
 
-/// The outlines of a scene at a frame in at most 72 columns and 16 rows; nothing when there is
-/// nothing to draw. Lines end with their last dot, and the first
-/// has one.
+/// Draws the outlines of a scene at a frame in at most 72 columns and 16 rows; empty if there is nothing
+/// to draw. Lines have no trailing blanks, and the first is not empty.
 pub fn terminal_picture(scene: &Scene, frame: usize, characters: Characters) -> Vec<String> {
     if scene.frames.poses.get(frame).is_none() || scene.bodies.is_empty() {
         return Vec::new();
@@ -41,10 +40,10 @@ pub fn terminal_picture(scene: &Scene, frame: usize, characters: Characters) -> 
     dots.write(characters)
 }
 
-/// A raster of dots over a window of the world.
+/// A raster of dots over a window of the scene.
 struct Dots {
     extent: Extent,
-    /// Dots for a meter, each way.
+    /// Dots per meter in both directions.
     scale: f64,
     columns: usize,
     rows: usize,
@@ -54,7 +53,7 @@ struct Dots {
 impl Dots {
     fn of(extent: Extent) -> Self {
         let most = [(MOST[0] * CELL[0]) as f64, (MOST[1] * CELL[1]) as f64];
-        // One dot is lost at the edge: dots stand on both ends of the window.
+        // One dot is lost at the edge, since dots lie on both ends of the window.
         let scale = ((most[0] - 1.0) / extent.width().max(1e-6))
             .min((most[1] - 1.0) / extent.height().max(1e-6));
         let cells = |length: f64, dots: usize, most: usize| {
@@ -68,7 +67,7 @@ impl Dots {
         Self { extent, scale, columns, rows, set: vec![false; columns * rows] }
     }
 
-    /// Sets the dots along a line, as far as it lies in the window.
+    /// Sets the dots along the part of a line inside the window.
     fn line(&mut self, from: Point, to: Point) {
         let Some([from, to]) = clipped(&self.extent, from, to) else { return };
         let at = |point: Point| {
@@ -103,12 +102,12 @@ impl Dots {
             let cells = (0..self.columns).step_by(CELL[0]).map(|column| cell(row, column));
             cells.collect::<String>().trim_end().to_owned()
         };
-        // Where all has come down, the room above it is of no use.
+        // After a collapse, the space above is omitted.
         (0..self.rows).step_by(CELL[1]).map(line).skip_while(String::is_empty).collect()
     }
 }
 
-/// The part of a line that lies in a window (Liang and Barsky); None when there is none.
+/// Clips a line to a window (Liang and Barsky); `None` if nothing is inside.
 fn clipped(extent: &Extent, from: Point, to: Point) -> Option<[Point; 2]> {
     let mut part = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
@@ -128,9 +127,9 @@ fn clipped(extent: &Extent, from: Point, to: Point) -> Option<[Point; 2]> {
     (part[0] <= part[1]).then(|| part.map(at))
 }
 
-/// A cell of eight dots; an empty one is a space.
+/// Returns the character of a cell of eight dots; a space if it is empty.
 fn braille(dot: impl Fn(usize, usize) -> bool) -> char {
-    // The order in which the standard numbers the dots.
+    // Dot numbers of the Unicode standard.
     const BITS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
     let mut code = 0;
     for (x, column) in BITS.iter().enumerate() {
@@ -141,7 +140,7 @@ fn braille(dot: impl Fn(usize, usize) -> bool) -> char {
     if code == 0 { ' ' } else { char::from_u32(0x2800 + code).unwrap_or(' ') }
 }
 
-/// The key that looks most like a cell.
+/// Returns the ASCII character that resembles a cell most.
 fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
     let count = |rows: [usize; 2]| {
         let dots = rows.iter().flat_map(|y| [dot(0, *y), dot(1, *y)]);
@@ -156,8 +155,8 @@ fn ascii(dot: impl Fn(usize, usize) -> bool) -> char {
     }
 }
 
-/// A history as `columns` characters, the largest value of each stretch as its height over
-/// `highest`. Values that are not finite count as zero; no values give no characters.
+/// Draws a history as `columns` characters, each showing the largest value of its interval over
+/// `highest`. Values that are not finite count as zero; without values the result is empty.
 pub fn sparkline(values: &[f64], highest: f64, columns: usize, characters: Characters) -> String {
     let marks: [char; 8] = match characters {
         Characters::Unicode => ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'],
@@ -195,7 +194,7 @@ mod tests {
             terminal_picture(&scene(vec![[0.0; 3], [0.0, 0.33, 0.0]]), 0, Characters::Unicode);
         assert_eq!(lines.len(), 16);
         assert!(lines.iter().all(|line| line.chars().count() <= 72));
-        // Mirrored dots are other characters, but as many of them stand on either side.
+        // Mirroring changes the characters, but not their number on either side.
         let widths: Vec<usize> = lines.iter().map(|line| line.trim().chars().count()).collect();
         let widest = *widths[..15].iter().max().unwrap();
         assert!((28..=33).contains(&widest), "{lines:#?}"); // measured 31

@@ -1,20 +1,20 @@
-//! Places of axis ticks: steps of 1, 2 or 5 times a power of ten.
+//! Axis ticks: steps of 1, 2 or 5 times a power of ten.
 
 use crate::number;
 
 /// Tick values in increasing order and their labels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// Where the ticks stand.
+    /// Positions of the ticks.
     pub values: Vec<f64>,
-    /// Their texts; an empty one is a tick without a label.
+    /// Their labels; an empty one is a tick without a label.
     pub labels: Vec<String>,
 }
 
-/// Linear ticks inside `[low, high]`, at most about `target` of them.
+/// Returns linear ticks inside `[low, high]`, at most about `target` of them.
 ///
 /// The step is the smallest of 1, 2, 5 × 10ⁿ that gives no more than `target` intervals.
-/// A range that is empty, reversed or not finite gives no ticks.
+/// An empty, reversed or infinite range gives no ticks.
 ///
 /// ```
 /// let ticks = barrelstack_report::linear_ticks(0.0, 1.0, 5);
@@ -23,7 +23,7 @@ pub struct Ticks {
 pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     let none = Ticks { values: Vec::new(), labels: Vec::new() };
     let span = high - low;
-    // Below this the ticks cannot be told apart in double precision.
+    // Below this the ticks are indistinguishable in double precision.
     let resolvable = span > 1e-12 * low.abs().max(high.abs());
     if !(span.is_finite() && span > 0.0 && resolvable) {
         return none;
@@ -31,7 +31,7 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     let rough = span / target.max(1) as f64;
     let mut exponent = rough.log10().floor();
     let mantissa = rough / 10_f64.powf(exponent);
-    // The slack keeps 0.2/0.1-like quotients from jumping to the next step.
+    // The slack keeps quotients such as 0.2/0.1 from taking the next step.
     let factor = match mantissa {
         m if m <= 1.0 + 1e-9 => 1.0,
         m if m <= 2.0 + 1e-9 => 2.0,
@@ -74,8 +74,8 @@ pub fn linear_ticks(low: f64, high: f64, target: usize) -> Ticks {
     Ticks { values, labels }
 }
 
-/// Logarithmic ticks inside `[low, high]`, both above zero: 1, 2, 5 × 10ⁿ labeled up to three
-/// decades, powers of ten labeled beyond that. Bad ranges give no ticks.
+/// Returns logarithmic ticks inside `[low, high]`, both above zero: 1, 2, 5 × 10ⁿ labeled up to three
+/// decades, powers of ten labeled beyond that. Invalid ranges give no ticks.
 pub fn log_ticks(low: f64, high: f64) -> Ticks {
     let mut ticks = Ticks { values: Vec::new(), labels: Vec::new() };
     if !(low > 0.0 && high > low && high.is_finite()) {
@@ -108,7 +108,7 @@ pub fn log_ticks(low: f64, high: f64) -> Ticks {
     ticks
 }
 
-/// A length of 1, 2 or 5 × 10ⁿ, the largest not above `most`; zero when `most` is not above zero.
+/// Returns the largest length of 1, 2 or 5 × 10ⁿ not above `most`; zero when `most` is not above zero.
 pub(crate) fn round_length(most: f64) -> f64 {
     if !(most.is_finite() && most > 0.0) {
         return 0.0;

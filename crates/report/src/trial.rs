@@ -1,19 +1,19 @@
-//! "Try a change": a page that holds a program, inside a report.
+//! "Try a change": a page with a program, embedded in a report.
 
-/// A page that holds a program, and what it starts with.
+/// A page with a program, and its start data.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a> {
     /// The page, as [`Shell`](crate::Shell) makes it.
     pub page: &'a str,
-    /// What it finds in its element `start`: JSON.
+    /// The content of its element `start`: JSON.
     pub start: &'a str,
 }
 
-/// What opens it, as markup.
+/// Markup of the control that opens it.
 pub(crate) const OPENER: &str = include_str!("../assets/trial.html");
 
-/// The script that does.
+/// Script of the control.
 pub(crate) const SCRIPT: &str = include_str!("../assets/trial.js");
 
-/// How that looks.
+/// Style sheet of the control.
 pub(crate) const STYLE: &str = include_str!("../assets/trial.css");

@@ -1,4 +1,4 @@
-//! A scene as a time series for ParaView: VTK `PolyData` in XML, text throughout.
+//! Scenes as time series for ParaView: VTK `PolyData` in XML, as text.
 
 mod solids;
 
@@ -13,22 +13,22 @@ use crate::{
     scene::{Point, Pose2, place, window},
 };
 
-/// The files of a scene for ParaView, for a folder of their own: `stack.pvd`, which is the one to
-/// open, a `bodies-*.vtp` and a `forces-*.vtp` for each of its times, and `bodies.csv` with the
-/// names behind the numbers of the bodies.
+/// Returns the files of a scene for ParaView, for a folder of their own: `stack.pvd`, which is the one to
+/// open, a `bodies-*.vtp` and a `forces-*.vtp` for each of its times, and `bodies.csv` with the names of
+/// the bodies by number.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film).
 /// The plane of the scene is y = 0, z up, lengths in m.
 ///
 /// - Bodies: closed outlines are polygons, open ones and marks are lines. Cells carry `body` (its
-///   place in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device), points carry
+///   index in the scene) and `role` (0 ground, 1 barrel, 2 rack, 3 block, 4 device), points carry
 ///   `displacement` (m) from the first frame. A body without a finite pose is left out.
 /// - Forces: a vertex at each point of contact, with `force` (N) as a vector.
 pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     let frames = sampled(scene, rate);
     let digits = frames.len().to_string().len().max(4);
     let mut index = opened_index();
-    // The ground goes on for hundreds of meters; a viewer fits its first picture to all of it.
+    // The ground is hundreds of meters long, and a viewer fits its first picture to all of it.
     let view = window(scene, &frames);
     let sight = [view.lower[0] - view.width(), view.upper[0] + view.width()];
     let mut files = Vec::new();
@@ -50,14 +50,14 @@ pub fn paraview(scene: &Scene, rate: f64) -> Vec<Attachment> {
     files
 }
 
-/// The start of the file that lists all others.
+/// Returns the start of the index file.
 fn opened_index() -> String {
     "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
      byte_order=\"LittleEndian\">\n<Collection>\n"
         .to_owned()
 }
 
-/// A file of a time (s) in it; what of one time are several parts has a file each.
+/// Adds a file of a time (s) to the index; several parts of one time have a file each.
 fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     // Writing to a String cannot fail, here and below.
     let _ = writeln!(
@@ -66,12 +66,12 @@ fn index_entry(index: &mut String, time: f64, part: usize, file: &str) {
     );
 }
 
-/// All of it.
+/// Returns the complete index file.
 fn closed_index(index: String) -> String {
     index + "</Collection>\n</VTKFile>\n"
 }
 
-/// Points, cells and their data, gathered before they are written.
+/// Points, cells and their data.
 #[derive(Default)]
 struct Mesh {
     points: Vec<Point>,
@@ -80,7 +80,7 @@ struct Mesh {
     polygons: Vec<Cell>,
 }
 
-/// A run of points that belongs to a body.
+/// A polyline or polygon of a body.
 struct Cell {
     points: Vec<usize>,
     body: usize,
@@ -103,7 +103,7 @@ fn bodies(scene: &Scene, frame: usize, sight: [f64; 2]) -> String {
     mesh.write()
 }
 
-/// The part of a line between `from` and `to` along x.
+/// Returns the part of a line between `from` and `to` along x.
 fn shortened(line: &Polyline, [from, to]: [f64; 2]) -> Polyline {
     let mut points: Vec<Point> = Vec::new();
     for pair in line.points.windows(2) {
@@ -178,7 +178,7 @@ fn forces(scene: &Scene, frame: usize) -> String {
     poly_data("", &piece)
 }
 
-/// The start of a piece, up to its vectors: how many points it has, vertices, lines and polygons.
+/// Returns the start of a piece, up to its vectors, with the numbers of points, vertices, lines and polygons.
 fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) -> String {
     format!(
         "<Piece NumberOfPoints=\"{points}\" NumberOfVerts=\"{vertices}\" NumberOfLines=\"{lines}\" \
@@ -186,7 +186,7 @@ fn piece(points: usize, [vertices, lines, polygons]: [usize; 3], vectors: &str) 
     )
 }
 
-/// A file of one piece, with the attributes that tell how its arrays are packed.
+/// Wraps one piece into a file, with the attributes of the array encoding.
 fn poly_data(packing: &str, piece: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" \
@@ -194,7 +194,7 @@ fn poly_data(packing: &str, piece: &str) -> String {
     )
 }
 
-/// Vectors of the plane as vectors of space, with every digit they have.
+/// Writes plane vectors as spatial vectors, at full precision.
 fn vectors(out: &mut String, name: &str, values: &[Point]) {
     let _ = writeln!(
         out,

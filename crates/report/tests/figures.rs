@@ -173,7 +173,7 @@ fn strips_color_their_bodies_with_rules_that_reach_into_use() {
         .collect();
     assert!(drawn.contains(&"bs-body bs-barrel"));
     for class in drawn.iter().flat_map(|class| class.split(' ')) {
-        // A selector with an ancestor in front matches nothing inside <use>.
+        // A selector with an ancestor matches nothing inside <use>.
         assert!(
             style.lines().any(|line| line.starts_with(&format!(".{class} {{"))),
             "no rule of its own for {class}"
@@ -199,7 +199,7 @@ fn all_panels_of_a_strip_have_one_scale_and_one_size() {
     let transforms = of("transform", "matrix(");
     assert_eq!(transforms.len(), 6);
     assert!(transforms.windows(2).all(|pair| pair[0] == pair[1]), "{transforms:?}");
-    // 4 barrels are 1.8 m high: what has gone 40 m away does not shrink them below 90 px a meter.
+    // 4 barrels are 1.8 m high: a body 40 m away does not reduce them below 90 px per meter.
     let scale: f64 = transforms[0]["matrix(".len()..].split(' ').next().unwrap().parse().unwrap();
     assert!(scale > 90.0, "{scale}"); // measured 103
 }
@@ -226,7 +226,7 @@ fn a_tie_is_drawn_between_its_bodies_until_it_tears() {
     tied.ties = vec![
         Tie { bodies: [1, 2], points, torn_at: None },
         Tie { bodies: [1, 2], points, torn_at: Some(torn_at) },
-        // A body that is not there.
+        // A body that does not exist.
         Tie { bodies: [1, 9], points, torn_at: None },
     ];
     let panels = [0.0, tied.frames.times[59]].map(|time| Panel { time, note: String::new() });
@@ -272,7 +272,7 @@ fn attachments_have_names_that_differ_and_are_safe() {
     }
 }
 
-/// Where a word of a drawing stands, and by which end.
+/// Returns the position and alignment of a text of a drawing.
 fn word(svg: &roxmltree::Document<'_>, text: &str) -> ([f64; 2], &'static str) {
     let node =
         svg.descendants().find(|node| node.text() == Some(text) && node.has_tag_name("text"));
@@ -318,11 +318,11 @@ fn a_name_stands_left_of_its_bar_and_at_its_height() {
     let ([x, y], anchor) = word(&parsed, "friction");
     assert_eq!(anchor, "end");
     assert!(x < starts[0][0] && (y - 4.0 - starts[0][1]).abs() < 1.0, "{x} {y} {starts:?}");
-    // A long name is broken where its words are joined, and its lines lie about its bar.
+    // A long name is broken at joining characters, and its lines are centered on its bar.
     let ([_, first], _) = word(&parsed, "interface.rack-ground.friction.");
     let ([_, last], _) = word(&parsed, "coefficient");
     assert!((0.5 * (first + last) - 4.0 - starts[1][1]).abs() < 1.0, "{first} {last} {starts:?}");
-    // There are no numbers beside names.
+    // An axis of names has no numbers.
     assert!(
         !parsed
             .descendants()

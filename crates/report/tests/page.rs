@@ -1,4 +1,4 @@
-//! Pages: nothing in a text can become markup, nothing asks the network, nothing empty breaks.
+//! Pages: no text becomes markup, no page makes network requests, empty blocks are harmless.
 
 mod common;
 
@@ -10,7 +10,7 @@ use barrelstack_report::{
 };
 use common::{HOSTILE, document, payload, player, scene};
 
-/// A page without the contents of its scripts and styles.
+/// Returns a page without the contents of its scripts and styles.
 fn markup(page: &str) -> String {
     let mut out = String::new();
     let mut rest = page;
@@ -73,7 +73,7 @@ fn advice_stands_under_the_headline_and_the_numbers_behind_it_are_folded() {
     assert!(at("Three levels would have stood.") < at("class=\"lead\""));
     assert!(at("<code>barrelstack compare &#39;a b&#39;</code>") < at("<details class=\"fine\">"));
     assert!(at("<details class=\"fine\">") < at("0.37\u{a0}g"));
-    // A word that does not stand in the page is not explained.
+    // A term that does not occur in the page is not explained.
     assert!(page.contains("id=\"word-0\">how far the top moves") && !page.contains("uplift"));
     let text = markdown(&doc, "").text;
     let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part} in {text}"));
@@ -237,7 +237,7 @@ fn what_stands_still_has_a_drawing_for_a_phone_with_letters_as_large() {
         for word in parsed.descendants().filter(|node| node.attribute("class") == Some("label")) {
             let x: f64 = word.attribute("x").unwrap().parse().unwrap();
             if word.attribute("text-anchor") == Some("start") {
-                // Half a letter's size for each letter is more than they take.
+                // Half the font size per letter is more than the letters take.
                 let wide = 0.5 * 12.0 * word.text().unwrap().len() as f64;
                 assert!(x + wide <= width, "{:?} leaves the picture", word.text());
             }
@@ -262,11 +262,11 @@ fn a_program_that_a_page_holds_cannot_end_its_script_and_may_ask_for_nothing() {
     };
     let page = shell.html();
     assert!(page.contains("\nlet kept = 1;\n") && !page.contains("of no use there"));
-    // What is held for later stands behind the scripts.
+    // Data loaded last stand after the scripts.
     assert!(page.rfind("id=\"engine\"") > page.find("let kept"));
     for page in [report, shell.html()] {
         assert!(!page.contains(HOSTILE));
-        // Every script ends where it was meant to.
+        // Every script ends where intended.
         assert!(!markup(&page).contains("</script"), "{}", markup(&page));
         let policy =
             page.split("content=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();

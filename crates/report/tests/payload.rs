@@ -1,4 +1,4 @@
-//! What a page carries is what the scene holds: decoded here as the page's scripts decode it.
+//! The data of a page reproduce the scene, decoded here as by the scripts of the page.
 
 mod common;
 
@@ -72,7 +72,7 @@ fn a_body_that_rolls_away_does_not_widen_the_view() {
         view[2] - view[0]
     };
     let (before, after) = (width(still), width(rolling));
-    // It may be seen on its way out, as far as the reach of the window, but no farther: it goes 60 m.
+    // It may be visible up to the reach of the window, but no farther: it goes 60 m.
     assert!(after - before < 2.5, "{before} {after}"); // measured 2.02
 }
 

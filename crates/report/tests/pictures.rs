@@ -1,4 +1,4 @@
-//! Pixels, paper and films show what the drawing says, read back by decoders.
+//! Pixels, PDF and films reproduce the drawing, as checked by decoders.
 #![allow(clippy::unwrap_used, reason = "a file that cannot be read fails the test")]
 
 mod common;
@@ -18,7 +18,7 @@ fn strip() -> Figure {
     }
 }
 
-/// Red, green and blue of a PNG, row by row.
+/// Returns red, green and blue of a PNG, row by row.
 struct Pixels {
     width: usize,
     height: usize,
@@ -55,7 +55,7 @@ fn a_png_has_the_size_and_the_colors_of_the_drawing() {
             pixels.rgb.iter().filter(|pixel| **pixel == color).count() as f64
                 / pixels.rgb.len() as f64
         };
-        // Wood: two discs. Edges and marks take less of it at more dots.
+        // Wood: two discs. Edges and marks take a smaller share at higher resolution.
         let wood = share([0xdc, 0xb6, 0x7f]);
         assert!((0.40..0.46).contains(&wood), "{wood}"); // measured 0.431 at 96 dpi, 0.436 at 300
     }
@@ -76,7 +76,7 @@ fn on_paper(document: &Document, paper: Paper) -> lopdf::Document {
     lopdf::Document::load_mem(&document_pdf(document, paper)).unwrap()
 }
 
-/// The words of a PDF, with single spaces.
+/// Returns the text of a PDF, with single spaces.
 fn words(pdf: &lopdf::Document) -> String {
     let pages: Vec<u32> = pdf.get_pages().keys().copied().collect();
     let text = pdf.extract_text(&pages).unwrap();
@@ -114,7 +114,7 @@ fn words_on_paper_are_words() {
         assert!(text.contains(wanted), "{wanted}: {text}");
     }
     assert!(pages >= 3, "{pages}");
-    // The head of a table that goes on is there again.
+    // The head of a table is repeated on the next page.
     assert!(text.matches("value (cm)").count() >= 2, "{text}");
     assert_eq!(text.matches("2.04").count(), 80);
 }
@@ -155,7 +155,7 @@ fn a_document_of_hostile_words_is_still_a_pdf() {
     assert!(on_paper(&hostile, Paper::Letter).get_pages().len() > 2);
 }
 
-/// Every picture that a GIF shows, composed, with its delay (hundredths).
+/// Returns every picture of a GIF, composed, with its delay (hundredths of a second).
 fn gif_pictures(file: &[u8]) -> Vec<(Vec<[u8; 3]>, u32)> {
     let mut reader = gif::DecodeOptions::new().read_info(file).unwrap();
     let (width, height) = (usize::from(reader.width()), usize::from(reader.height()));
@@ -175,7 +175,7 @@ fn gif_pictures(file: &[u8]) -> Vec<(Vec<[u8; 3]>, u32)> {
     shown
 }
 
-/// The same of an animated PNG.
+/// Returns every picture of an animated PNG, composed, with its delay.
 fn apng_pictures(file: &[u8]) -> Vec<(Vec<[u8; 3]>, u32)> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
     let info = reader.info();
@@ -209,7 +209,7 @@ fn an_animation_shows_the_pictures_of_the_film() {
     let animation = Animation::of(&film, 300).unwrap();
     let shown = gif_pictures(&animation.gif());
     assert_eq!(shown, apng_pictures(&animation.apng()));
-    // Everything moves all the time: no picture is merged with the one before.
+    // Everything moves in every frame: no picture is merged with the one before.
     assert_eq!(shown.len(), film.len());
     let whole = decoded(&film.png(0, 96.0).unwrap());
     let dpi = 96.0 * 300.0 / whole.width.max(whole.height) as f64;
@@ -229,7 +229,7 @@ fn an_animation_shows_the_pictures_of_the_film() {
 
 #[test]
 fn ten_seconds_of_a_moving_stack_fit_a_mail() {
-    // A tenth of them here, in which everything moves.
+    // A tenth of them here, with everything moving.
     let film = Film::of_run(Arc::new(scene(8, 61)), 25.0);
     assert_eq!(film.len(), 26);
     let animation = Animation::of(&film, 480).unwrap();
@@ -238,15 +238,14 @@ fn ten_seconds_of_a_moving_stack_fit_a_mail() {
     assert!(sizes.iter().all(|size| *size < 300_000), "{sizes:?}");
 }
 
-/// An element of the structure of a PDF: its role, what it is in words, and the pages that it is
-/// painted on.
+/// A structure element of a PDF: its role, its text alternative, and the pages with its content.
 struct Element {
     role: String,
     words: Option<String>,
     pages: Vec<lopdf::ObjectId>,
 }
 
-/// The elements in reading order.
+/// Returns the elements in reading order.
 fn elements(pdf: &lopdf::Document) -> Vec<Element> {
     fn walk(pdf: &lopdf::Document, id: lopdf::ObjectId, found: &mut Vec<Element>) {
         let element = pdf.get_dictionary(id).unwrap();
@@ -283,11 +282,11 @@ fn paper_is_tagged_from_the_headline_to_the_last_cell() {
     let found = elements(&pdf);
     let count = |role: &str| found.iter().filter(|element| element.role == role).count();
     assert_eq!(["TH", "LI", "H1"].map(count), [2, 2, 1]);
-    // Two cells of each row, and what provenance and events have.
+    // Two cells of each row, and those of provenance and events.
     assert!(count("TD") >= 142, "{}", count("TD"));
     let figure = found.iter().find(|element| element.role == "Figure").unwrap();
     assert!(figure.words.as_ref().is_some_and(|words| !words.is_empty()));
-    // The picture is on the first page, the table that is folded away behind everything else.
+    // The picture is on the first page, the folded table after everything else.
     assert_eq!(Some(&figure.pages[0]), pdf.get_pages().get(&1));
     let first_head = found.iter().position(|element| element.role == "TH").unwrap();
     let last_list = found.iter().rposition(|element| element.role == "L").unwrap();

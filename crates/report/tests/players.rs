@@ -1,4 +1,4 @@
-//! Several scenes on one clock: what the page carries, what is on paper, what Markdown says.
+//! Several scenes in step: data in the page, static pictures, Markdown.
 
 #![allow(clippy::unwrap_used, reason = "a page that cannot be read fails the test")]
 
@@ -75,12 +75,12 @@ fn every_pane_has_its_verdict_with_a_sign_and_events_say_whose_they_are() {
     assert!(page.contains("<div class=\"pane-head falls\"><svg class=\"sign\""));
     assert!(page.contains("<div class=\"pane-head stands\"><svg class=\"sign\""));
     for words in ["Verdict 1.", "Verdict 2.", "run 1", "run 2"] {
-        // Once above the stage and once on paper.
+        // Once above the stage and once in print.
         assert_eq!(page.matches(words).count(), 2, "{words}");
     }
     let event = page.find("B2 leaves</span>").unwrap();
     assert!(page[..event].ends_with("<b class=\"mark\">B</b> "));
-    // In order of time, whoever they belong to.
+    // In order of time, across panes.
     assert!(event < page.find("B1 falls</span>").unwrap());
 }
 
@@ -152,7 +152,7 @@ fn ghosts_come_back_from_the_page_within_a_centimeter() {
         Arc::new(Scene { ghosts: Some(ghosts), ..(*both.panes[0].scene).clone() });
     let data = payload(&html(&document(vec![Block::Players(both)])));
     let ghosts = &data["players"][0]["panes"][0]["ghosts"];
-    // The straight way keeps its two ends, the other its corner; each is followed by a gap.
+    // The straight path keeps its two ends, the other its corner; each is followed by a gap.
     assert_eq!(ghosts["ways"]["n"], 7, "{ghosts}");
     assert_eq!(ghosts["bodies"], serde_json::json!([1]), "a body that is not there has no end");
     assert!(data["players"][0]["panes"][1]["ghosts"].is_null());

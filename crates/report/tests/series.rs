@@ -1,4 +1,4 @@
-//! Series of files: what ParaView reads and the numbered pictures are what the scene holds.
+//! Series of files: ParaView files and numbered pictures reproduce the scene.
 
 mod common;
 
@@ -12,7 +12,7 @@ fn text<'a>(files: &'a [Attachment], name: &str) -> &'a str {
     std::str::from_utf8(&file.bytes).expect("UTF-8")
 }
 
-/// The numbers of the array `name` of a VTK file.
+/// Returns the numbers of the array `name` of a VTK file.
 fn array(file: &str, name: &str) -> Vec<f64> {
     let tree = roxmltree::Document::parse(file).expect("well-formed XML");
     let mut found = tree.descendants().filter(|n| n.attribute("Name") == Some(name));
@@ -27,7 +27,7 @@ fn count(file: &str, what: &str) -> usize {
     piece.attribute(what).expect("a count").parse().expect("a whole number")
 }
 
-/// Where the points of the bodies belong, computed anew from the poses.
+/// Computes the points of the bodies independently from the poses.
 fn expected(scene: &Scene, frame: usize, body: usize) -> Vec<[f64; 2]> {
     let [x, z, angle] = scene.frames.poses[frame][body];
     let lines = scene.bodies[body].outlines.iter().chain(&scene.bodies[body].marks);

@@ -18,7 +18,7 @@ fn tetrahedron(name: &str, level: u32) -> SolidBody {
     }
 }
 
-/// The bytes of an array: one block, whose sizes its header tells.
+/// Returns the bytes of an array: one block, whose sizes are in its header.
 fn bytes(tree: &roxmltree::Document<'_>, name: &str, kind: &str) -> Vec<u8> {
     let node = tree.descendants().find(|node| node.attribute("Name") == Some(name)).unwrap();
     assert_eq!(node.attribute("type"), Some(kind), "{name}");
@@ -92,7 +92,7 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     assert_eq!(whole(&first, "connectivity")[12..15], [4, 6, 5]);
     assert_eq!(whole(&first, "offsets"), [3, 6, 9, 12, 15, 18, 21, 24]);
 
-    // What was lost is left out, and nothing of it is left behind.
+    // A lost body is left out entirely.
     let last = roxmltree::Document::parse(&files[1].1).unwrap();
     assert_eq!(whole(&last, "body"), [0; 4]);
     let near = |found: &[f32; 3], exact: [f32; 3]| {
@@ -101,6 +101,6 @@ fn paraview_sees_bodies_in_space_where_they_are_and_as_they_move() {
     // The corner on x goes to y.
     assert!(near(&vectors(&last, "points")[1], [2.0, 4.0, 4.0]));
     assert!(near(&vectors(&last, "displacement")[1], [1.0, 4.0, 4.0]));
-    // Its center goes along x, and it turns about it.
+    // Its center moves along x, and it rotates about it.
     assert!(near(&vectors(&last, "velocity")[1], [-1.0, 0.0, 0.0]));
 }

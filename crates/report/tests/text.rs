@@ -17,7 +17,7 @@ fn table() -> Table {
     table
 }
 
-/// The cells of a line of a Markdown table; an escaped bar does not divide.
+/// Returns the cells of a line of a Markdown table; an escaped bar does not divide.
 fn cells(line: &str) -> Vec<String> {
     line.trim_start_matches("| ")
         .trim_end_matches(" |")
@@ -114,7 +114,7 @@ fn linear_ticks_lie_inside_at_even_steps_of_one_two_or_five() {
             for next in ticks.values.windows(2) {
                 assert!((next[1] - next[0] - step).abs() < 1e-9 * step.max(high.abs()));
             }
-            // Labels tell the ticks apart.
+            // Labels are distinct.
             let mut labels = ticks.labels.clone();
             labels.dedup();
             assert_eq!(labels.len(), ticks.labels.len(), "{:?}", ticks.labels);

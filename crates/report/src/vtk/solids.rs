@@ -1,4 +1,4 @@
-//! Bodies in space as a time series for ParaView.
+//! Bodies in space as time series for ParaView.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -10,44 +10,45 @@ use super::{closed_index, index_entry, opened_index, piece, poly_data};
 use crate::film::sampled_times;
 use crate::{Attachment, Role, base64, escape};
 
-/// The surface of a body in space, in its frame.
+/// The surface of a body in space, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidBody {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it is.
+    /// Role.
     pub role: Role,
-    /// Level, 1 at the bottom; 0 for what belongs to none.
+    /// Level, 1 at the bottom; 0 if it belongs to none.
     pub level: u32,
     /// Points (m).
     pub points: Vec<[f64; 3]>,
-    /// Triangles by the places of their corners, against the clock as seen from outside.
+    /// Triangles by the indices of their corners, counterclockwise viewed from outside.
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// Bodies in space and how they move.
+/// Bodies in space and their motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solids {
     /// The bodies.
     pub bodies: Vec<SolidBody>,
-    /// The moments (s).
+    /// Times of the frames (s).
     pub times: Vec<f64>,
-    /// For each of them and every body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    /// For each time and body, position (m) and quaternion `w`, `x`, `y`, `z`.
     pub poses: Vec<Vec<[f64; 7]>>,
-    /// For each of them and every body, velocity (m/s) and spin (rad/s).
+    /// For each time and body, velocity (m/s) and angular velocity (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
-/// The files of bodies in space for ParaView, one after the other, for a folder of their own: a `bodies-*.vtp` for
-/// each time, `bodies.csv` with the names behind the numbers of the bodies, and `stack.pvd`, which is the one to open.
+/// Writes the files of bodies in space for ParaView, one after the other, for a folder of their own: a
+/// `bodies-*.vtp` for each time, `bodies.csv` with the names of the bodies by number, and `stack.pvd`, which is the
+/// one to open.
 ///
 /// Times are `1/rate` (s) apart, as for [`Film`](crate::Film); z is up, lengths in m.
 /// Surfaces are triangles.
-/// Cells carry `body` (its place among the bodies), `role` (as in [`paraview`](super::paraview)) and `level`; points
+/// Cells carry `body` (its index), `role` (as in [`paraview`](super::paraview)) and `level`; points
 /// carry `displacement` (m) from the first frame and `velocity` (m/s).
 ///
 /// # Errors
-/// What `put` says.
+/// The first error of `put`.
 pub fn paraview_of_solids<E>(
     solids: &Solids,
     rate: f64,
@@ -71,14 +72,14 @@ pub fn paraview_of_solids<E>(
     put(Attachment { name: "stack.pvd".into(), bytes: closed_index(index).into_bytes() })
 }
 
-/// The bodies at a frame.
+/// Writes the bodies at a frame.
 fn file(solids: &Solids, frame: usize) -> String {
     let Solids { bodies, poses, twists, .. } = solids;
     let (mut points, mut displacements, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
     let (mut corners, mut of_body) = (Vec::new(), Vec::new());
     for (at, body) in bodies.iter().enumerate() {
         let (now, start, twist) = (poses[frame][at], poses[0][at], twists[frame][at]);
-        // What was lost to numbers that are none has no place.
+        // A body whose numbers are not finite has no position.
         if now.iter().chain(&twist).any(|value| !value.is_finite()) {
             continue;
         }
@@ -108,7 +109,7 @@ fn file(solids: &Solids, frame: usize) -> String {
     poly_data(" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", &piece)
 }
 
-/// Where a point of a body is: `p + 2 w (v × r) + 2 v × (v × r)` for the quaternion `w, v`.
+/// Returns the position of a point of a body: `p + 2 w (v × r) + 2 v × (v × r)` for the quaternion `w, v`.
 fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     let v = [a, b, c];
     let once = cross(v, point);
@@ -117,7 +118,7 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7], point: [f64; 3]) -> [f64; 3] {
     [x + along(0), y + along(1), z + along(2)]
 }
 
-/// The velocity of a point of a body that is at a place.
+/// Returns the velocity of a point of a body at a position.
 fn velocity(pose: [f64; 7], [u, v, w, a, b, c]: [f64; 6], place: [f64; 3]) -> [f64; 3] {
     let arm = [place[0] - pose[0], place[1] - pose[1], place[2] - pose[2]];
     let turning = cross([a, b, c], arm);
@@ -128,7 +129,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Vectors in single precision, which is finer than a micrometer at ten meters.
+/// Writes vectors in single precision, which is finer than a micrometer at ten meters.
 #[expect(clippy::cast_possible_truncation, reason = "what a picture shows needs no more")]
 fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
     let bytes: Vec<u8> =
@@ -136,15 +137,15 @@ fn vectors(out: &mut String, name: &str, values: &[[f64; 3]]) {
     array(out, ("Float32", name, 3), &bytes);
 }
 
-/// Whole numbers, none of which comes near the limit of 32 bits.
+/// Writes integers, all far below the limit of 32 bits.
 fn whole(out: &mut String, name: &str, values: impl Iterator<Item = usize>) {
     let number = |value| i32::try_from(value).unwrap_or(i32::MAX);
     let bytes: Vec<u8> = values.flat_map(|value| number(value).to_le_bytes()).collect();
     array(out, ("Int32", name, 1), &bytes);
 }
 
-/// An array as one block, packed by zlib, behind its size before and after: as text a series of a stack that falls would
-/// take a gigabyte.
+/// Writes an array as one block, compressed by zlib, after its sizes before and after compression: as text, the
+/// series of a collapse would take a gigabyte.
 fn array(out: &mut String, (kind, name, components): (&str, &str, u32), bytes: &[u8]) {
     let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
     // Writing to memory cannot fail.

@@ -1,4 +1,4 @@
-//! Scenes and documents that the tests share, and a reader of what a page carries.
+//! Scenes and documents that the tests share, and a reader of the data of a page.
 #![allow(dead_code, reason = "every test file uses a part of this one")]
 #![allow(clippy::unwrap_used, reason = "a page that cannot be read fails the test")]
 
@@ -10,7 +10,7 @@ use barrelstack_report::{
 };
 use serde_json::Value;
 
-/// Text that breaks whatever is not escaped.
+/// Text that corrupts any output that does not escape it.
 pub(crate) const HOSTILE: &str =
     "</script><!-- \"a\" 'b' & <i>c</i> ]]> | * _ ` \u{0} \u{7} 樽 🛢 \u{202e}";
 
@@ -84,7 +84,7 @@ pub(crate) fn player(scene: Scene) -> Block {
     })
 }
 
-/// The JSON that the scripts of a page read.
+/// Returns the JSON data of a page.
 pub(crate) fn payload(page: &str) -> Value {
     let open = "<script type=\"application/json\" id=\"barrelstack-data\">";
     let from = page.find(open).expect("the page carries data") + open.len();
@@ -107,7 +107,7 @@ fn bytes(text: &str) -> Vec<u8> {
     out
 }
 
-/// What `unpack` in `decode.js` does, in the same doubles: one list for each channel.
+/// Equivalent of `unpack` in `decode.js`, in the same doubles: one list for each channel.
 pub(crate) fn unpack(packed: &Value) -> Vec<Vec<f64>> {
     let bytes = bytes(packed["d"].as_str().unwrap());
     let whole = |key: &str| usize::try_from(packed[key].as_u64().unwrap()).unwrap();
