@@ -1,4 +1,4 @@
-//! From the cases of a study to decisions: how likely is collapse, how sure is that, what is lost, how often.
+//! From the cases of a study to decisions: probability of collapse with its uncertainty, losses, annual rates.
 //!
 //! ```text
 //! StudyTable ─▶ Cases ─ limit state × measure ─▶ LimitCurve (raw fractions, fit, bands, warnings)
@@ -51,49 +51,49 @@ pub use measures::MeasureRow;
 pub use modes::ModeIncidence;
 pub use sensitivity::{Effect, Group, Level};
 
-/// What else a decision rests on.
+/// Further inputs of a decision.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
-    /// How often the site is shaken how hard.
+    /// Hazard curve of the site.
     pub hazard: Option<SiteHazard>,
-    /// Years for which a chance is wanted; 50 without.
+    /// Exposure time in years; 50 by default.
     pub years: Option<f64>,
 }
 
-/// Everything that a study says.
+/// Results of a study.
 #[derive(Clone, Debug)]
 pub struct Decision {
     /// The cases.
     pub cases: Cases,
-    /// One curve a limit state, over the measure of the study; the first is the loss of the first seat.
+    /// One fragility curve per limit state, over the measure of the study; the first is the loss of the first seat.
     pub curves: Vec<LimitCurve>,
-    /// How collapse divides among its modes over the measure of the study, the most frequent first.
+    /// Cumulative incidence of each collapse mode over the measure of the study, the most frequent first.
     pub modes: Vec<ModeIncidence>,
     /// Every measure, the most efficient first.
     pub measures: Vec<MeasureRow>,
-    /// Barrels and wine lost at each level, or why they are not known.
+    /// Barrels and wine lost at each level, or the reason why they are unknown.
     pub losses: Result<Losses, String>,
-    /// What varied quantities do to the variance of collapse and of the demands; empty but for a design made
-    /// for it.
+    /// Sobol' indices of varied quantities on collapse and on the demands; empty unless the design is made for
+    /// them.
     pub sensitivities: Vec<Sensitivity>,
-    /// What varied factors change, the largest effect first.
+    /// Effects of varied factors on collapse, the largest first.
     pub effects: Vec<Effect>,
-    /// What it means at the site.
+    /// Annual rates at the site.
     pub site: Option<Site>,
-    /// What the reader must know.
+    /// Warnings for the reader.
     pub warnings: Vec<String>,
     /// The page.
     pub document: Document,
 }
 
 impl Decision {
-    /// The numbers for programs, in SI units.
+    /// Returns the numbers for programs, in SI units.
     pub fn to_document(&self) -> DecisionDocument {
         DecisionDocument::of(self)
     }
 }
 
-/// Why a study decides nothing.
+/// Error of a decision.
 #[derive(Debug, thiserror::Error)]
 pub enum DecisionError {
     /// No case has a verdict.
@@ -110,7 +110,7 @@ pub enum DecisionError {
         "the table of the study has no column `{0}`; it was written by another version of the program"
     )]
     Column(&'static str),
-    /// A cell of a list of numbers holds something else.
+    /// A cell of a list of numbers holds anything else.
     #[error(
         "the table of the study has \"{found}\" in a row of its column `{column}`, where numbers with semicolons between \
          them are expected; run its chunk again"
@@ -118,7 +118,7 @@ pub enum DecisionError {
     List {
         /// The column.
         column: &'static str,
-        /// What stands there.
+        /// The text found there.
         found: String,
     },
     /// The hazard curve cannot be used.
@@ -129,8 +129,8 @@ pub enum DecisionError {
     Study(#[from] StudyError),
 }
 
-/// What decisions rest on, gathered from the rows of a study part by part, so that no table of a million cases
-/// need be in memory.
+/// Accumulates the inputs of a decision from the rows of a study part by part, so that a table of a million cases
+/// need not be in memory.
 struct Gathering {
     made: Provenance,
     cases: cases::Reading,
@@ -150,7 +150,7 @@ impl Gathering {
         })
     }
 
-    /// Reads the rows that follow, in the order of the cases.
+    /// Adds the next rows, in the order of the cases.
     fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
         for (factor, column) in self.factors.iter_mut().zip(table.of_role(Role::Factor)) {
             factor.values.append(column.values.clone()).map_err(StudyError::Table)?;
@@ -159,8 +159,7 @@ impl Gathering {
         self.cases.add(table)
     }
 
-    /// Everything that the study says, when all rows were read; `made` is what they come from, now that it is known
-    /// how many there are.
+    /// Computes the decision when all rows were added; `made` is their provenance, which now includes their number.
     fn decide(self, made: &Provenance, request: &Request) -> Result<Decision, DecisionError> {
         let cases = self.cases.finish()?;
         let effects = sensitivity::effects(&self.factors, made, &cases);
@@ -198,7 +197,7 @@ impl Gathering {
     }
 }
 
-/// Everything that a study says whose table is in memory.
+/// Computes the decision of a study whose table is in memory.
 ///
 /// Resampling starts from the seed of the study, so that the same study gives the same page.
 ///
@@ -211,8 +210,7 @@ pub fn decide(collected: &Collected, request: &Request) -> Result<Decision, Deci
     gathering.decide(&collected.provenance, request)
 }
 
-/// Everything that the study of a folder says, finished or not, and what its rows come from; its table is read part by
-/// part.
+/// Computes the decision of the study in a folder, finished or not, and its provenance; the table is read part by part.
 ///
 /// # Errors
 /// As [`decide`] and [`read_shards`].

@@ -1,4 +1,4 @@
-//! How high is safe: collapse of stacks of two to six levels, in both directions, against the strength of shaking.
+//! Safe heights: collapse of stacks of two to six levels, in both directions, against the strength of shaking.
 //!
 //! Stacks on one kind of rack are shaken by the bundled record of South Napa, by synthetic motions and by the
 //! user's own records, all scaled to the same levels of peak ground velocity; friction is drawn anew for each run.
@@ -23,7 +23,7 @@ pub use json::HeightsDocument;
 pub use plan::{HEIGHTS, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
 
-/// What is asked for.
+/// Request for a study of heights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// Name of a rack of the catalog.
@@ -32,7 +32,7 @@ pub struct Request {
     pub barrel: String,
     /// Files of further motions.
     pub records: Vec<PathBuf>,
-    /// How many synthetic motions; the bundled record comes in addition.
+    /// Number of synthetic motions, in addition to the bundled record.
     pub synthetic: u32,
     /// Seed of everything that is drawn.
     pub seed: u32,
@@ -65,29 +65,29 @@ pub struct Height {
     pub fallen: Vec<f64>,
 }
 
-/// What becomes of stacks of one height in one direction at one level of PGV.
+/// Results of stacks of one height in one direction at one level of PGV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtLevel {
     /// Counts of collapse.
     pub stripe: Stripe,
-    /// Ends of the chance of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
+    /// Ends of the probability of collapse, each of which holds with 95 % confidence (Clopper and Pearson).
     pub interval: Interval,
     /// Mean share of the barrels that fall.
     pub fallen: f64,
 }
 
-/// What is known of the chance of collapse from counts: each end holds with 95 % confidence, whatever the chance is, so
-/// that the upper one is the bound that a headline states.
+/// Returns bounds of the probability of collapse from counts: each end holds with 95 % confidence for any probability,
+/// so that the upper one is the bound that a headline states.
 fn known(stripe: &Stripe) -> Interval {
     clopper_pearson(stripe.failures, stripe.cases, 0.90)
 }
 
 impl Height {
-    /// What becomes of them at a level of PGV (m/s), such as one of [`VELOCITIES`]; none where no run of that level
+    /// Returns the results at a level of PGV (m/s), such as one of [`VELOCITIES`]; `None` where no run of that level
     /// has a verdict.
     pub fn at(&self, velocity: f64) -> Option<AtLevel> {
         let curve = &self.by_velocity;
-        // Levels went through text in cm/s and back.
+        // Levels are rounded when written as text in cm/s.
         let same = |stripe: &Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-9;
         let at = curve.stripes.iter().position(same)?;
         Some(AtLevel {
@@ -107,7 +107,7 @@ pub struct AsRecorded {
     pub view: View,
     /// The component.
     pub motion: String,
-    /// Whether it collapsed.
+    /// `true` if it collapsed.
     pub collapsed: bool,
     /// Share of its barrels that fell.
     pub fallen: f64,
@@ -117,10 +117,10 @@ pub struct AsRecorded {
     pub acceleration: f64,
 }
 
-/// How high is safe.
+/// Results of a study of heights.
 #[derive(Clone, Debug)]
 pub struct Heights {
-    /// What was asked for.
+    /// The request.
     pub request: Request,
     /// Every height in every direction.
     pub heights: Vec<Height>,
@@ -134,27 +134,27 @@ pub struct Heights {
     pub left_out: usize,
     /// Runs whose stack fell under its own weight, before it was shaken.
     pub fallen_at_rest: usize,
-    /// What is to be known of runs that were not followed until nothing moved.
+    /// Notes on runs that were not simulated until nothing moved.
     pub ends: Vec<String>,
-    /// What the reader must know.
+    /// Warnings for the reader.
     pub warnings: Vec<String>,
     /// The page.
     pub document: Document,
 }
 
 impl Heights {
-    /// The stacks of a height in a direction.
+    /// Returns the stacks of a height in a direction.
     pub fn of(&self, levels: u32, view: View) -> Option<&Height> {
         self.heights.iter().find(|height| height.levels == levels && height.view == view)
     }
 
-    /// The numbers for programs, in SI units.
+    /// Returns the numbers for programs, in SI units.
     pub fn to_document(&self) -> HeightsDocument {
         HeightsDocument::of(self)
     }
 }
 
-/// Why there is no answer.
+/// Error of a study of heights.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightsError {
     /// The rack is not in the catalog.
@@ -166,15 +166,14 @@ pub enum HeightsError {
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Its cases decide nothing.
+    /// Its cases do not support a decision.
     #[error(transparent)]
     Decision(#[from] DecisionError),
 }
 
-/// Runs every height in both directions, in folders of their own below `folder`, and goes on where an earlier run
-/// stopped.
+/// Runs every height in both directions, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` hears of every run that is done, of how many in all, and may stop.
+/// `tell` receives the numbers of finished and of all runs, and may cancel.
 ///
 /// # Errors
 /// When the rack is unknown, a record cannot be read, or a folder cannot be written.
@@ -208,7 +207,7 @@ pub fn heights(
     gather(request, &found)
 }
 
-/// What the tables say.
+/// Gathers the results from the tables.
 fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Heights, HeightsError> {
     let (mut heights, mut recorded) = (Vec::new(), Vec::new());
     let (mut runs, mut left_out, mut fallen_at_rest, mut motions) = (0, 0, 0, 0);

@@ -1,4 +1,4 @@
-//! Many runs of stacks: studies, what they mean for decisions, how high is safe, what protects best, and how racks compare.
+//! Many runs of stacks: studies, decisions, safe heights, rankings of protections, and scores of racks.
 //!
 //! ```text
 //! STUDY.toml ─▶ study ─▶ table of cases ─▶ decision (fragility, losses, annual rates) ─▶ page
@@ -28,6 +28,6 @@ mod unknown;
 
 pub use study::Study;
 
-// The domain's rooms, by the names that they have there.
+// The domain's modules, under the names that they have there.
 use barrelstack::{ensemble, ground, outcome, pool, run, scenario, watch};
 use barrelstack_input::{measured, system};

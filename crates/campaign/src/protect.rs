@@ -1,9 +1,9 @@
-//! What protects a stack best for what it costs: fewer levels, other racks, devices, single and in pairs.
+//! Ranking of protections by benefit and cost: fewer levels, other racks, devices, single and in pairs.
 //!
 //! All are shaken by the same motions with the same quantiles of friction, so that differences are those of the
-//! protections and not of luck.
-//! The first round tries everything, every later one only what may still be worth it, under further motions.
-//! A round of a protection in one direction is a study in a folder of its own, so what is stopped goes on from there.
+//! protections and not of sampling.
+//! The first round tries everything, later ones only the contenders, under further motions.
+//! A round of a protection in one direction is a study in a folder of its own, so that an interrupted ranking resumes.
 
 mod json;
 mod options;
@@ -34,23 +34,23 @@ pub use rank::Estimate;
 use rank::{FALLEN, Runs, weights};
 use search::{Search, Trial};
 
-/// Levels of peak ground velocity (m/s) that are shaken where nothing else is asked for.
+/// Default levels of peak ground velocity (m/s).
 pub const VELOCITIES: [f64; 3] = [0.25, 0.50, 0.75];
 
-/// The same where a hazard says how often each is to be expected.
+/// Default levels where a hazard curve weights them.
 const SITE_VELOCITIES: [f64; 4] = [0.15, 0.30, 0.60, 1.20];
 
-/// How hard stacks are shaken.
+/// Strength of shaking.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shaking {
-    /// To these levels of peak ground velocity (m/s), all alike.
+    /// These levels of peak ground velocity (m/s), equally weighted.
     Levels(Vec<f64>),
-    /// As a site is, by its hazard over peak ground velocity.
+    /// The hazard of a site, over peak ground velocity.
     Site(SiteHazard),
 }
 
 impl Shaking {
-    /// The levels of peak ground velocity (m/s).
+    /// Returns the levels of peak ground velocity (m/s).
     fn levels(&self) -> &[f64] {
         match self {
             Self::Levels(levels) => levels,
@@ -66,42 +66,42 @@ impl Shaking {
     }
 }
 
-/// What is asked for.
+/// Request for a ranking.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// The stack.
     pub scenario: Scenario,
-    /// How hard it is shaken.
+    /// Strength of its shaking.
     pub shaking: Shaking,
     /// Files of the motions, in place of the bundled and synthetic ones.
     pub records: Vec<PathBuf>,
     /// A folder of such files.
     pub folder: Option<PathBuf>,
-    /// Motions of a round where none are named.
+    /// Number of motions of a round where none are named.
     pub motions: u32,
-    /// Rounds.
+    /// Number of rounds.
     pub rounds: u32,
-    /// Most that a protection may cost for a stack (US$, the middle of its range).
+    /// Upper limit of the cost of a protection for a stack (US$, the middle of its range).
     pub budget: Option<f64>,
     /// Seed of everything that is drawn.
     pub seed: u32,
 }
 
-/// What a protection came to.
+/// Results of a protection.
 #[derive(Clone, Debug)]
 pub struct Ranked {
     /// The protection.
     pub protection: Protection,
-    /// Share of the runs that collapse at the levels of shaking, all alike; at a site how often a year.
+    /// Share of the runs that collapse, over equally weighted levels of shaking; at a site, collapses a year.
     pub collapse: Estimate,
     /// Barrels of a stack that fall, likewise.
     pub fallen: Estimate,
     /// Barrels of a stack that burst under the central assumption, likewise.
     pub burst: Estimate,
-    /// How many fewer barrels fall than of the stack as it is, under the same motions; none for itself.
+    /// Reduction of fallen barrels against the stack as it is, under the same motions; `None` for itself.
     pub saved: Option<Estimate>,
-    /// The same with an interval that holds for all protections that were tried at once, since the best of many tries
-    /// is looked at.
+    /// That reduction with an interval that holds for all tried protections simultaneously, since the best of many
+    /// is reported.
     pub saved_together: Option<Estimate>,
     /// The direction of shaking in which more barrels fall.
     pub direction: View,
@@ -115,28 +115,28 @@ pub struct Ranked {
     pub fallen_at_rest: usize,
     /// The last round in which it was run, counted from 1.
     pub round: u32,
-    /// Whether nothing that was tried costs no more and loses less.
+    /// `true` if no tried protection costs no more and loses less.
     pub on_front: bool,
-    /// What it is when worst kept, and the barrels that then fall; none where it was not tried so.
+    /// Its worst state of maintenance, and the barrels that then fall; `None` where not tried.
     pub worn: Option<(String, Estimate)>,
 }
 
 impl Ranked {
-    /// The middle of what it costs for a stack (US$).
+    /// Returns the middle of its cost for a stack (US$).
     pub fn cost(&self) -> f64 {
         middle(&self.protection)
     }
 }
 
-/// What protects a stack best.
+/// Ranking of protections.
 #[derive(Clone, Debug)]
 pub struct Ranking {
-    /// What was asked for.
+    /// The request.
     pub request: Request,
-    /// Every protection that was tried: those first that went furthest, of these the one under which fewest barrels
-    /// fall.
+    /// Every protection that was tried, sorted by its last round, the latest first, then by the mean number of fallen
+    /// barrels.
     pub all: Vec<Ranked>,
-    /// What was not tried, and why.
+    /// Protections that were not tried, with reasons.
     pub not_tried: Vec<(String, String)>,
     /// Runs in all.
     pub runs: usize,
@@ -145,18 +145,18 @@ pub struct Ranking {
 }
 
 impl Ranking {
-    /// The stack as it is.
+    /// Returns the stack as it is.
     pub fn as_it_is(&self) -> Option<&Ranked> {
         self.all.iter().find(|one| one.protection.kind == Kind::AsItIs)
     }
 
-    /// How many protections were tried, beside the stack as it is.
+    /// Returns the number of protections tried, besides the stack as it is.
     pub fn tries(&self) -> usize {
         self.all.len().saturating_sub(1)
     }
 
-    /// The one that saves most barrels for its cost, of those that went through all rounds and save some beyond doubt:
-    /// by an interval that holds for all that were tried at once.
+    /// Returns the protection that saves most barrels for its cost, of those that went through all rounds and whose
+    /// saving is significant by an interval that holds for all tried protections simultaneously.
     pub fn best(&self) -> Option<&Ranked> {
         let last = self.all.iter().map(|one| one.round).max();
         let worth = |one: &Ranked| one.saved.map_or(0.0, |saved| saved.mean / one.cost());
@@ -167,13 +167,13 @@ impl Ranking {
         helps.reduce(|best, one| if worth(one) > worth(best) { one } else { best })
     }
 
-    /// The numbers for programs, in SI units.
+    /// Returns the numbers for programs, in SI units.
     pub fn to_document(&self) -> ProtectDocument {
         ProtectDocument::of(self)
     }
 
     /// Runs the stack as it is and with the best protection under the motion of the scenario, and shows them side by
-    /// side on the page; whether these runs went to their ends.
+    /// side on the page; returns `true` if these runs finished.
     ///
     /// # Errors
     /// When one of them cannot be run.
@@ -203,7 +203,7 @@ impl Ranking {
     }
 }
 
-/// Why there is no ranking.
+/// Error of a ranking.
 #[derive(Debug, thiserror::Error)]
 pub enum ProtectError {
     /// A free scene has no levels, racks or devices.
@@ -218,7 +218,7 @@ pub enum ProtectError {
     Hazard {
         /// The file.
         file: String,
-        /// What it is over.
+        /// The measure of the hazard.
         measure: String,
     },
     /// The scenario does not read back.
@@ -233,25 +233,25 @@ pub enum ProtectError {
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Its cases decide nothing.
+    /// Its cases do not support a decision.
     #[error(transparent)]
     Decision(#[from] DecisionError),
 }
 
-/// How far it is: runs of a round.
+/// Progress: runs of a round.
 #[derive(Clone, Copy, Debug)]
 pub struct Reached {
-    /// The round, counted from 1; one more than there are where worn devices are tried.
+    /// The round, counted from 1; worn devices are tried in one more.
     pub round: u32,
-    /// Runs that are done.
+    /// Number of finished runs.
     pub done: u64,
-    /// Of so many.
+    /// Number of all runs.
     pub of: u64,
 }
 
-/// Tries everything that can be done for a stack, in folders below `folder`, and goes on where an earlier run stopped.
+/// Tries all protections of a stack, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` hears how far it is, from several threads, and may stop it.
+/// `tell` receives the progress, from several threads, and may cancel.
 ///
 /// # Errors
 /// When the scenario has no stack, a record cannot be read, or a folder cannot be written.
@@ -270,14 +270,14 @@ pub fn protect(
         let (file, measure) = (site.file.clone(), site.measure.clone());
         return Err(ProtectError::Hazard { file, measure });
     }
-    // What shakes it is the business of the studies.
+    // The studies set the motions.
     let mut base = request.scenario.clone();
     base.motion.source = MotionSource::None;
     let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
     let mut search =
         Search { request, base: &base, folder, options, tell, levels, not_tried: Vec::new() };
     let mut singles = options::singles(&base);
-    // As it is it has to stand before anything else is asked.
+    // The stack as it is has to stand before anything else is tried.
     let mut trials = vec![Trial::new(&base, singles.remove(0))?];
     trials.extend(search.trials(singles));
     let mut open: Vec<usize> = (0..trials.len()).collect();
@@ -289,7 +289,7 @@ pub fn protect(
             let first = trials.len();
             trials.extend(search.trials(pairs));
             let added: Vec<usize> = (first..trials.len()).collect();
-            // They meet the motions that the others have met, and half of all goes on.
+            // They run under the motions of the first round, as the others did, and half of all continue.
             search.round(&mut trials, &added, 0)?;
             open.extend(added);
             open = contenders(&trials, &open, &weights);
@@ -300,7 +300,7 @@ pub fn protect(
         trials.iter().map(|trial| ranked(trial, &trials[0], &weights, tries)).collect();
     mark_front(&mut all);
     search.worn(&trials, &mut all, &weights)?;
-    // What was dropped early has met fewer motions, so its mean is another one.
+    // Trials that were dropped early have run under fewer motions, so that their means do not compare.
     all.sort_by(|a, b| {
         let by_mean = a.fallen.mean.total_cmp(&b.fallen.mean).then(a.cost().total_cmp(&b.cost()));
         b.round.cmp(&a.round).then(by_mean)
@@ -313,7 +313,7 @@ pub fn protect(
     Ok(ranking)
 }
 
-/// Of the trials that are open those that go on.
+/// Returns the open trials that continue.
 fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     let judged = |at: &usize| {
         let trial = &trials[*at];
@@ -325,7 +325,7 @@ fn contenders(trials: &[Trial], open: &[usize], weights: &[f64]) -> Vec<usize> {
     kept.into_iter().map(|at| open[at]).collect()
 }
 
-/// Of each kind of protection the two under which fewest barrels fall.
+/// Returns the two protections of each kind under which fewest barrels fall.
 fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Vec<&'a Protection> {
     let fallen =
         |trial: &Trial| trial.runs[trial.worse(weights)].estimate(FALLEN, weights, 1.0).mean;
@@ -340,7 +340,7 @@ fn best_of_kinds<'a>(trials: &'a [Trial], open: &[usize], weights: &[f64]) -> Ve
     best
 }
 
-/// All pairs of some protections.
+/// Returns all pairs of some protections.
 fn pairs(base: &Scenario, of: &[&Protection]) -> Vec<Protection> {
     let all = of.iter().enumerate();
     all.flat_map(|(at, one)| {
@@ -382,7 +382,7 @@ fn ranked(trial: &Trial, base: &Trial, weights: &[f64], tries: usize) -> Ranked 
     }
 }
 
-/// Marks those that nothing beats in both cost and barrels that fall, of those that went through all rounds.
+/// Marks the Pareto front of cost and fallen barrels, among those that went through all rounds.
 fn mark_front(all: &mut [Ranked]) {
     let last = all.iter().map(|one| one.round).max();
     let mut finalists: Vec<&mut Ranked> =

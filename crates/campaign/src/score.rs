@@ -1,4 +1,4 @@
-//! The RockScore: one number by which racks and devices compare, from a protocol that never changes.
+//! The RockScore: one number that compares racks and devices, by a protocol that never changes.
 //!
 //! Stacks of one height on the rack that is scored, with its devices, are shaken across and along the barrels by fixed
 //! motions at fixed levels of peak ground velocity, as good as new and in every state that use brings.
@@ -27,13 +27,13 @@ use crate::study::{Progress, RunOptions, Study, StudyError};
 pub use json::ScoreDocument;
 pub use protocol::{Protocol, State};
 
-/// Level of all intervals.
+/// Confidence level of all intervals.
 const LEVEL: f64 = 0.95;
 
 /// The peak ground velocity (m/s) at which one stack in ten collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// Of the lognormal curve, with its 95 % interval where records tell one.
+    /// From the lognormal curve, with its 95 % interval where the records determine one.
     Fitted(f64, Option<Interval>),
     /// Between the highest level at which none collapsed and the lowest at which some did, where no level has some of
     /// each; the lower one counts.
@@ -56,7 +56,7 @@ impl Capacity {
             Err(other) => return Err(*other),
         };
         let at = fit.curve.intensity(protocol.chance);
-        // A curve says nothing of shaking that nobody met.
+        // Do not extrapolate the curve beyond the levels that were run.
         Ok(if at < lowest {
             Self::Below(lowest)
         } else if at > highest {
@@ -69,12 +69,12 @@ impl Capacity {
         })
     }
 
-    /// Its 95 % interval, where there is one.
+    /// Returns its 95 % interval, if any.
     pub(crate) fn interval(self) -> Option<Interval> {
         if let Self::Fitted(_, interval) = self { interval } else { None }
     }
 
-    /// The velocity (m/s) that counts: what is below the lowest level counts as nothing.
+    /// Returns the velocity (m/s) that counts: 0 below the lowest level.
     pub fn velocity(self) -> f64 {
         match self {
             Self::Fitted(at, _) | Self::Between(at, _) | Self::Above(at) => at,
@@ -90,9 +90,9 @@ pub struct Scored {
     pub state: State,
     /// The direction.
     pub view: View,
-    /// What it bears.
+    /// Its capacity.
     pub capacity: Capacity,
-    /// The curve of collapse; with the shares that collapsed at each level.
+    /// Fragility curve of collapse, with the shares that collapsed at each level.
     pub curve: LimitCurve,
     /// Runs.
     pub runs: usize,
@@ -103,9 +103,9 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// How many collapsed at a level (m/s) of the protocol; none where no run of that level has a verdict.
+    /// Counts collapses at a level (m/s) of the protocol; `None` where no run of that level has a verdict.
     pub fn at(&self, velocity: f64) -> Option<Stripe> {
-        // Levels went through text and back, and motions were scaled to them.
+        // Levels are rounded when written as text, and motions were scaled to these.
         let same = |stripe: &&Stripe| (stripe.intensity / velocity - 1.0).abs() < 1e-6;
         self.curve.stripes.iter().find(same).copied()
     }
@@ -114,9 +114,9 @@ impl Scored {
 /// A score sheet.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// What is scored, as the protocol stacks it.
+    /// The scored scenario, as the protocol stacks it.
     pub scenario: Scenario,
-    /// By which protocol.
+    /// The protocol.
     pub protocol: Protocol,
     /// Every state in every direction.
     pub rows: Vec<Scored>,
@@ -125,30 +125,30 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// The weakest state and direction.
+    /// Returns the weakest state and direction.
     pub fn weakest(&self) -> Option<&Scored> {
         let by = |a: &&Scored, b: &&Scored| a.capacity.velocity().total_cmp(&b.capacity.velocity());
         self.rows.iter().min_by(by)
     }
 
-    /// The score (cm/s).
+    /// Returns the score (cm/s).
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a velocity of the protocol, positive and below a hundred meters a second"
     )]
     pub fn score(&self) -> u32 {
-        // A level such as 0.15 m/s is a little less in bits.
+        // A level such as 0.15 m/s is slightly less in binary.
         self.weakest().map_or(0, |row| (100.0 * row.capacity.velocity() + 1e-6).floor() as u32)
     }
 
-    /// The numbers for programs, in SI units.
+    /// Returns the numbers for programs, in SI units.
     pub fn to_document(&self) -> ScoreDocument {
         ScoreDocument::of(self)
     }
 }
 
-/// Why there is no score.
+/// Error of a score.
 #[derive(Debug, thiserror::Error)]
 pub enum ScoreError {
     /// A free scene has no racks.
@@ -156,12 +156,12 @@ pub enum ScoreError {
         "\"{0}\" is a free scene, and a RockScore is that of racks and devices: take the scenario of a stack"
     )]
     NoStack(String),
-    /// A state does not go on this stack.
+    /// A state does not fit this stack.
     #[error("the state \"{state}\" cannot be tried on this stack")]
     State {
         /// Its name.
         state: String,
-        /// Why.
+        /// The reason.
         #[source]
         source: ScenarioError,
     },
@@ -174,7 +174,7 @@ pub enum ScoreError {
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// Its cases decide nothing.
+    /// Its cases do not support a decision.
     #[error(transparent)]
     Decision(#[from] DecisionError),
     /// No curve describes the runs.
@@ -184,15 +184,15 @@ pub enum ScoreError {
         state: String,
         /// The direction, in words.
         direction: &'static str,
-        /// Why.
+        /// The reason.
         #[source]
         source: FitError,
     },
 }
 
-/// Scores the rack and the devices of a scenario, in folders below `folder`, and goes on where an earlier run stopped.
+/// Scores the rack and the devices of a scenario, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` hears of every run that is done, of how many in all, and may stop it.
+/// `tell` receives the numbers of finished and of all runs, and may cancel.
 ///
 /// # Errors
 /// When the scenario has no stack, a state cannot be built, or a folder cannot be written.
@@ -206,7 +206,7 @@ pub fn score(
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
     }
-    // What shakes it is the business of the protocol.
+    // The protocol sets the motions.
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
     let refused = |state: &str| {

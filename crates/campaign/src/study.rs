@@ -1,4 +1,4 @@
-//! Studies: one scenario run many times, with other values and other motions.
+//! Studies: one scenario run many times, with varied values and motions.
 //!
 //! ```text
 //! STUDY.toml ─▶ Study ─ design ─▶ cases ─ plan ─▶ chunks ─ ensemble ─▶ one Parquet shard a chunk
@@ -7,9 +7,9 @@
 //! ```
 //!
 //! A study is a deterministic list of chunks.
-//! A chunk is run as a whole, and its shard gets its name only when it is whole and on the disk, so a shard that is
-//! there is a chunk that is done: what is killed goes on from there, on one machine or on many.
-//! What is drawn for a case depends on the seed of the study and on what the case is, not on how many there are.
+//! A chunk is run as a whole, and its shard is renamed only when it is complete and on the disk, so that an existing
+//! shard is a finished chunk: an interrupted study resumes from there, on one machine or on many.
+//! Draws for a case depend on the seed of the study and on the identity of the case, not on the number of cases.
 //!
 //! ```no_run
 //! use std::ops::ControlFlow;
@@ -76,7 +76,7 @@ use motions::Motion;
 use plan::{Chunks, Sizes};
 use setting::Setting;
 
-/// A study: what is varied, what shakes it, and which cases are run.
+/// A study: its factors, its motions, and the design of its cases.
 ///
 /// ```
 /// use barrelstack_campaign::Study;
@@ -91,17 +91,17 @@ pub struct Study {
     pub title: String,
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// Which cases are run.
+    /// Design of the cases.
     pub design: Design,
     /// The text of the study file.
     text: String,
     template: Template,
-    /// Files of the motion of the base that are at hand.
+    /// Files of the motion of the base that were given in memory.
     held: Vec<FileRef>,
     factors: Vec<Factor>,
     motions: Vec<Motion>,
     intensity: Option<Intensity>,
-    /// Whether some of its cases look at their stack in space.
+    /// `true` if some of its cases simulate their stack in space.
     in_space: bool,
     /// The levels that are crossed with the rest.
     levels: Vec<Option<f64>>,
@@ -121,17 +121,17 @@ struct Factor {
     /// Paths of the fields that take the value.
     fields: Vec<String>,
     variation: Variation,
-    /// What its column holds.
+    /// Specification of its column.
     column: ColumnSpec,
     /// The value of the base, where it has one.
     base: Option<Value>,
-    /// Whether it changes what bodies and contacts there are.
+    /// `true` if it changes which bodies and contacts there are.
     structural: bool,
-    /// Whether a value of it looks at the stack in space.
+    /// `true` if one of its values simulates the stack in space.
     in_space: bool,
 }
 
-/// How a field is varied.
+/// Variation of a field.
 #[derive(Clone, Debug)]
 enum Variation {
     Values(Vec<Setting>),
@@ -139,7 +139,7 @@ enum Variation {
 }
 
 impl Factor {
-    /// The values that are crossed with those of other factors.
+    /// Returns the values that are crossed with those of other factors.
     fn crossed(&self) -> Option<&[Setting]> {
         match &self.variation {
             Variation::Values(values) => Some(values),
@@ -164,12 +164,12 @@ enum Levels {
     Hunted,
 }
 
-/// The schema (JSON Schema 2020-12) of a study file, for completion and checking in editors.
+/// Returns the schema (JSON Schema 2020-12) of a study file, for completion and validation in editors.
 pub fn json_schema() -> serde_json::Value {
     barrelstack_input::schema::of_file("barrelstack study", &STUDY)
 }
 
-/// Every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
+/// Returns every table and field of a study file in Markdown; those of `[base]` are those of a scenario file.
 pub fn reference() -> String {
     let fields = barrelstack_input::reference::of_tables(
         &STUDY,
@@ -180,19 +180,19 @@ pub fn reference() -> String {
 }
 
 impl Study {
-    /// The fingerprint of the study: its text, the scenarios it extends, the bytes of its records, and the version of
-    /// the program.
+    /// Returns the fingerprint of the study: its text, the scenarios it extends, the bytes of its records, and the
+    /// version of the program.
     pub fn hash(&self) -> u64 {
         self.hash
     }
 
-    /// How many cases there are; of an adaptive design, at most.
+    /// Returns the number of cases; of an adaptive design, the maximum.
     pub fn cases(&self) -> u64 {
         let runs = if let Design::Ida(hunt) = &self.design { hunt.runs } else { 1 };
         self.cases.count(self).saturating_mul(u64::from(runs))
     }
 
-    /// Whether the number of cases depends on what becomes of them.
+    /// `true` if the number of cases depends on their results.
     pub fn is_adaptive(&self) -> bool {
         match &self.design {
             Design::Ida(_) => true,
@@ -206,12 +206,12 @@ impl Study {
         }
     }
 
-    /// What a chunk has: "cases", or "hunts" of an incremental dynamic analysis.
+    /// Returns the unit of a chunk: "cases", or "hunts" of an incremental dynamic analysis.
     pub fn chunk_unit(&self) -> &'static str {
         if matches!(self.design, Design::Ida(_)) { "hunts" } else { "cases" }
     }
 
-    /// How many motions there are.
+    /// Returns the number of motions.
     pub fn motions(&self) -> usize {
         self.motions.len()
     }

@@ -1,26 +1,27 @@
-//! What nobody has measured on a stack, as factors of a study: the draws of `[imperfections]`.
+//! Unmeasured parameters of a stack as factors of a study: the draws of `[imperfections]`.
 //!
-//! A run draws its variants by them, and so do the chart of heights, the ranking of protections and the scores, so that
-//! what they say of one stack rests on one set of medians and spreads.
+//! Variants of a run, the chart of heights, the ranking of protections and the scores all use them, so that their
+//! results for one stack rest on one set of medians and spreads.
 
 use std::fmt::Write as _;
 
 use crate::scenario::{Imperfection, Scenario, Scene, Setting};
 
-/// The pairs that seats are, each with the pair of the same materials that meets in impacts.
+/// Pairs that form seats, each with the pair of the same materials that meets in impacts.
 const SEATS: [(&str, Option<&str>); 3] = [
     ("rack-ground", Some("fallen-rack-ground")),
     ("barrel-rack", Some("fallen-barrel-rack")),
     ("rack-rack", Some("fallen-rack-rack")),
 ];
 
-/// A value as TOML writes it: a bare number, or a quantity in quotes.
+/// Formats a value for TOML: a bare number, or a quantity in quotes.
 fn toml(value: &str) -> String {
     let bare = value.starts_with('"') || value.parse::<f64>().is_ok();
     if bare { value.to_owned() } else { format!("\"{value}\"") }
 }
 
-/// The tables `[[factor]]` of a scenario: friction, stiffness and damping of its seats, about what it states.
+/// Returns the tables `[[factor]]` of a scenario: friction, stiffness and damping of its seats, about the stated
+/// values.
 ///
 /// A free scene, and one whose variants differ in places and masses alone, has none.
 pub(crate) fn factors(scenario: &Scenario) -> String {
@@ -52,7 +53,8 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             );
         };
         let friction = "friction.coefficient";
-        // What is at rest may not slide more easily than what slides, and what has fallen is of the same materials.
+        // Static friction scales with kinetic friction, so as not to fall below it; fallen bodies have the same
+        // materials.
         let others = [
             Some(path("friction.static_coefficient")),
             fallen.map(|fallen| format!("interface.{fallen}.{friction}")),
@@ -71,7 +73,7 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
         factor("friction", friction, &also, dispersion, "");
         factor("stiffness", "stiffness", &[], spread.stiffness, "");
         factor("damping", "damping", &[], spread.damping, "");
-        // The logarithm of a restitution goes with the damping ratio while that is small.
+        // The logarithm of a restitution is proportional to the damping ratio while that is small.
         let restitution = of(&path("restitution")).and_then(|one| one.value.parse::<f64>().ok());
         if let Some(restitution) = restitution {
             let dispersion = -spread.damping * libm::log(restitution);

@@ -1,4 +1,4 @@
-//! Folders that cannot be fooled: damage in any file of a study is named or healed, and links lead nothing out of it.
+//! Damaged folders: damage in any file of a study is reported or repaired, and links lead nothing out of the folder.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -28,7 +28,7 @@ fn study() -> Study {
     Study::parse("damage.toml", &text).unwrap()
 }
 
-/// Runs what is missing; the progress that was last told.
+/// Runs the missing chunks and returns the last reported progress.
 fn run(study: &Study, folder: &Path) -> Result<Progress, StudyError> {
     let last = std::sync::Mutex::new(Progress::default());
     study.run_all(folder, &RunOptions::default(), &|progress| {
@@ -38,7 +38,7 @@ fn run(study: &Study, folder: &Path) -> Result<Progress, StudyError> {
     Ok(last.into_inner().unwrap())
 }
 
-/// The files of a folder and those below it, but for shards that were set aside.
+/// Reads the files of a folder and those below it, except for shards that were set aside.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -53,7 +53,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// What a folder says: as what it belongs to and what its rows are, or the refusal.
+/// Returns status, rows and decision of a folder, or the refusals.
 fn told(folder: &Path) -> [Result<String, String>; 3] {
     let words = |error: StudyError| error.to_string();
     let status = Collected::status(folder).map(|status| format!("{status:?}")).map_err(words);
@@ -64,8 +64,8 @@ fn told(folder: &Path) -> [Result<String, String>; 3] {
     [status, rows, decided]
 }
 
-/// Changes every file of a finished folder so many times, by a digit or a bit; none is accepted in silence: what is read
-/// is refused or as it was, and another run makes the folder as it was or refuses it.
+/// Changes every file of a finished folder a number of times, by a digit or a bit. None is accepted silently: reading
+/// refuses it or is unaffected, and another run restores the folder or refuses it.
 fn damage(times: u32) -> [u32; 3] {
     let (study, place) = (study(), tempfile::tempdir().unwrap());
     let folder = place.path().join("study");
@@ -99,7 +99,7 @@ fn damage(times: u32) -> [u32; 3] {
                 assert!(now.is_err() || now == before, "{name} accepted: {now:?}");
             }
             let collected = collect(&folder, &mut |_, _| Ok(()));
-            // What says why stands in the message: the file that is damaged.
+            // The message names the damaged file.
             let own = path.file_name().unwrap().to_string_lossy().into_owned();
             if let Err(error) = &collected {
                 assert!(error.to_string().contains(&own), "{name}: {error}");
@@ -129,7 +129,7 @@ fn damage(times: u32) -> [u32; 3] {
 #[test]
 fn no_digit_and_no_bit_of_a_folder_changes_in_silence() {
     let [refused, healed, unread] = damage(12);
-    // Three shards, study.json and study.toml are read; four files of results are only written, and written anew.
+    // Three shards, study.json and study.toml are read; four files of results are only written.
     assert_eq!((refused, unread), (5 * 12, 4 * 12));
     assert_eq!(healed, 4 * 12, "shards and manifest are named as damaged");
 }
@@ -170,7 +170,7 @@ fn a_folder_of_somebody_else_leads_nothing_that_is_written_out_of_it() {
     let folder = place.path().join("study");
     run(&study, &folder).unwrap();
     let whole = files(&folder);
-    // Claims, shards and all files of results are links, or further names of another file.
+    // Claims, shards and all files of results are links, or hard links to another file.
     for (path, _) in whole.iter().filter(|(path, _)| path.extension().unwrap() == "parquet") {
         fs::remove_file(path).unwrap();
     }

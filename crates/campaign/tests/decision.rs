@@ -1,4 +1,4 @@
-//! Decisions from tables whose answers are known.
+//! Decisions from tables with known answers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -12,7 +12,7 @@ use barrelstack_report::html;
 use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
 use common::{integer, made, number, skipped, text};
 
-/// Twelve records at eight levels; `falls` says how many barrels of six fall for a record at a level (m/s).
+/// Twelve records at eight levels; `falls` returns the number of fallen barrels of six for a record at a level (m/s).
 fn study(falls: impl Fn(usize, f64) -> usize) -> Collected {
     let levels = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
     let cases: Vec<(usize, f64)> =
@@ -243,7 +243,7 @@ fn a_table_without_a_verdict_is_refused() {
 fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
-    // Eight cases of another friction come first; the base of both factors was in what is missing.
+    // Eight cases of another friction come first; the base of both factors is in the missing part.
     let first = |row: usize, one: f64, other: f64| Some(if row < 8 { one } else { other });
     columns[1] =
         number("friction", "", Role::Factor, (0..96).map(|k| first(k, 0.5, 0.3)).collect());
@@ -262,7 +262,7 @@ fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
 fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_count_motions() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
-    // Every record is drawn a friction; another cask is tried on all of them.
+    // Every record is drawn one friction; another cask is tried on all of them.
     let cask = |k: usize| Some(if k.is_multiple_of(2) { 1.0 } else { 2.0 });
     let rows: Vec<usize> = (0..96).flat_map(|row| [row, row]).collect();
     for column in &mut columns {
@@ -283,11 +283,11 @@ fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_cou
         for level in &group.levels {
             let failed = (0..12).filter(|record| capacity(*record) <= level.intensity).count();
             assert_eq!((level.cases, level.collapsed as usize), (12, failed));
-            // A case a motion: the interval of Wilson, a little wider by Student's t.
+            // One case per motion: the interval of Wilson, a little wider by Student's t.
             let one = barrelstack_fragility::wilson(level.collapsed, 12, 0.95);
             assert!(level.interval.high - level.interval.low >= one.high - one.low - 1e-9);
         }
-        // Of a motion all levels go together, so that is wider than of as many cases alone.
+        // All levels of a motion are clustered, so that the interval is wider than that of independent cases.
         let alone = barrelstack_fragility::wilson(group.collapsed, 96, 0.95);
         assert!(group.interval.low < alone.low && group.interval.high > alone.high);
     }
@@ -299,7 +299,7 @@ fn every_measure_stands_in_one_table_and_the_cause_comes_first() {
     let found = decide(&ordinary(), &Request::default()).unwrap();
     assert_eq!(found.measures.len(), 2);
     let first = &found.cases.measures[found.measures[0].measure].name;
-    // Capacities were set in PGV and fall with the number of the record, of which PGA knows.
+    // Capacities were set in PGV and decrease with the number of the record, which PGA contains.
     let likelihood = |at: usize| found.measures[at].collapse.as_ref().unwrap().fit.ln_likelihood;
     assert!(likelihood(0) >= likelihood(1), "{first}");
     assert!(found.measures.iter().all(|row| row.drift.is_some()));
@@ -313,7 +313,7 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let fit = found.curves[0].fit.as_ref().unwrap();
     assert!((fit.curve.median / 0.5 - 1.0).abs() < 0.05, "{:?}", fit.curve);
     assert!(found.curves[0].monotony.p == 1.0);
-    // At the highest level all is known: each of the twelve failed below it or stood at it.
+    // At the highest level the state of every record is known: it failed below or stood there.
     let last = found.curves[0].stripes.last().unwrap();
     let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
     assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
@@ -374,7 +374,7 @@ fn what_is_exported_is_the_same_curve_to_four_digits() {
         assert!((mean - loss.fallen / 6.0).abs() < 1e-12);
     }
     assert_eq!(numbers("imls").len(), numbers("covLRs").len());
-    // Names of any length and script are cut to what OpenQuake takes.
+    // Names of any length and script are reduced to valid OpenQuake identifiers.
     let long = export(&decision, &collected.provenance, &"fût ".repeat(40)).unwrap();
     let (_, text) = long.files.iter().find(|(name, _)| name.contains("vulnerability")).unwrap();
     let parsed = roxmltree::Document::parse(text).unwrap();
@@ -384,7 +384,7 @@ fn what_is_exported_is_the_same_curve_to_four_digits() {
     }
 }
 
-/// Chances at 10, 20, … 150 cm/s as OpenQuake's own reader and curves give them.
+/// Prints the probabilities at 10, 20, … 150 cm/s by OpenQuake's own reader and curves.
 const OPENQUAKE: &str = "
 import sys, numpy
 import openquake.risklib.read_nrml
@@ -397,7 +397,7 @@ for loss in nrml.to_python(sys.argv[1].replace('fragility', 'vulnerability')).va
     print(*loss.mean_loss_ratios)
 ";
 
-/// The same by Pelicun's, which turns to m/s.
+/// Prints the same by Pelicun's, which convert to m/s.
 const PELICUN: &str = "
 import sys, numpy
 from pelicun import uq
@@ -411,7 +411,7 @@ for state in dict.fromkeys(c for c in read.columns.get_level_values(0) if c.star
     print(*curve.cdf(numpy.linspace(0.1, 1.5, 15)))
 ";
 
-/// Our curves as lines, those of another program as dots.
+/// Plots our curves as lines, those of another program as dots.
 fn beside(at: &[f64], ours: &[Vec<f64>], theirs: &[f64]) -> Figure {
     let dots = SeriesStyle { dots: true, index: Some(5), ..SeriesStyle::default() };
     let mut series = Vec::new();
@@ -429,16 +429,16 @@ fn beside(at: &[f64], ours: &[Vec<f64>], theirs: &[f64]) -> Figure {
     Figure { id: "beside".into(), caption: String::new(), kind }
 }
 
-/// The exported curves are read by another program and are the same from 10 to 150 cm/s.
+/// Checks that another program reads the exported curves and agrees from 10 to 150 cm/s.
 ///
-/// A picture of both goes into the folder that `BARRELSTACK_PAGES` names.
+/// Plots both into the folder that `BARRELSTACK_PAGES` names.
 fn read_by(module: &str, file: &str, script: &str) {
     let python =
         |arguments: &[&str]| std::process::Command::new("python3").args(arguments).output();
     if !python(&["-c", &format!("import {module}")]).is_ok_and(|o| o.status.success()) {
         return skipped(&format!("python3 has no module {module}"));
     }
-    // The harder beyond its capacity a stack is shaken, the more of it falls.
+    // The further a stack is shaken beyond its capacity, the more barrels fall.
     let collected = study(|record, level| match level / capacity(record) {
         over if over < 1.0 => 0,
         over if over < 1.2 => 1,
@@ -454,7 +454,7 @@ fn read_by(module: &str, file: &str, script: &str) {
     }
     let output = python(&["-c", script, path.to_str().unwrap()]).unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
-    // What else they print has no numbers alone in a line.
+    // Other output has no lines of numbers alone.
     let numbers = |line: &str| -> Option<Vec<f64>> {
         line.split_whitespace().map(|word| word.parse().ok()).collect()
     };

@@ -1,4 +1,4 @@
-//! A study follows every case to its end, or says in every place that it did not.
+//! A study follows every case to its end, or states everywhere that it did not.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use barrelstack_campaign::decision::{Request, decide};
 use barrelstack_campaign::study::{Collected, Endings, RunOptions, Study, StudyTable};
 
-/// Four records that may not be bundled; says so where they are not there.
+/// Returns four records that may not be bundled; reports a skipped test where they are missing.
 fn records() -> Option<String> {
     let folder =
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
@@ -30,7 +30,7 @@ fn records() -> Option<String> {
     Some(quoted.join(", "))
 }
 
-/// The shipped example with four records of one's own.
+/// The shipped example with four other records.
 fn study(folder: &Path, run: &str) -> Option<(Study, Collected)> {
     let text = format!(
         "schema = 1\nseed = 3\n[base]\nextends = \"candia-8-barrels\"\n{run}\n\

@@ -1,5 +1,5 @@
-//! Which stacks a study runs: those that fall under their own weight count as collapsed, those of both planes are refused
-//! with the stacks that they are in each.
+//! Stacks that do not stand: those that fall under their own weight count as collapsed, and those in both planes are
+//! refused with the stacks of each.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -40,7 +40,7 @@ fn what_does_not_stand_by_itself_counts_as_collapsed_in_a_study() {
     assert_eq!(texts("mode"), ["", "gravity", "gravity"]);
     assert_eq!(texts("ended"), ["duration", "not-shaken", "not-shaken"]);
     assert_eq!(table.numbers("first_loss").unwrap(), [None, Some(0.0), Some(0.0)]);
-    // With the level that gives way falls all above it, to the floor.
+    // All levels above the one that fails fall to the floor.
     let levels = [0, 6, 8];
     for ((fallen, drops), most) in
         table.integers("barrels_fallen").unwrap().iter().zip(texts("fall_heights")).zip(levels)

@@ -1,4 +1,4 @@
-//! A study that grows runs its new cases only, and has the table of one that was so from the start.
+//! A study that grows runs its new cases only, and has the same table as one of that size from the start.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -12,7 +12,7 @@ use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{ChunkRun, Progress, RunOptions, Study, StudyError};
 use common::HEAD;
 
-/// Two barrels on two levels that are shaken for a moment.
+/// Two barrels on two levels, shaken briefly.
 fn text(count: u32, motions: &str, intensity: &str, design: &str) -> String {
     format!(
         "{HEAD}duration = \"0.3 s\"\n\
@@ -32,7 +32,7 @@ fn synthetic(count: u32) -> String {
     )
 }
 
-/// How many cases a run did, and the bytes of its table.
+/// Runs a study and returns the number of cases run, and the bytes of its table.
 fn run(text: &str, folder: &Path) -> (u64, [Vec<u8>; 4]) {
     let study = Study::parse("test.toml", text).unwrap();
     let last = Mutex::new(Progress::default());

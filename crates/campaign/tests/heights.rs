@@ -1,4 +1,4 @@
-//! How high is safe: what is asked for is checked before anything is run, and a stop keeps what was done.
+//! Safe heights: requests are checked before anything is run, and an interruption keeps finished runs.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,4 +1,4 @@
-//! What protects best: all meet the same shaking, a stop loses nothing, and what cannot be tried is told.
+//! Ranking of protections: all have the same motions, an interruption loses nothing, and untried ones are reported.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -23,7 +23,7 @@ fn request() -> Request {
         folder: None,
         motions: 4,
         rounds: 2,
-        // What is cheap is enough to be ranked here.
+        // A low budget leaves enough cheap protections to rank.
         budget: Some(130.0),
         seed: 3,
     }
@@ -37,7 +37,7 @@ fn json(ranking: &Ranking) -> String {
     serde_json::to_string_pretty(&ranking.to_document()).unwrap()
 }
 
-/// What shook every case of a study, and the friction on its floor over that of the scenario.
+/// Returns the motion of every case of a study, and the friction on its floor over that of the scenario.
 fn shaken(folder: &Path) -> Vec<(String, String)> {
     let table =
         StudyTable::from_parquet(std::fs::read(folder.join("table.parquet")).unwrap()).unwrap();
@@ -64,7 +64,7 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     assert_ne!(of("as-it-is", 1), of("as-it-is", 2));
     assert_eq!(of("as-it-is", 1).len(), 4);
 
-    // Stopped again and again, it comes to the same to the last bit.
+    // Interrupted repeatedly, the result is the same bit for bit.
     for most in [3, 9, 30] {
         let heard = AtomicUsize::new(0);
         let stop = |_: Reached| {
@@ -81,7 +81,7 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     assert_eq!(json(&found), json(&resumed));
     assert_eq!(html(&found.document), html(&resumed.document));
 
-    // What was tried is a change of the scenario, and stands by itself as one.
+    // Every tried protection is a change of the scenario that is valid on its own.
     let mut kinds = BTreeMap::<&str, usize>::new();
     for one in &found.all {
         *kinds.entry(one.protection.kind.name()).or_default() += 1;

@@ -44,7 +44,7 @@ fn ordered(level: f64) -> f64 {
     barrelstack_fragility::Lognormal { median: 0.5, dispersion: 0.4 }.probability(level)
 }
 
-/// The same with an island: from 0.25 to 0.35 m/s five in ten more collapse.
+/// As [`ordered`], with an island: from 0.25 to 0.35 m/s five in ten more collapse.
 ///
 /// Weaker ones are not always found: with three in ten more, 19 of 20 among ten thousand samples and 7 of 20 among
 /// 2,400 (`validation/README.md`).

@@ -1,4 +1,4 @@
-//! The RockScore: the least of all states and directions, the same after a stop, and refused where there is no rack.
+//! The RockScore: the least of all states and directions, the same after an interruption, refused without a rack.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -35,7 +35,7 @@ fn the_score_is_the_least_of_all_states_and_directions_and_a_stop_loses_no_bit()
 
     let least = sheet.rows.iter().map(|row| row.capacity.velocity()).fold(f64::MAX, f64::min);
     assert_eq!(f64::from(sheet.score()), (100.0 * least + 1e-6).floor());
-    // New, wet, and what becomes of chocks, in two directions; no run is lost.
+    // New, wet, and the worn states of chocks, in two directions; no run is lost.
     let worn = chocked.stack().unwrap().devices.present()[0].degraded.len();
     assert!(worn > 0);
     assert_eq!(sheet.rows.len(), 2 * (2 + worn));

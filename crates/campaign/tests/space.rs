@@ -1,4 +1,4 @@
-//! Studies of stacks in space: their cases are runs, whatever the threads, and what they tell besides.
+//! Studies of stacks in space: each case is one run whatever the number of threads, with columns for directions.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -15,7 +15,7 @@ use barrelstack_space::variants::Case;
 use barrelstack_space::{Heading, run::run};
 use common::HEAD;
 
-/// A moment, behind [`HEAD`], in space.
+/// A short run in space, after [`HEAD`].
 const RUN: &str = "\
 duration = \"1.5 s\"
 stop_after_collapse = \"0.01 s\"
@@ -25,7 +25,7 @@ levels = 2
 columns = 2
 ";
 
-/// The study of a moment in space.
+/// A study of short runs in space.
 fn study(rest: &str) -> Study {
     let head = HEAD.replace("[base.stack]\nlevels = 2\ncolumns = 2\n", "");
     let text = format!("{head}{RUN}{rest}");
@@ -63,7 +63,7 @@ kind = \"stripes\"
 chunk = 1
 ";
 
-/// The run that a row of the study is of.
+/// Repeats the run of a row of the study.
 fn run_of(table: &StudyTable, row: usize) -> Case {
     let number = |column: &str| table.numbers(column).unwrap()[row].unwrap();
     let changes = [
@@ -118,7 +118,7 @@ fn neither_threads_nor_a_stop_change_a_byte() {
     };
     let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     run(whole.path(), 1, &|_| ControlFlow::Continue(())).unwrap();
-    // In the middle of the second case: it is asked many times before the next one is done.
+    // During the second case: `stop` is polled many times before it finishes.
     let stop = |now: &Progress| {
         if now.now == 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };

@@ -1,4 +1,4 @@
-//! Designs and tables of studies: what cases there are, that they keep their rows, and that threads change nothing.
+//! Designs and tables of studies: their cases, the stability of their rows, and independence of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -15,7 +15,7 @@ use barrelstack_campaign::study::{
 };
 use common::HEAD;
 
-/// A moment, behind [`HEAD`]: a case of a few milliseconds.
+/// A short run, after [`HEAD`]: a case of a few milliseconds.
 const RUN: &str = "duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n";
 
 /// A pulse that fells the stack of [`HEAD`] when it is strong.
@@ -323,7 +323,7 @@ fn a_damaged_shard_is_named_when_read_and_made_again_when_run() {
         std::fs::write(&names[1], damage).unwrap();
         let error = Collected::read(folder.path()).unwrap_err();
         assert!(matches!(&error, StudyError::Shard { path, .. } if *path == names[1]), "{error}");
-        // What killed runs leave goes, what looks alike stays.
+        // Remains of killed runs are removed, similar files stay.
         let left =
             [".000001-0.parquet.00000000000000a1.part", "000001.claim", "mine.part", "mine.claim"];
         let left = left.map(|name| shards.join(name));
@@ -365,7 +365,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
-    // An earlier version laid folders out in another way, without a fingerprint.
+    // An earlier version had another layout, without a fingerprint.
     let text = String::from_utf8(before).unwrap().replacen("\"schema\": 3", "\"schema\": 2", 1);
     let earlier = format!("{}\n}}\n", text.split_once(",\n  \"fingerprint\"").unwrap().0);
     std::fs::write(folder.path().join("study.json"), earlier).unwrap();
@@ -375,7 +375,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
         "{error}"
     );
 
-    // Shards without what says whose they are.
+    // Shards without a manifest.
     std::fs::remove_file(folder.path().join("study.json")).unwrap();
     std::fs::remove_file(folder.path().join("study.toml")).unwrap();
     for name in ["table.csv", "table.parquet", "columns.csv", "provenance.json"] {

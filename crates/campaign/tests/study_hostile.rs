@@ -1,4 +1,4 @@
-//! Study files with one mistake each: one error, at its place, that says what to do.
+//! Study files with one mistake each: one error, at its place, with a remedy.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
@@ -18,7 +18,7 @@ fn whole(parts: [&str; 5]) -> String {
     parts.concat()
 }
 
-/// The mistakes: what is replaced (0 to 4), by what, and what the error must say. The line of the mistake ends with
+/// The mistakes: the part replaced (0 to 4), its replacement, and text of the error. The line of the mistake ends with
 /// `# HERE`; without such a line the error is about the file as a whole or about a table that lacks something.
 const MISTAKES: &[(usize, &str, &[&str])] = &[
     (0, "seed = 3\n", &["`schema` is missing from the study", "schema = 1"]),

@@ -1,4 +1,4 @@
-//! The cases of a study that have a verdict, with what shook them.
+//! The cases of a study that have a verdict, with their motions and intensities.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub struct Measure {
     pub label: String,
     /// Unit for people.
     pub shown_unit: &'static str,
-    /// How many of these units one SI unit is.
+    /// Printed units per SI unit.
     pub scale: f64,
 }
 
@@ -53,17 +53,17 @@ impl Measure {
         Self { name: name.to_owned(), unit: unit.to_owned(), label, shown_unit, scale }
     }
 
-    /// An intensity as printed.
+    /// Returns an intensity in the printed unit.
     pub fn shown(&self, intensity: f64) -> f64 {
         self.scale * intensity
     }
 
-    /// The same as a cell of a table.
+    /// Returns an intensity in the printed unit as a cell of a table.
     pub(super) fn cell(&self, intensity: f64) -> Cell {
         Cell::Number(self.shown(intensity), 3)
     }
 
-    /// An interval with its unit, where the cases bound it.
+    /// Formats an interval with its unit; open where the cases do not bound it.
     pub fn range(&self, bounds: Interval) -> String {
         match (bounds.low > 0.0, bounds.high.is_finite()) {
             (true, true) => format!("{} to {}", self.digits(bounds.low), self.words(bounds.high)),
@@ -73,16 +73,16 @@ impl Measure {
         }
     }
 
-    /// An intensity with its unit, in three digits.
+    /// Formats an intensity with its unit, in three digits.
     pub fn words(&self, intensity: f64) -> String {
         let number = self.digits(intensity);
         if self.shown_unit.is_empty() { number } else { format!("{number} {}", self.shown_unit) }
     }
 
-    /// An intensity in three digits, without its unit.
+    /// Formats an intensity in three digits, without its unit.
     fn digits(&self, intensity: f64) -> String {
         let shown = self.shown(intensity);
-        // A level as it was asked for: 50 and not 50.0, though 100 × 0.36 is not quite 36.
+        // Print a requested level as 50 and not 50.0, though 100 × 0.36 is not quite 36.
         let whole = shown >= 10.0 && (shown - shown.round()).abs() < 1e-9 * shown;
         if whole { format!("{shown:.0}") } else { barrelstack_report::significant(shown, 3) }
     }
@@ -91,54 +91,54 @@ impl Measure {
 /// A case with a verdict.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
-    /// Its row in the table.
+    /// Index of its row in the table.
     pub row: u32,
-    /// Number of its record among [`Cases::records`].
+    /// Index of its record in [`Cases::records`].
     pub record: u32,
-    /// Whether a barrel or rack lost its seat.
+    /// `true` if a barrel or rack lost its seat.
     pub collapsed: bool,
-    /// Whether its stack fell under its own weight, before it was shaken.
+    /// `true` if its stack fell under its own weight, before it was shaken.
     pub fell_at_rest: bool,
-    /// How it collapsed: a number among [`Cases::modes`].
+    /// Mode of its collapse, an index of [`Cases::modes`].
     pub mode: Option<u8>,
-    /// Whether it was followed until nothing moved, so that it tells what falls.
+    /// `true` if it was simulated until nothing moved, so that its falls are known.
     pub followed: bool,
     /// Barrels in the stack.
     pub barrels: u32,
     /// Drop (m) of each barrel that fell.
     pub falls: Box<[f64]>,
-    /// Largest force (N) on each of them since it had fallen; none where the study does not tell it.
+    /// Largest force (N) on each of them since its fall; `None` where the study has none.
     pub forces: Option<Box<[f64]>>,
     /// Wine (m³) in each of them.
     pub wines: Box<[f64]>,
     /// Wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Peak drift of the top over its height, while the stack stood; not a number where it is not known.
+    /// Peak drift ratio of the top while the stack stood; not a number where unknown.
     drift: f64,
-    /// Intensities (SI), one for each of [`Cases::measures`]; not a number where it has none.
+    /// Intensities (SI), one for each of [`Cases::measures`]; not a number where unknown.
     intensities: Box<[f64]>,
-    /// What tells the cases of one hunt or curve from those of others: the record, and the factors that are
-    /// not drawn anew for each case.
+    /// Hunt or curve that it belongs to: the cases of one record with the same values of the factors that are not
+    /// drawn anew for each case.
     pub curve: u32,
 }
 
 impl Case {
-    /// Its intensity (SI) by the number of the measure.
+    /// Returns its intensity (SI) in a measure, given by index.
     pub fn intensity(&self, measure: usize) -> Option<f64> {
         self.intensities.get(measure).copied().filter(|value| !value.is_nan())
     }
 
-    /// Peak drift of the top over its height, while the stack stood.
+    /// Returns the peak drift ratio of the top while the stack stood.
     pub fn drift(&self) -> Option<f64> {
         Some(self.drift).filter(|value| !value.is_nan())
     }
 
-    /// Barrels that fell.
+    /// Returns the number of barrels that fell.
     pub fn fallen(&self) -> u32 {
         u32::try_from(self.falls.len()).unwrap_or(u32::MAX)
     }
 
-    /// Share of its barrels that fell; 0 without barrels.
+    /// Returns the share of its barrels that fell; 0 without barrels.
     pub fn fallen_share(&self) -> f64 {
         f64::from(self.fallen()) / f64::from(self.barrels.max(1))
     }
@@ -151,31 +151,31 @@ pub struct Cases {
     pub title: String,
     /// Names of the motions.
     pub records: Vec<String>,
-    /// Modes of collapse, in the order in which they come.
+    /// Modes of collapse, in the order of first occurrence.
     pub modes: Vec<String>,
     /// The measures.
     pub measures: Vec<Measure>,
     /// The measure of the study, an index of `measures`.
     pub main: usize,
-    /// Whether every case was scaled to a level of it, so that raw fractions exist at each.
+    /// `true` if every case was scaled to a level of it, so that raw fractions exist at each.
     pub leveled: bool,
-    /// Whether levels were found by hunting for collapse, so that they depend on what was found.
+    /// `true` if levels were chosen by hunting for collapse, so that they depend on earlier results.
     pub hunted: bool,
-    /// Whether cases are samples, each with a motion, a level and factors of its own.
+    /// `true` if cases are samples, each with a motion, a level and factors of its own.
     pub sampled: bool,
     /// Factors that are drawn anew for each case of a motion.
     pub drawn: Vec<String>,
-    /// How the cases came to their end.
+    /// Counts of cases by how they ended.
     pub endings: Endings,
-    /// The cases; shared, since there may be a million and parts of them are looked at.
+    /// The cases; shared, since there may be a million and subsets of them are used.
     pub all: Vec<Arc<Case>>,
-    /// Rows without a verdict: broken down, not judged, or could not run.
+    /// Number of rows without a verdict: failed, not judged, or could not run.
     pub left_out: usize,
-    /// Seed of what is resampled.
+    /// Seed of resampling.
     pub seed: u64,
 }
 
-/// Numbers things in the order in which they come.
+/// Numbers names in the order of first occurrence.
 #[derive(Default)]
 struct Numbering(BTreeMap<String, u32>);
 
@@ -189,7 +189,7 @@ impl Numbering {
         next
     }
 
-    /// The names in order.
+    /// Returns the names in order.
     fn names(self) -> Vec<String> {
         let mut names: Vec<(String, u32)> = self.0.into_iter().collect();
         names.sort_by_key(|(_, number)| *number);
@@ -197,26 +197,26 @@ impl Numbering {
     }
 }
 
-/// A count of cases, of which there are ten million at most.
+/// Converts a count of cases, of which there are ten million at most.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// Cases that are read part by part, so that the table need not be in memory.
+/// Reads cases part by part, so that the table need not be in memory.
 pub(super) struct Reading {
     cases: Cases,
     records: Numbering,
     modes: Numbering,
     curves: Numbering,
-    /// Rows until now, and those of them that are samples of their own.
+    /// Rows read so far, and those of them that are samples of their own.
     rows: usize,
     own: usize,
-    /// Quantities that a design for sensitivity exchanges.
+    /// Number of quantities that a design for sensitivity exchanges.
     varied: usize,
 }
 
 impl Reading {
-    /// Begins with what the rows come from.
+    /// Begins with the provenance of the rows.
     pub(super) fn new(made: &Provenance) -> Result<Self, DecisionError> {
         let measures = made.columns.iter().filter(|column| column.role == Role::Intensity);
         let mut measures: Vec<Measure> =
@@ -259,7 +259,7 @@ impl Reading {
         })
     }
 
-    /// Reads the rows that follow.
+    /// Adds the next rows.
     pub(super) fn add(&mut self, table: &StudyTable) -> Result<(), DecisionError> {
         let text = |name| table.texts(name).ok_or(DecisionError::Column(name));
         let (outcomes, records, ended) = (text("outcome")?, text("record")?, text("ended")?);
@@ -267,7 +267,7 @@ impl Reading {
         let (modes, heights) = (table.texts("mode"), table.texts("fall_heights"));
         let forces = table.texts("fall_forces");
         let (wines, wine) = (table.texts("fall_wine"), table.numbers("stack_wine"));
-        // A table that says what falls says what was in it.
+        // A table that has falls also has the wine in the barrels.
         if heights.is_some() && (wines.is_none() || wine.is_none()) {
             return Err(DecisionError::Column("fall_wine"));
         }
@@ -277,7 +277,7 @@ impl Reading {
         let drawn = &self.cases.drawn;
         let fixed: Vec<_> =
             table.of_role(Role::Factor).filter(|f| !drawn.contains(&f.spec.name)).collect();
-        // The first two cases of a block are samples of their own, the others differ from these in one thing.
+        // The first two cases of a block are independent samples; the others differ from these in one quantity.
         let block = i64::try_from(self.varied + 2).unwrap_or(i64::MAX);
         let numbers = table.integers("case").filter(|_| self.varied > 0);
         let exchanged =
@@ -299,7 +299,7 @@ impl Reading {
             if self.cases.leveled
                 && let Some(level) = cell(level)
             {
-                // The level as asked for: the same number in every case of a stripe.
+                // The level as requested: the same number in every case of a stripe.
                 intensities[self.cases.main] = level;
             }
             let mode = modes.and_then(|of| of[row].as_deref());
@@ -351,7 +351,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The cases, when all rows were read.
+    /// Returns the cases when all rows were added.
     pub(super) fn finish(self) -> Result<Cases, DecisionError> {
         let Self { mut cases, records, modes, rows, own, .. } = self;
         if cases.all.is_empty() {
@@ -365,14 +365,14 @@ impl Reading {
 }
 
 impl Cases {
-    /// The cases of a table.
+    /// Reads the cases of a table.
     pub(crate) fn read(collected: &Collected) -> Result<Self, DecisionError> {
         let mut reading = Reading::new(&collected.provenance)?;
         reading.add(&collected.table)?;
         reading.finish()
     }
 
-    /// The same with some of the cases alone.
+    /// Returns a copy with only the cases that satisfy a predicate.
     #[must_use]
     pub fn only(&self, keep: impl Fn(&Case) -> bool) -> Self {
         let mut fewer = self.clone();
@@ -380,32 +380,32 @@ impl Cases {
         fewer
     }
 
-    /// How many cases fell under their own weight, before they were shaken.
+    /// Returns the number of cases that fell under their own weight, before they were shaken.
     pub fn fallen_at_rest(&self) -> usize {
         self.all.iter().filter(|case| case.fell_at_rest).count()
     }
 
-    /// The measure of the study.
+    /// Returns the measure of the study.
     pub fn measure(&self) -> &Measure {
         &self.measures[self.main]
     }
 
-    /// Most barrels that a stack of the study has.
+    /// Returns the largest number of barrels in a stack of the study.
     pub fn most_barrels(&self) -> u32 {
         self.all.iter().map(|case| case.barrels).max().unwrap_or(0)
     }
 
-    /// Most wine (m³) that a stack of the study has.
+    /// Returns the largest volume of wine (m³) in a stack of the study.
     pub fn most_wine(&self) -> f64 {
         self.all.iter().map(|case| case.wine).fold(0.0, f64::max)
     }
 
-    /// How many curves there are: motions, each with every combination of what is not drawn anew.
+    /// Returns the number of curves: motions, each with every combination of the factors that are not drawn anew.
     pub fn curves(&self) -> usize {
         self.all.iter().map(|case| case.curve).max().map_or(0, |last| last as usize + 1)
     }
 
-    /// What the curves are, in a sentence.
+    /// Describes what a curve is, in words.
     pub fn curves_are(&self) -> &'static str {
         if self.curves() == self.records.len() {
             "motions"
@@ -414,22 +414,22 @@ impl Cases {
         }
     }
 
-    /// How many barrels fall is known: no case was ended before nothing moved, or hardly any.
+    /// `true` if the number of fallen barrels is known: no case, or hardly any, was ended while something moved.
     pub fn tells_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
 
-    /// The cases whose falls are known.
+    /// Returns the cases whose falls are known.
     #[must_use]
     pub fn with_known_falls(&self) -> Self {
         self.only(|case| case.followed)
     }
 
-    /// Groups in which cases are counted, ascending, each with its intensity.
+    /// Groups the cases by intensity, ascending.
     ///
-    /// The levels of the study where cases share them.
-    /// Elsewhere bins of equally many neighbors, whose intensity is the geometric mean of their cases':
-    /// a fraction needs a few dozen cases, and an order is best seen over a dozen bins or so.
+    /// The groups are the levels of the study where cases share them.
+    /// Elsewhere they are bins of equally many neighbors, whose intensity is the geometric mean of their cases':
+    /// a fraction needs a few dozen cases, and a trend shows best over about a dozen bins.
     pub fn groups(&self, measure: usize) -> Vec<(f64, Vec<&Case>)> {
         let mut sorted: Vec<(f64, &Case)> = self
             .all
@@ -456,7 +456,7 @@ impl Cases {
         found
     }
 
-    /// Whether several cases stand at each level of a measure.
+    /// `true` if several cases share each level of a measure.
     pub fn shares_levels(&self, measure: usize) -> bool {
         if !self.leveled || self.hunted || measure != self.main {
             return false;
@@ -470,16 +470,16 @@ impl Cases {
     }
 }
 
-/// Fewest cases of a bin, unless there are fewer in all.
+/// Minimum number of cases in a bin, unless there are fewer in all.
 const FEWEST_OF_BIN: usize = 24;
 
-/// Most bins.
+/// Maximum number of bins.
 const MOST_BINS: usize = 16;
 
-/// Fewest samples that share a level, on average, for it to be counted by itself.
+/// Minimum mean number of samples per level for levels to be counted separately.
 const FEWEST_OF_LEVEL: usize = 8;
 
-/// A value of a factor as text.
+/// Formats a value of a factor.
 pub(super) fn told(value: Option<Value>) -> String {
     value.map_or_else(String::new, |value| word(&value))
 }

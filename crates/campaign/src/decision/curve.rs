@@ -1,4 +1,4 @@
-//! One limit state against one measure: raw fractions, the fitted curve, its bands, and what speaks against it.
+//! One limit state against one measure: raw fractions, the fitted curve, its bands and its tests.
 
 use std::collections::BTreeMap;
 
@@ -15,24 +15,24 @@ use super::limit::LimitState;
 /// Confidence level of all bands.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Draws for the test of order.
+/// Number of draws of the test of order.
 const DRAWS: usize = 500;
 
-/// Where a band comes from.
+/// Method of a confidence band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandKind {
-    /// One record left out at a time: cases of one record may depend on each other.
+    /// Jackknife over records: cases of one record may depend on each other.
     Records,
-    /// The likelihood of independent cases, where all are of one record.
+    /// Likelihood of independent cases, where all are of one record.
     Likelihood,
-    /// There is none, since without one of the records there is no curve.
+    /// No band: without one of the records there is no curve.
     None,
 }
 
 /// One limit state against one measure.
 #[derive(Clone, Debug)]
 pub struct LimitCurve {
-    /// What counts as failure.
+    /// The limit state.
     pub limit: LimitState,
     /// Index of the measure.
     pub measure: usize,
@@ -40,7 +40,7 @@ pub struct LimitCurve {
     pub stripes: Vec<Stripe>,
     /// Wilson's interval of each raw fraction.
     pub intervals: Vec<Interval>,
-    /// The curve, or why there is none.
+    /// The fitted curve, or the reason why there is none.
     pub fit: Result<Fit, FitError>,
     /// Intensities at which the band is given.
     pub grid: Vec<f64>,
@@ -48,21 +48,21 @@ pub struct LimitCurve {
     pub band: Vec<Interval>,
     /// The 95 % interval of the median.
     pub median: Option<Interval>,
-    /// Where the band comes from.
+    /// Method of the band.
     pub band_kind: BandKind,
-    /// The curves with one record left out, for what else is computed from them.
+    /// Curves with one record left out each, for uncertainties of derived results.
     pub left_out: Option<LeaveOneOut>,
-    /// Raw counts against the curve.
+    /// Goodness of fit of the curve to the raw counts.
     pub goodness: Option<Goodness>,
-    /// Raw counts against the order that every curve takes for granted.
+    /// Test of the raw counts against monotony, which every curve assumes.
     pub monotony: Monotony,
-    /// Curves of one motion that failed at one intensity and stood at a higher; none of samples, each of
-    /// which has a curve of its own.
+    /// Curves of one motion that failed at one intensity and stood at a higher one; none of samples, each of
+    /// which is a curve of its own.
     pub returned: Vec<Returned>,
 }
 
 impl LimitCurve {
-    /// Counts, fits and tests.
+    /// Counts failures, fits the curve and runs its tests.
     pub fn of(cases: &Cases, limit: LimitState, measure: usize) -> Self {
         let known = cases.only(|case| limit.is_known(case));
         let cases = &known;
@@ -121,11 +121,11 @@ impl LimitCurve {
         }
     }
 
-    /// Standard errors of the logarithms of median and dispersion: cases of one record go together where several records
-    /// shake the stack, and are taken as independent where there is one.
+    /// Returns the standard errors of the logarithms of median and dispersion: clustered by record where several
+    /// records shake the stack, for independent cases where there is one.
     ///
     /// # Errors
-    /// Why there is no curve.
+    /// If there is no curve.
     pub fn standard_errors(&self) -> Result<[f64; 2], &FitError> {
         let fit = self.fit.as_ref()?;
         Ok(match &self.left_out {
@@ -134,13 +134,13 @@ impl LimitCurve {
         })
     }
 
-    /// Whether failure clearly becomes less likely somewhere, against what every curve takes for granted.
+    /// `true` if the probability of failure decreases significantly somewhere, which every curve excludes.
     pub fn violates_order(&self) -> bool {
         self.monotony.p < 0.05
     }
 
-    /// Chance of failure as the raw fractions say: between levels linear in the logarithm of the intensity, held
-    /// above the highest, linear to nothing at rest below the lowest.
+    /// Returns the probability of failure by the raw fractions: between levels linear in the logarithm of the
+    /// intensity, constant above the highest, linear to zero at rest below the lowest.
     pub fn raw(&self, intensity: f64) -> f64 {
         let points: Vec<(f64, f64)> =
             self.stripes.iter().map(|s| (s.intensity, s.fraction())).collect();
@@ -148,8 +148,8 @@ impl LimitCurve {
     }
 }
 
-/// Between points linear in the logarithm of the abscissa, held above the last, linear to zero at zero below the
-/// first.
+/// Interpolates linearly in the logarithm of the abscissa between points; constant above the last, linear to zero
+/// at zero below the first.
 pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     let after = points.partition_point(|(x, _)| *x < at);
     match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
@@ -161,7 +161,7 @@ pub(super) fn interpolate(points: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-/// Counts of some cases at an intensity.
+/// Counts the failures of some cases at an intensity.
 pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> bool) -> Stripe {
     Stripe {
         intensity,
@@ -170,10 +170,10 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
     }
 }
 
-/// What the cases say of the capacity.
+/// Returns the evidence of the cases on the capacity.
 ///
-/// Levels that were hunted depend on what was found below, so that counts at them would be biased: there each hunt
-/// says between which levels it first failed. Everywhere else each case says whether it failed.
+/// Hunted levels depend on earlier results, so that counts at them would be biased: there each hunt bounds its first
+/// failure between two levels. Everywhere else each case states whether it failed.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
     let seen = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
@@ -201,7 +201,7 @@ fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> 
         .collect()
 }
 
-/// Counts of hunts at eight levels: those that had failed there, of those of which it is known.
+/// Counts hunts at eight levels: those that had failed there, among those whose state there is known.
 fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     let bounds: Vec<(f64, f64)> = evidence.iter().map(|item| item.capacity.bounds()).collect();
     let ends = || bounds.iter().flat_map(|(low, high)| [*low, *high]);
@@ -212,7 +212,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
     }
     let step = libm::log(last / first) / 7.0;
     (0..8)
-        // The last exactly: rounded down it would miss what failed there.
+        // Use the last bound exactly: rounded down it would miss the failures there.
         .map(|i| if i == 7 { last } else { first * libm::exp(step * f64::from(i)) })
         .map(|intensity| {
             let failures = bounds.iter().map(|(_, high)| u32::from(*high <= intensity)).sum();
@@ -226,7 +226,7 @@ fn known_at_levels(evidence: &[Evidence]) -> Vec<Stripe> {
         .collect()
 }
 
-/// Intensities from below the lowest stripe to above the highest, evenly in the logarithm.
+/// Returns intensities from below the lowest stripe to above the highest, evenly spaced in the logarithm.
 fn grid(stripes: &[Stripe]) -> Vec<f64> {
     let (Some(first), Some(last)) = (stripes.first(), stripes.last()) else { return Vec::new() };
     let (low, high) = (0.6 * first.intensity, 1.4 * last.intensity);

@@ -10,19 +10,19 @@ use super::{Breakage, Decision};
 use crate::scenario::quantity::plain;
 use crate::study::Provenance;
 
-/// Files for other programs, and what could not go into them.
+/// Files for other programs, with notes on what they cannot hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exported {
     /// Name and text of each file.
     pub files: Vec<(&'static str, String)>,
-    /// What is missing, and why.
+    /// Missing parts, with reasons.
     pub notes: Vec<String>,
 }
 
-/// Why nothing can be exported.
+/// Error of an export.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
-    /// Others have no name for the measure.
+    /// The other programs have no name for the measure.
     #[error(
         "neither OpenQuake nor Pelicun knows the intensity measure {0} of this study; run it over pga, pgv, \
          pgd or sa(T)"
@@ -33,7 +33,7 @@ pub enum ExportError {
     NoCurve(String),
 }
 
-/// A measure in the words and the unit of other programs.
+/// A measure in the terms and the unit of other programs.
 struct Foreign {
     /// `OpenQuake`'s name.
     imt: String,
@@ -41,7 +41,7 @@ struct Foreign {
     demand: String,
     /// Pelicun's unit.
     unit: &'static str,
-    /// Their units in one SI unit: g, cm/s, cm.
+    /// Its units per SI unit: g, cm/s, cm.
     scale: f64,
 }
 
@@ -61,10 +61,10 @@ fn foreign(name: &str) -> Option<Foreign> {
     }
 }
 
-/// The curves of a decision for other programs; `asset` is what they call one stack.
+/// Exports the curves of a decision for other programs; `asset` is their name of one stack.
 ///
 /// # Errors
-/// When the measure has no name there, or no limit state has a curve.
+/// If the other programs have no name for the measure, or no limit state has a curve.
 pub fn export(
     decision: &Decision,
     made: &Provenance,
@@ -100,7 +100,7 @@ pub fn export(
     let imls: Vec<f64> = decision.curves[0].grid.iter().map(|x| foreign.scale * x).collect();
     found.notes.extend(crossings(&limits, &imls, measure.shown_unit));
     let about = provenance(decision, made);
-    // A hyphen divides the parts of an identity in Pelicun.
+    // Pelicun uses the hyphen to divide the parts of an identifier.
     let (openquake, in_pelicun) = (identity(asset), asset.replace('-', "."));
     for (program, name) in [("OpenQuake", &openquake), ("Pelicun", &in_pelicun)] {
         if name != asset {
@@ -121,7 +121,7 @@ pub fn export(
     Ok(found)
 }
 
-/// Where a limit state that is to be the worse one is likelier than the one before it.
+/// Reports intensities at which a more severe limit state is more probable than the one before it.
 fn crossings(limits: &[(String, Lognormal)], imls: &[f64], unit: &str) -> Vec<String> {
     let crosses = |pair: &[(String, Lognormal)]| {
         let above = |x: &&f64| pair[1].1.probability(**x) > pair[0].1.probability(**x) + 1e-6;
@@ -154,7 +154,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// A name as OpenQuake takes it: up to 75 letters, digits, colons, dashes and underscores, with room for what is lost.
+/// Converts a name to an OpenQuake identifier: at most 75 letters, digits, colons, dashes and underscores with suffix.
 fn identity(text: &str) -> String {
     let known = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | ':');
     let room = 75 - "-barrels".len();
@@ -167,7 +167,7 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
 
-/// Mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
+/// Returns mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
 fn moments(curve: &Lognormal) -> (f64, f64) {
     let variance = curve.dispersion * curve.dispersion;
     let mean = curve.median * libm::exp(0.5 * variance);
@@ -182,7 +182,7 @@ fn fragility(
     about: &str,
 ) -> String {
     let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    // Outside this range OpenQuake holds a chance constant: no digit of four is lost to that.
+    // Outside of this range OpenQuake holds the probability constant, which changes none of four digits.
     let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
     let first = reaches(5e-5).fold(imls[0], f64::min);
     let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
@@ -212,16 +212,15 @@ fn fragility(
     text
 }
 
-/// Share of the wine of a stack that is lost in barrels that burst, by the central assumption; 0 where there is none.
+/// Returns the share of the wine of a stack lost in burst barrels, by the central assumption; 0 without wine.
 fn wine_lost(case: &Case) -> f64 {
     let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
-    // From 0, since a sum of nothing is -0.
+    // Start from 0: an empty sum of floats is -0.
     let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
     if case.wine > 0.0 { lost / case.wine } else { 0.0 }
 }
 
-/// Of what may scatter between 0 and 1 about a mean, no more than this share does: a beta distribution has
-/// no less.
+/// Largest variance of a beta distribution on 0 to 1, as a share of mean × (1 − mean), which it cannot reach.
 const MOST_SCATTER: f64 = 0.999;
 
 fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &str) -> String {
@@ -260,7 +259,7 @@ fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &st
     text
 }
 
-/// A fragility database of one component, a limit state a damage state.
+/// Writes a fragility database of one component with one damage state per limit state.
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();

@@ -1,4 +1,4 @@
-//! The pictures of the page.
+//! Figures of the page.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ fn muted() -> SeriesStyle {
     SeriesStyle { muted: true, ..SeriesStyle::default() }
 }
 
-/// Single values, each with the bounds of what it may be.
+/// Returns a series of single values with error bars.
 pub(crate) fn points(
     label: &str,
     x: &[f64],
@@ -37,19 +37,19 @@ fn axis(measure: &Measure) -> Axis {
     Axis::new(&measure.label, measure.shown_unit)
 }
 
-/// A chance from 0 to 1 on the vertical axis.
+/// Returns a vertical axis for a probability from 0 to 1.
 pub(crate) fn chance_axis(label: &str) -> Axis {
     Axis { range: Some([0.0, 1.0]), ..Axis::new(label, "") }
 }
 
-/// The fitted curve of a limit state, where there is one; intensities times a scale.
+/// Returns the fitted curve of a limit state, if any; intensities are multiplied by `scale`.
 pub(crate) fn fitted(curve: &LimitCurve, scale: f64, label: &str) -> Option<Series> {
     let fit = curve.fit.as_ref().ok()?;
     let (x, y) = curve.grid.iter().map(|x| (scale * x, fit.curve.probability(*x))).unzip();
     Some(Series::new(label, x, y))
 }
 
-/// The raw fractions of a limit state with their intervals.
+/// Returns the raw fractions of a limit state with their intervals.
 pub(crate) fn raw(curve: &LimitCurve, scale: f64, label: &str, index: usize) -> Series {
     let x: Vec<f64> = curve.stripes.iter().map(|stripe| scale * stripe.intensity).collect();
     points(
@@ -61,7 +61,7 @@ pub(crate) fn raw(curve: &LimitCurve, scale: f64, label: &str, index: usize) -> 
     )
 }
 
-/// Raw fractions with their intervals, the fitted curve and its band.
+/// Plots raw fractions with their intervals, the fitted curve and its band.
 pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     let range: Vec<[f64; 2]> = curve.band.iter().map(|band| [band.low, band.high]).collect();
     let label = if range.is_empty() { "fitted curve" } else { "fitted curve, 95 % band" };
@@ -87,7 +87,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
     )
 }
 
-/// One line a limit state.
+/// Plots one line per limit state.
 pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     let told = |(index, curve): (usize, &LimitCurve)| {
         let words = curve.limit.words();
@@ -106,7 +106,7 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
     )
 }
 
-/// Cumulative incidence of each mode under the curve of collapse.
+/// Plots the cumulative incidence of each mode under the curve of collapse.
 pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Measure) -> Figure {
     let grid = || collapse.grid.iter().map(|x| measure.shown(*x)).collect::<Vec<f64>>();
     let mut series = Vec::new();
@@ -131,10 +131,10 @@ pub(super) fn modes(modes: &[ModeIncidence], collapse: &LimitCurve, measure: &Me
     )
 }
 
-/// Most single curves that a picture of incremental dynamic analysis shows.
+/// Maximum number of single curves in a plot of incremental dynamic analysis.
 const MOST_CURVES: usize = 60;
 
-/// Curves of incremental dynamic analysis with their fractiles; none where records have too few levels.
+/// Plots curves of incremental dynamic analysis with their fractiles; `None` where records have too few levels.
 pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     if !cases.leveled || cases.sampled {
         return None;
@@ -201,13 +201,13 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
     ))
 }
 
-/// What factors change.
+/// Plots the effects of factors.
 pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for (row, effect) in effects.iter().enumerate() {
         let shares = || effect.groups.iter().map(Group::share);
         let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
-        // The gap parts every bar from the next.
+        // A gap separates each bar from the next.
         x.extend([low, high, f64::NAN]);
         y.extend([Axis::row(row); 3]);
     }
@@ -228,7 +228,7 @@ pub(super) fn tornado(effects: &[Effect], overall: f64) -> Figure {
     )
 }
 
-/// Barrels fallen and burst against the measure.
+/// Plots the numbers of barrels fallen and burst against the measure.
 pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     let x: Vec<f64> = losses.levels.iter().map(|loss| measure.shown(loss.intensity)).collect();
     let levels = || losses.levels.iter();
@@ -260,7 +260,7 @@ pub(super) fn losses(losses: &Losses, measure: &Measure) -> Figure {
     )
 }
 
-/// Where the rate of collapse comes from.
+/// Plots the contributions of intensities to the rate of collapse.
 pub(super) fn contributions(site: &Site, measure: &Measure) -> Figure {
     let total: f64 = site.contributions.iter().map(|part| part.rate).sum();
     let (mut x, mut y) = (Vec::new(), Vec::new());

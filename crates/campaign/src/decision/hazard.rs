@@ -1,4 +1,4 @@
-//! What a study means at a site: annual rates, from a hazard curve of its own.
+//! Annual rates at a site, from its hazard curve.
 
 use std::path::Path;
 
@@ -12,18 +12,18 @@ use super::loss::{Losses, cost};
 use crate::measured::{Table, TableError};
 use crate::scenario::Dimension;
 
-/// How often a site is shaken how hard, as read from a file.
+/// Hazard curve of a site, as read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SiteHazard {
-    /// What the file is called.
+    /// Name of the file.
     pub file: String,
     /// Name of the measure, which is that of its column.
     pub measure: String,
-    /// The curve, in SI units and a year.
+    /// The curve, in SI units and 1/year.
     pub hazard: Hazard,
 }
 
-/// Measures that a hazard curve may be over, with what they measure.
+/// Measures that a hazard curve may be over, with their dimensions.
 const MEASURES: [(&str, Dimension); 8] = [
     ("pga", Dimension::ACCELERATION),
     ("pgv", Dimension::VELOCITY),
@@ -40,12 +40,12 @@ impl SiteHazard {
     /// the annual rate at which it is exceeded.
     ///
     /// # Errors
-    /// When the file cannot be read, a column or a unit is missing, or the rows are no hazard curve.
+    /// When the file cannot be read, a column or a unit is missing, or the rows are not a hazard curve.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         Self::of(&Table::load(path)?)
     }
 
-    /// The same from a text; `file` is what errors call it.
+    /// Reads the table from a text; errors call it `file`.
     ///
     /// # Errors
     /// As [`SiteHazard::load`].
@@ -74,51 +74,51 @@ impl SiteHazard {
     }
 }
 
-/// How often a limit state is reached.
+/// Annual rate of a limit state.
 #[derive(Clone, Debug)]
 pub struct LimitRate {
-    /// What counts as failure.
+    /// The limit state.
     pub limit: LimitState,
-    /// A year, by the fitted curve.
+    /// Rate (1/year) by the fitted curve.
     pub fitted: Option<Rate>,
-    /// Its 95 % interval, for the uncertainty of the curve alone.
+    /// 95 % interval of that rate, for the uncertainty of the curve alone.
     pub interval: Option<Interval>,
-    /// A year, by the raw fractions.
+    /// Rate (1/year) by the raw fractions.
     pub raw: Rate,
-    /// Chance of at least one within the years asked for, by the fitted curve, or by the raw fractions without.
+    /// Probability of at least one in the exposure time, by the fitted curve, or by the raw fractions without one.
     pub chance: f64,
 }
 
-/// What one stack is expected to lose a year.
+/// Expected annual losses of one stack.
 #[derive(Clone, Debug)]
 pub struct Lost {
     /// Barrels that fall.
     pub fallen: Rate,
-    /// Barrels that burst, under few, the central and many.
+    /// Barrels that burst, under the low, central and high assumptions.
     pub burst: [Rate; 3],
     /// Wine (m³) that is lost, likewise.
     pub wine: [f64; 3],
-    /// What those that burst under the central assumption cost (US$), with their wine, from and to.
+    /// Cost (US$) of those that burst under the central assumption, with their wine: lower and upper bound.
     pub money: [f64; 2],
 }
 
-/// What a study means at a site.
+/// Annual rates of a study at a site.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// The hazard.
     pub hazard: SiteHazard,
-    /// Years for which chances are given.
+    /// Exposure time (years).
     pub years: f64,
     /// One for each limit state.
     pub limits: Vec<LimitRate>,
-    /// What is expected to be lost a year; none where the study does not tell what falls.
+    /// Expected annual losses; `None` where the study does not record falls.
     pub lost: Option<Lost>,
-    /// Where the rate of collapse comes from, by intensity.
+    /// Contributions to the rate of collapse, by intensity.
     pub contributions: Vec<Contribution>,
 }
 
 impl Site {
-    /// Folds the curves over the measure of the study, of which the first is of collapse, with the hazard.
+    /// Convolves the curves over the measure of the study, of which the first is of collapse, with the hazard.
     pub(super) fn of(
         cases: &Cases,
         curves: &[LimitCurve],
@@ -178,7 +178,7 @@ fn rate(hazard: &Hazard, years: f64, curve: &LimitCurve) -> LimitRate {
     LimitRate { limit: curve.limit.clone(), fitted, interval, raw, chance }
 }
 
-/// Twelve stretches of the table, even in the logarithm.
+/// Returns the edges of twelve intervals of the table, evenly spaced in the logarithm.
 fn edges(hazard: &Hazard) -> Vec<f64> {
     let rows = hazard.rows();
     let (first, last) = (rows[0].0, rows[rows.len() - 1].0);

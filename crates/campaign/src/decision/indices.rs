@@ -1,32 +1,32 @@
-//! What matters: first and total Sobol' indices of every varied quantity, on collapse and on the demands.
+//! Sensitivity: first and total Sobol' indices of every varied quantity, on collapse and on the demands.
 
 use barrelstack_fragility::{Index, sobol_indices};
 
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Role, StudyTable};
 
-/// What every varied quantity does to one result.
+/// Sobol' indices of every varied quantity on one result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
     /// The result: "collapse", or the name of a column of demands.
     pub result: String,
-    /// Blocks of the design that count; those with a case without the result are left out.
+    /// Number of complete blocks of the design; those with a case without the result are left out.
     pub blocks: usize,
-    /// Blocks that were left out.
+    /// Number of blocks left out.
     pub left_out: usize,
     /// Every varied quantity with its indices.
     pub inputs: Vec<(String, Index)>,
 }
 
-/// The results of every case of a design for sensitivity, by the number of the case.
+/// Results of every case of a design for sensitivity, by case number.
 #[derive(Debug, Default)]
 pub(super) struct Results {
-    /// Collapse (1 or 0) and the demands, each with its name; not a number where it is not known.
+    /// Collapse (1 or 0) and the demands, each with its name; not a number where unknown.
     of: Vec<(String, Vec<f64>)>,
 }
 
 impl Results {
-    /// Keeps what the rows that follow say; nothing of other designs.
+    /// Adds the results of the next rows; ignores other designs.
     pub(super) fn add(&mut self, made: &Provenance, table: &StudyTable) {
         let (Some(numbers), Some(outcomes)) = (table.integers("case"), table.texts("outcome"))
         else {
@@ -62,7 +62,7 @@ impl Results {
         }
     }
 
-    /// Indices on collapse and on every demand that varies; none but for a design made for them.
+    /// Returns indices on collapse and on every demand that varies; empty for other designs.
     pub(super) fn indices(self, made: &Provenance) -> Vec<Sensitivity> {
         let size = made.varied.len() + 2;
         let sensitivity = |(result, values): (String, Vec<f64>)| {

@@ -341,7 +341,7 @@ described! {
     }
 }
 
-/// A number, or null: JSON has no infinity.
+/// Returns a number, or `None`: JSON has no infinity.
 fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

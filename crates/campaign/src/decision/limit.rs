@@ -1,10 +1,10 @@
-//! Limit states: what counts as failure.
+//! Limit states: definitions of failure.
 
 use std::collections::BTreeSet;
 
 use super::cases::{Case, Cases};
 
-/// What counts as failure of a stack.
+/// Definition of failure of a stack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LimitState {
     /// A barrel or rack loses its seat: collapse.
@@ -14,7 +14,7 @@ pub enum LimitState {
 }
 
 impl LimitState {
-    /// Whether it is known of a case.
+    /// `true` if a case is known to be beyond it or not.
     pub(super) fn is_known(&self, case: &Case) -> bool {
         match self {
             Self::SeatLost => true,
@@ -22,7 +22,7 @@ impl LimitState {
         }
     }
 
-    /// Whether a case is beyond it.
+    /// `true` if a case is beyond it.
     pub fn reached(&self, case: &Case) -> bool {
         match self {
             Self::SeatLost => case.collapsed,
@@ -30,7 +30,7 @@ impl LimitState {
         }
     }
 
-    /// In words that follow "chance of".
+    /// Returns words that follow "chance of".
     pub fn words(&self) -> String {
         match self {
             Self::SeatLost => "collapse (first seat lost)".to_owned(),
@@ -39,7 +39,7 @@ impl LimitState {
         }
     }
 
-    /// A short name for programs.
+    /// Returns a short name for programs.
     pub fn name(&self) -> String {
         match self {
             Self::SeatLost => "collapse".to_owned(),
@@ -47,7 +47,7 @@ impl LimitState {
         }
     }
 
-    /// Collapse; where it is known what falls, the first fall, a quarter, half and all of the barrels.
+    /// Returns collapse and, where falls are known, the first fall, a quarter, half and all of the barrels.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
         let most = if cases.tells_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =

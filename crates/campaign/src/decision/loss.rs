@@ -1,14 +1,14 @@
-//! What is lost: barrels that fall, and the wine of those that burst.
+//! Losses: barrels that fall, and the wine of those that burst.
 
 use barrelstack_fragility::{Interval, Lognormal, grouped_mean};
 
 use super::cases::{Case, Cases};
 use super::curve::{LEVEL, interpolate};
 
-/// The chance that a full barrel bursts when it falls, by the height of its fall. An assumption.
+/// Probability that a full barrel bursts in a fall, by the height of the fall. An assumption.
 ///
-/// No test of dropped barrels with published numbers was found. What is known is that of the barrels that toppled at
-/// Napa in 2014 about one in ten was lost (Wines & Vines 2016), but not from which levels.
+/// No published drop tests of barrels were found. Of the barrels that toppled at Napa in 2014 about one in ten was
+/// lost (Wines & Vines 2016); from which levels is not recorded.
 /// A lognormal of median 5 m and dispersion 0.6 agrees with that: at 0.9 m a level 0.2 % from the second level, 4 %
 /// from the third, 15 %, 29 % and 43 % from the fourth to the sixth, which is 7 % to 18 % of the barrels above the
 /// lowest level of a stack of four to six levels that comes down whole. Results come with those of medians of 3.5 m
@@ -29,31 +29,31 @@ impl Breakage {
         Self { median: 3.5, dispersion: 0.6 },
     ];
 
-    /// The chance at a fall (m).
+    /// Returns the probability for a fall (m).
     pub fn probability(&self, fall: f64) -> f64 {
         Lognormal { median: self.median, dispersion: self.dispersion }.probability(fall)
     }
 }
 
-/// The chance that a full barrel bursts by the largest force on it (N) since it fell. An assumption, until somebody
-/// tests: the central one of [`Breakage`], for a barrel of 269 kg that falls freely on the floor.
+/// Probability that a full barrel bursts by the largest force on it (N) since it fell. An assumption until it is
+/// tested: the central one of [`Breakage`], for a barrel of 269 kg that falls freely on the floor.
 ///
-/// By the law of impacts that scenarios have by default, 1.2 × 10⁹ N/m^1.5, such a fall from 5 m ends with 2.2 MN, and
-/// the force grows as the height to the power of 0.6, and so does its dispersion.
-/// What lands on other barrels, or on a head of them, is caught more softly than on the floor: there both differ.
+/// By the default impact law of scenarios, 1.2 × 10⁹ N/m^1.5, such a fall from 5 m ends with 2.2 MN. The force grows as
+/// the height to the power of 0.6, and so does its dispersion.
+/// A landing on other barrels, or on a head of them, is softer than on the floor: there both differ.
 pub(super) const BURST_BY_FORCE: Lognormal = Lognormal { median: 2.2e6, dispersion: 0.36 };
 
-/// Wine of a bottle (m³).
+/// Volume of wine in a bottle (m³).
 const BOTTLE: f64 = 0.75e-3;
 
-/// What a bottle of wine that is lost costs (US$), from and to, as the cellar could sell it. An assumption; a barrel of
+/// Lower and upper cost (US$) of a lost bottle of wine, as the cellar could sell it. An assumption; a barrel of
 /// 225 L holds 25 cases (The Californian 2014).
 const BOTTLE_COST: [f64; 2] = [4.0, 20.0];
 
-/// What a barrel that bursts costs (US$) without its wine, from and to, whatever its size. An assumption.
+/// Lower and upper cost (US$) of a burst barrel without its wine, whatever its size. An assumption.
 const BARREL_COST: [f64; 2] = [400.0, 1200.0];
 
-/// What so many barrels that burst cost (US$) with the wine (m³) that was in them, from and to.
+/// Returns lower and upper cost (US$) of a number of burst barrels and the wine (m³) in them.
 pub(super) fn cost(barrels: f64, wine: f64) -> [f64; 2] {
     [0, 1].map(|end| wine / BOTTLE * BOTTLE_COST[end] + barrels * BARREL_COST[end])
 }
@@ -65,16 +65,16 @@ pub struct Loss {
     pub intensity: f64,
     /// Cases.
     pub cases: usize,
-    /// Mean of the barrels that fall.
+    /// Mean number of barrels that fall.
     pub fallen: f64,
-    /// The 95 % interval of that mean, for which the cases of one record go together.
+    /// 95 % interval of that mean, clustered by record.
     pub interval: Interval,
     /// Barrels expected to burst, under the three assumptions of [`Breakage::RANGE`].
     pub burst: [f64; 3],
-    /// Wine (m³) expected to be lost in them, all that is in a barrel that bursts; what leaks from bungs of barrels that
-    /// hold is not counted.
+    /// Expected loss of wine (m³), all that is in barrels that burst; leaks from bungs of intact barrels are not
+    /// counted.
     pub wine: [f64; 3],
-    /// Barrels expected to burst by the largest force on them; none where the study does not tell forces.
+    /// Expected number of barrels that burst by the largest force on them; `None` where the study has no forces.
     pub burst_by_force: Option<f64>,
 }
 
@@ -83,14 +83,14 @@ pub struct Loss {
 pub struct Losses {
     /// One for each level, ascending.
     pub levels: Vec<Loss>,
-    /// Barrels of a stack, the most of any case.
+    /// Number of barrels in a stack, the largest of any case.
     pub barrels: u32,
-    /// Wine (m³) of a stack, the most of any case.
+    /// Wine (m³) in a stack, the largest of any case.
     pub most_wine: f64,
 }
 
 impl Losses {
-    /// Means over the cases of each level that were followed until nothing moved; or why there are none.
+    /// Returns means over the cases of each level that were simulated until nothing moved, or the reason for none.
     pub(super) fn of(cases: &Cases) -> Result<Self, String> {
         if let Some(reason) = cases.endings.no_losses() {
             return Err(reason);
@@ -107,17 +107,17 @@ impl Losses {
         Ok(Self { levels, barrels: cases.most_barrels(), most_wine: cases.most_wine() })
     }
 
-    /// Barrels expected to fall at an intensity.
+    /// Returns the expected number of fallen barrels at an intensity.
     pub fn fallen(&self, intensity: f64) -> f64 {
         self.interpolated(intensity, |loss| loss.fallen)
     }
 
-    /// Barrels expected to burst at an intensity, under one of the assumptions of [`Breakage::RANGE`].
+    /// Returns the expected number of burst barrels at an intensity, under an assumption of [`Breakage::RANGE`].
     pub fn burst(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.burst[assumption])
     }
 
-    /// Wine (m³) expected to be lost at an intensity, under one of the assumptions of [`Breakage::RANGE`].
+    /// Returns the expected loss of wine (m³) at an intensity, under an assumption of [`Breakage::RANGE`].
     pub fn wine(&self, intensity: f64, assumption: usize) -> f64 {
         self.interpolated(intensity, |loss| loss.wine[assumption])
     }

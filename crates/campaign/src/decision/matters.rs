@@ -1,4 +1,4 @@
-//! Tables of what matters: varied quantities, and measures of shaking.
+//! Sensitivity tables: effects of varied quantities, and efficiency of intensity measures.
 
 use barrelstack_fragility::{Demanded, Interval, Measured};
 use barrelstack_report::{Cell, Column, Table};
@@ -47,7 +47,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
     table
 }
 
-/// First and total indices of everything that varies, on every result.
+/// Tabulates first and total indices of every varied quantity on every result.
 pub(super) fn indices(all: &[Sensitivity]) -> Table {
     let rows = all.iter().flat_map(|of| of.inputs.iter().zip(0..).map(move |one| (of, one)));
     let result = |of: &Sensitivity, at: i32| {
@@ -68,13 +68,13 @@ pub(super) fn indices(all: &[Sensitivity]) -> Table {
     )
 }
 
-/// The interval of an index, or that the blocks are too few for one.
+/// Formats the interval of an index, or states that the blocks are too few for one.
 fn known(interval: Interval) -> String {
     let whole = interval.low <= 0.0 && interval.high >= 1.0;
     if whole { "too few blocks to say".to_owned() } else { range(interval, share) }
 }
 
-/// A share of two digits behind the point.
+/// Formats a share with two decimals.
 fn share(value: f64) -> String {
     format!("{value:.2}")
 }

@@ -1,4 +1,4 @@
-//! Intensity measures compared: which tells collapse best, and does it tell all.
+//! Efficiency and sufficiency of intensity measures for collapse.
 
 use barrelstack_fragility::{Demanded, FitError, Measured, demand_against, failure_against};
 
@@ -9,20 +9,20 @@ use super::cases::Cases;
 pub struct MeasureRow {
     /// Index of the measure.
     pub measure: usize,
-    /// Index of the measure that was tried beside it.
+    /// Index of the measure that sufficiency is tested against.
     pub beside: Option<usize>,
-    /// Collapse against it, or why there is no curve.
+    /// Collapse against it, or the reason why there is no curve.
     pub collapse: Result<Measured, FitError>,
-    /// Drift of the top of stacks that stood against it.
+    /// Drift of the top of standing stacks against it.
     pub drift: Option<Demanded>,
 }
 
-/// Every measure, the one under which collapse is likeliest as observed first.
+/// Compares all measures, sorted by the likelihood of the observed collapses, the largest first.
 pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
     let by_name = |name: &str| cases.measures.iter().position(|measure| measure.name == name);
     let mut rows: Vec<MeasureRow> = (0..cases.measures.len())
         .map(|measure| {
-            // Each is tried beside the measure of the study, and that beside PGA, or PGV if it is PGA.
+            // Test each against the measure of the study, and that against PGA, or PGV if it is PGA.
             let beside = if measure == cases.main {
                 ["pga", "pgv"].into_iter().filter_map(by_name).find(|other| *other != measure)
             } else {
@@ -40,7 +40,7 @@ pub(super) fn compare(cases: &Cases) -> Vec<MeasureRow> {
 
 fn row(cases: &Cases, measure: usize, beside: Option<usize>) -> MeasureRow {
     let positive = |value: Option<f64>| value.filter(|value| *value > 0.0);
-    // There may be a million cases: nothing is kept of them but what is asked.
+    // There may be a million cases: keep only the needed numbers of each.
     let (mut outcomes, mut second) = (Vec::new(), Vec::new());
     let (mut demands, mut second_stood) = (Vec::new(), Vec::new());
     for case in &cases.all {

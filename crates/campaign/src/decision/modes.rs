@@ -1,4 +1,4 @@
-//! Modes of collapse: competing risks, told by their cumulative incidence.
+//! Modes of collapse as competing risks, by their cumulative incidence.
 
 use barrelstack_fragility::{Interval, Shares, Stripe, wilson};
 
@@ -14,7 +14,7 @@ pub struct ModeIncidence {
     pub stripes: Vec<Stripe>,
     /// Wilson's interval of each fraction.
     pub intervals: Vec<Interval>,
-    /// Chance of collapse in it at each intensity of the grid of the curve of collapse; empty without such a
+    /// Probability of collapse in it at each intensity of the grid of the curve of collapse; empty without such a
     /// curve, or where the cases determine no shares.
     pub fitted: Vec<f64>,
 }
@@ -23,7 +23,7 @@ fn is(case: &Case, mode: usize) -> bool {
     case.mode.map(usize::from) == Some(mode)
 }
 
-/// Every mode that occurs, the most frequent first; none of hunts, which go where collapses are.
+/// Returns every mode that occurs, the most frequent first; none for hunts, whose levels concentrate at collapses.
 pub(super) fn of(cases: &Cases, collapse: &LimitCurve) -> Vec<ModeIncidence> {
     if cases.hunted {
         return Vec::new();

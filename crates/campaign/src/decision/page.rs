@@ -1,4 +1,4 @@
-//! The page of a study: the answer first, then what it rests on.
+//! The page of a study: first the answer, then its evidence.
 
 use barrelstack_fragility::{Stripe, clopper_pearson};
 use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, measured, significant};
@@ -12,7 +12,7 @@ use super::words::{self, count, percent, range};
 use super::{Decision, figures, matters};
 use crate::study::Provenance;
 
-/// The whole page.
+/// Builds the whole page.
 pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     Document {
         title: decision.cases.title.clone(),
@@ -28,7 +28,7 @@ pub(super) fn document(decision: &Decision, made: &Provenance) -> Document {
     }
 }
 
-/// What opens a section.
+/// Returns the heading of a section.
 pub(crate) fn heading(text: &str) -> Block {
     Block::Heading { level: 2, text: text.to_owned() }
 }
@@ -76,7 +76,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     if let Some(site) = &decision.site {
         blocks.extend(at_site(site, measure));
     }
-    // Shares of a hunt are those of where it went.
+    // Shares of a hunt depend on its path.
     if !decision.sensitivities.is_empty() {
         blocks.push(heading("What matters"));
         blocks.push(Block::Table(matters::indices(&decision.sensitivities)));
@@ -106,7 +106,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     blocks
 }
 
-/// Raw counts beside the curve.
+/// Tabulates raw counts and the fitted curve.
 pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
     let exact = |of: &Stripe| clopper_pearson(of.failures, of.cases, LEVEL);
     let fitted = |of: &Stripe| {
@@ -128,7 +128,7 @@ pub(super) fn raw(curve: &LimitCurve, measure: &Measure) -> Table {
     )
 }
 
-/// How the curve was made and whether to believe it.
+/// Describes how the curve was fitted and how well the data support it.
 fn judgment(cases: &Cases, curve: &LimitCurve, measure: &Measure) -> Vec<Block> {
     let mut said = Vec::new();
     if !cases.hunted && !cases.shares_levels(cases.main) {
@@ -238,7 +238,7 @@ fn limits(curves: &[LimitCurve], cases: &Cases) -> Table {
     )
 }
 
-/// Cases that collapsed in each mode.
+/// Tabulates the cases that collapsed in each mode.
 fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
     let mut columns = vec![(measure.label.clone(), measure.shown_unit), ("cases".to_owned(), "")];
     columns.extend(modes.iter().map(|mode| (mode.mode.replace('-', " "), "")));
@@ -258,7 +258,7 @@ fn modes(modes: &[ModeIncidence], measure: &Measure) -> Table {
 }
 
 fn losses(losses: &Losses, measure: &Measure) -> Table {
-    // Studies without contact forces tell none.
+    // Studies without contact forces have none.
     let by_force = losses.levels.iter().any(|loss| loss.burst_by_force.is_some());
     let mut columns = vec![
         (measure.label.as_str(), measure.shown_unit),

@@ -1,4 +1,4 @@
-//! What varied factors change: shares of collapse at each of their values.
+//! Effects of varied factors: shares of collapse at each of their values.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -16,11 +16,11 @@ pub struct Group {
     pub label: String,
     /// Cases.
     pub cases: u32,
-    /// Of which collapsed.
+    /// Number of them that collapsed.
     pub collapsed: u32,
     /// Interval of the share of collapse.
     pub interval: Interval,
-    /// The same at each intensity (SI) that cases were scaled to, where one thing is changed at a time.
+    /// Counts at each intensity (SI) that cases were scaled to, for one-at-a-time designs.
     pub levels: Vec<Level>,
 }
 
@@ -31,25 +31,25 @@ pub struct Level {
     pub intensity: f64,
     /// Cases.
     pub cases: u32,
-    /// Of which collapsed.
+    /// Number of them that collapsed.
     pub collapsed: u32,
-    /// Interval of the share of collapse, for which the cases of one motion go together.
+    /// Interval of the share of collapse, clustered by motion.
     pub interval: Interval,
 }
 
-/// Whether two intensities are one level; levels went through text and back.
+/// `true` if two intensities are one level; levels are rounded when written as text.
 pub(super) fn alike(one: f64, other: f64) -> bool {
     (one - other).abs() < 1e-6 * one
 }
 
 impl Group {
-    /// Share of collapse.
+    /// Returns the share of collapse.
     pub fn share(&self) -> f64 {
         f64::from(self.collapsed) / f64::from(self.cases)
     }
 }
 
-/// What a factor changes.
+/// Effect of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
     /// Name of the factor.
@@ -59,19 +59,19 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// The largest difference of shares.
+    /// Returns the largest difference of shares.
     pub fn range(&self) -> f64 {
         let shares = || self.groups.iter().map(Group::share);
         shares().fold(0.0, f64::max) - shares().fold(1.0, f64::min)
     }
 }
 
-/// Most values of a factor that are told one by one.
+/// Maximum number of values of a factor that are listed individually.
 const MOST: usize = 6;
 
-/// Every factor that varies, the largest effect first.
+/// Returns the effects of all factors that vary, the largest first.
 pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> Vec<Effect> {
-    // One at a time: a factor's cases are those in which every other stands at its base.
+    // One at a time: the cases of a factor are those in which all others have their base values.
     let alone = made.design == "one-at-a-time";
     let drawn = |factor: &Column| made.drawn.contains(&factor.spec.name);
     let base: Vec<Option<Value>> = factors.iter().filter(|_| alone).map(most_frequent).collect();
@@ -105,7 +105,7 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
     found
 }
 
-/// The value that most cases have, the first of these: one at a time, that is the base.
+/// Returns the most frequent value, the first of equals: in a one-at-a-time design, the base.
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
@@ -122,7 +122,7 @@ fn group(label: String, of: Vec<&Case>) -> (Group, Vec<&Case>) {
     (Group { label, cases, collapsed, interval, levels: Vec::new() }, of)
 }
 
-/// What cases come to of which those of one motion go together.
+/// Counts cases with an interval clustered by motion.
 fn by_motion(of: &[&Case]) -> Level {
     let mut motions: BTreeMap<u32, (u32, u32)> = BTreeMap::new();
     for case in of {
@@ -139,7 +139,7 @@ fn by_motion(of: &[&Case]) -> Level {
     }
 }
 
-/// The same at each intensity, ascending; none where cases were not scaled to any.
+/// Counts cases at each intensity, ascending; empty where cases were not scaled.
 fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
     let leveled = of.iter().filter(|_| cases.leveled);
     let mut at: Vec<(f64, &Case)> =

@@ -1,4 +1,4 @@
-//! What the page says in words: verdict and warnings.
+//! Text of the page: verdict and warnings.
 
 use barrelstack_fragility::{FitError, Interval, wilson};
 use barrelstack_report::{Cell, capital, measured, significant};
@@ -11,7 +11,7 @@ use super::limit::LimitState;
 use super::loss::Losses;
 use crate::study::Provenance;
 
-/// A share as a percentage in words.
+/// Formats a share as a percentage.
 pub(crate) fn percent(share: f64) -> String {
     let value = 100.0 * share;
     match value {
@@ -25,26 +25,26 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
-/// The ends of an interval as `told` says each.
+/// Formats the ends of an interval by `told`.
 pub(crate) fn range(of: Interval, told: impl Fn(f64) -> String) -> String {
     format!("{} to {}", told(of.low), told(of.high))
 }
 
-/// A count as a cell: all of its digits and no others.
+/// Returns a count as a cell with all of its digits.
 pub(super) fn count(count: impl Into<f64>) -> Cell {
     let count: f64 = count.into();
     let digits = format!("{count:.0}").len();
     Cell::Number(count, digits)
 }
 
-/// What the reader must know of runs without a verdict, where there are any.
+/// Returns a note on runs without a verdict, if there are any.
 pub(crate) fn left_out(lost: usize, runs: usize) -> Option<String> {
     (lost > 0).then(|| {
         format!("{lost} of {runs} runs have no verdict and are left out; the column `error` of the tables says why.")
     })
 }
 
-/// What is said before anything else of stacks that fall under their own weight; empty where there are none.
+/// Returns the opening statement on stacks that fall under their own weight; empty if there are none.
 pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     let (falls, they) = match fallen {
         0 => return String::new(),
@@ -54,7 +54,7 @@ pub(crate) fn fallen_at_rest(fallen: usize, of: usize, what: &str) -> String {
     format!("{fallen} of {of} {what} {falls} own weight, before {they} shaken. ")
 }
 
-/// A collapse once in how many years.
+/// Formats a rate as a recurrence interval in years.
 fn recurrence(rate: f64) -> String {
     if rate <= 0.0 {
         return "no collapse".to_owned();
@@ -62,7 +62,7 @@ fn recurrence(rate: f64) -> String {
     format!("a collapse once in {} years", significant(1.0 / rate, 2))
 }
 
-/// Why there is no curve, with intensities as `told` says them.
+/// Explains why there is no curve, with intensities formatted by `told`.
 pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String {
     match reason {
         FitError::NothingFailed { largest } => format!(
@@ -91,13 +91,13 @@ pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String
     }
 }
 
-/// The largest words of the page.
+/// Returns the headline of the page.
 pub(super) fn headline(decision: &Decision) -> String {
     let cases = &decision.cases;
     fallen_at_rest(cases.fallen_at_rest(), cases.all.len(), "cases") + &collapse(decision)
 }
 
-/// How collapse depends on the measure of the study.
+/// Describes how collapse depends on the measure of the study.
 fn collapse(decision: &Decision) -> String {
     let cases = &decision.cases;
     let curve = &decision.curves[0];
@@ -123,7 +123,7 @@ fn collapse(decision: &Decision) -> String {
             measure.label,
             measure.words(fit.curve.median)
         ),
-        // The share of samples is that of what was sampled; of levels, of nothing.
+        // The share of samples is that of the sampled population; the share over levels has no meaning.
         (Err(_), _) if cases.sampled => {
             let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
             let share = wilson(count(collapsed), count(cases.all.len()), LEVEL);
@@ -137,7 +137,7 @@ fn collapse(decision: &Decision) -> String {
     }
 }
 
-/// The sentences under it.
+/// Returns the sentences under the headline.
 pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     let cases = &decision.cases;
     let curve = &decision.curves[0];
@@ -207,7 +207,7 @@ pub(super) fn sentences(decision: &Decision) -> Vec<String> {
     said
 }
 
-/// Warnings, the most important first.
+/// Returns the warnings, the most important first.
 pub(super) fn warnings(
     cases: &Cases,
     curves: &[LimitCurve],
@@ -304,7 +304,7 @@ pub(super) fn warnings(
     said
 }
 
-/// Where collapse becomes less likely with intensity.
+/// Describes intensities at which collapse becomes less likely.
 fn islands(cases: &Cases, curve: &LimitCurve) -> Vec<String> {
     let measure = &cases.measures[curve.measure];
     let falls = curve.monotony.significant(0.05);

@@ -1,4 +1,4 @@
-//! Ours beside the field: Napa in 2014.
+//! Comparison with field observations: Napa in 2014.
 
 use barrelstack_report::{Block, Cell, Table};
 
@@ -7,7 +7,7 @@ use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::scenario::View;
 
-/// Ours beside the field.
+/// Compares the results with observations at Napa.
 pub(super) fn napa(all: &Heights) -> Vec<Block> {
     let mut table = Table::new(
         "Stacks of four to six levels: ours at the strength of shaking of Napa, and what was found there.",
@@ -64,7 +64,7 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-/// The bundled record as it is.
+/// Tabulates runs under the bundled record, unscaled.
 fn recorded(all: &Heights) -> Table {
     let mut table = Table::new(
         "South Napa 2014 as recorded at Napa College, unscaled: what becomes of each stack (friction of the catalog).",

@@ -1,4 +1,4 @@
-//! The page: how high is safe, for someone with a minute.
+//! The page on safe heights.
 
 use barrelstack_fragility::{Fit, Interval, at_most};
 use barrelstack_report::{
@@ -14,14 +14,14 @@ use crate::decision::{
 use crate::scenario::View;
 use crate::scenario::catalog;
 
-/// Largest share of collapse that is called low, and the largest chance that the counts may leave possible: a chance
-/// above that is called low in one of 20 tries at most, however many motions there are.
+/// Largest share of collapse that is called low, and the largest upper bound of the probability with it: a probability
+/// above that is called low in at most one of 20 tries, whatever the number of motions.
 const LOW: (f64, f64) = (0.05, 0.12);
 
 /// Largest share that is called medium.
 const MEDIUM: f64 = 0.25;
 
-/// The whole page.
+/// Builds the whole page.
 pub(super) fn document(all: &Heights) -> Document {
     Document {
         title: format!("How high is safe: stacks on {} racks", all.request.rack),
@@ -47,8 +47,8 @@ fn rack_source(name: &str) -> String {
     catalog::rack(name).map_or_else(String::new, |rack| format!("{name}: {}", rack.source))
 }
 
-/// How strong a peak ground velocity (m/s) is taken to be felt, in the words of shaking maps: an assumption, since the
-/// classes are those of earthquakes in California on average (Wald et al. 1999).
+/// Returns the perceived shaking of a peak ground velocity (m/s), in the terms of shaking maps: an assumption, since
+/// the classes are averages of earthquakes in California (Wald et al. 1999).
 fn felt(velocity: f64) -> &'static str {
     match 100.0 * velocity {
         v if v < 8.1 => "moderate (V)",
@@ -64,13 +64,13 @@ fn shaking(velocity: f64) -> String {
     format!("{:.0} cm/s", 100.0 * velocity)
 }
 
-/// Shaking as it is felt: "severe shaking (40 cm/s)".
+/// Formats shaking with its perceived class: "severe shaking (40 cm/s)".
 fn named(velocity: f64) -> String {
     let felt = felt(velocity).split(' ').take_while(|word| !word.starts_with('('));
     format!("{} shaking ({})", felt.collect::<Vec<_>>().join(" "), shaking(velocity))
 }
 
-/// A height at a level of PGV (m/s) in the direction in which the counts leave the larger chance of collapse possible.
+/// Returns the results of a height at a level of PGV (m/s) in the direction with the larger upper bound of collapse.
 fn worse(all: &Heights, levels: u32, velocity: f64) -> Option<AtLevel> {
     View::ALL
         .into_iter()
@@ -89,7 +89,7 @@ fn rating(at: &AtLevel) -> Rating {
     }
 }
 
-/// The highest stack of which it and all lower ones are rated low at a level of PGV (m/s).
+/// Returns the highest stack that is rated low at a level of PGV (m/s) together with all lower ones.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
     HEIGHTS
         .into_iter()
@@ -99,7 +99,7 @@ fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
         .last()
 }
 
-/// Fewest motions that can leave no more than a low chance possible, were no stack to collapse.
+/// Returns the smallest number of motions that can prove a low probability if no stack collapses.
 fn fewest_motions() -> u32 {
     (1..1_000_000).find(|n| at_most(0, *n, 0.95) <= LOW.1).unwrap_or(u32::MAX)
 }
@@ -112,8 +112,8 @@ fn headline(all: &Heights) -> String {
             "Too few motions to call anything low in risk: {motions} shook every stack, and {more} more would do."
         );
     }
-    // From the weakest shaking on and no further than to the first that is not low: had each level of shaking its own
-    // chance to pass, one too many would.
+    // From the weakest shaking up to the first level that is not low: if each level were tested independently,
+    // one too many would pass.
     let low =
         VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
     let Some((velocity, levels)) = low.last() else {
@@ -129,8 +129,8 @@ fn headline(all: &Heights) -> String {
     )
 }
 
-/// What is known of all stacks of up to some levels at a level of PGV (m/s), of which each has been counted: "in 24
-/// motions none fell: at most 12 % (95 %)".
+/// Describes the worst of all stacks of up to some levels at a level of PGV (m/s), all of which were counted:
+/// "in 24 motions none fell: at most 12 % (95 %)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     let heights = HEIGHTS.into_iter().take_while(|height| *height <= levels);
     let worst = heights
@@ -144,7 +144,7 @@ fn found(all: &Heights, levels: u32, velocity: f64) -> String {
     format!("in {} motions {fell}: at most {} (95 %)", stripe.cases, bound(interval.high))
 }
 
-/// A bound in whole percent, which rounding may not make smaller than it is by more than half a percent.
+/// Formats a bound in whole percent, understated by at most half a percent.
 fn bound(high: f64) -> String {
     format!("{:.0} %", 100.0 * high)
 }
@@ -203,7 +203,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-/// Shaking down, height across.
+/// Builds a table with one row per level of shaking and one column per height.
 fn by_height(caption: String, cell: impl Fn(u32, f64) -> Cell) -> Table {
     let names = HEIGHTS.map(|levels| format!("{levels} levels"));
     let mut columns = vec![("shaking, by PGV", ""), ("felt as", "")];
@@ -264,11 +264,11 @@ fn level_axis() -> Axis {
     Axis { range: Some([1.6, 6.4]), ..Axis::new("levels", "") }
 }
 
-/// Chance against height at three strengths of shaking, with their intervals.
+/// Plots the probability against height at three levels of shaking, with intervals.
 fn chart(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
-        // Beside each other, so that the bars can be told apart.
+        // Side by side, so that the bars do not overlap.
         let shift = 0.07 * (index as f64 - 1.0);
         let found: Vec<(f64, f64, Interval)> = HEIGHTS
             .into_iter()
@@ -289,7 +289,7 @@ fn chart(all: &Heights) -> Figure {
     )
 }
 
-/// The PGV at which half of the stacks collapse, against height.
+/// Plots the PGV at which half of the stacks collapse against height.
 fn medians(all: &Heights) -> Figure {
     let mut series = Vec::new();
     for (index, view) in View::ALL.into_iter().enumerate() {
@@ -301,7 +301,7 @@ fn medians(all: &Heights) -> Figure {
             .filter_map(|height| {
                 let fit = height.by_velocity.fit.as_ref().ok()?;
                 let at = f64::from(height.levels) + shift;
-                // A bar that has no end is not drawn.
+                // Bars without an upper end are not drawn.
                 let bounds = height.by_velocity.median.filter(|bounds| bounds.high.is_finite());
                 let bounds = bounds.unwrap_or(Interval { low: f64::NAN, high: f64::NAN });
                 let [low, high] = [bounds.low, bounds.high].map(|bound| 100.0 * bound);
@@ -384,7 +384,7 @@ fn rests_on(all: &Heights) -> Vec<String> {
     ]
 }
 
-/// Warnings, the most important first.
+/// Returns the warnings, the most important first.
 pub(super) fn warnings(all: &Heights) -> Vec<String> {
     let mut said = all.ends.clone();
     said.extend(left_out(all.left_out, all.runs));

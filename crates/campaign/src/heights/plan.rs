@@ -1,4 +1,4 @@
-//! The studies behind the page: what stands, what shakes it, what is drawn.
+//! The studies behind the page: stacks, motions and random factors.
 
 use std::fmt::Write as _;
 
@@ -14,12 +14,12 @@ pub const HEIGHTS: [u32; 5] = [2, 3, 4, 5, 6];
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
 
-/// Name of a study and of its folder.
+/// Returns the name of a study and of its folder.
 pub(super) fn name(view: View, recorded: bool) -> String {
     format!("{}{}", view.name(), if recorded { "-as-recorded" } else { "" })
 }
 
-/// The text of a study: every height under every motion at every level, or under the bundled record as it is.
+/// Returns the text of a study: every height under every motion at every level, or under the bundled record unscaled.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
     let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
         let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
@@ -29,8 +29,8 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
         return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
     }
-    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge only needs
-    // closer nodes.
+    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge needs
+    // only a closer node spacing.
     let (columns, rack) = match view {
         View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
         View::Longitudinal => {
@@ -90,15 +90,15 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
     Ok(text)
 }
 
-/// A path as a string of TOML, absolute so that it does not hang on where the study lies.
+/// Returns a path as a string of TOML, absolute so that it is valid wherever the study lies.
 pub(crate) fn quoted(path: &std::path::Path) -> String {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let text = whole.display().to_string().replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{text}\"")
 }
 
-/// Synthetic motions: half of a moderate earthquake nearby, a quarter of a large one further off, a quarter with a
-/// velocity pulse of near faults; names end with a suffix.
+/// Returns synthetic motions: half of a moderate earthquake nearby, a quarter of a large one further off, a quarter
+/// with a velocity pulse of near faults; names end with a suffix.
 pub(crate) fn synthetic(count: u32, suffix: &str) -> String {
     let large = count / 4;
     let pulses = count / 4;

@@ -1,10 +1,10 @@
-//! What can be done for a stack: a change of the scenario, what it costs, and what is left of it when worn.
+//! Protections of a stack: changes of the scenario, their cost, and their worn states.
 
 use barrelstack::device::{Cost, DEVICES, Each, Setting};
 
 use crate::scenario::{MotionSource, Scenario, ScenarioError, catalog};
 
-/// What kind of change it is; of a kind only one is part of a pair.
+/// Kind of a protection; a pair has two different kinds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// The stack as it is.
@@ -13,14 +13,14 @@ pub enum Kind {
     Height,
     /// Other racks.
     Rack,
-    /// A device, by what one of it is called.
+    /// A device, by the word for one of it.
     Device(&'static str),
     /// Two of these at once.
     Pair,
 }
 
 impl Kind {
-    /// The word in documents.
+    /// Returns the word in documents.
     pub fn name(self) -> &'static str {
         match self {
             Self::AsItIs => "as-it-is",
@@ -32,7 +32,7 @@ impl Kind {
     }
 }
 
-/// One thing that can be done for a stack, or two at once.
+/// One protection of a stack, or two at once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Protection {
     /// Its kind.
@@ -41,29 +41,29 @@ pub struct Protection {
     pub key: String,
     /// Its name for people.
     pub name: String,
-    /// What it changes, as overrides of the scenario.
+    /// Overrides of the scenario.
     pub changes: Vec<String>,
-    /// What it costs for a stack (US$), from and to.
+    /// Lower and upper cost for a stack (US$).
     pub cost: [f64; 2],
-    /// Where the cost comes from.
+    /// Source of the cost.
     pub source: String,
-    /// Barrels that have to stand elsewhere.
+    /// Number of barrels that have to be stored elsewhere.
     pub moved: u32,
-    /// What may become of it in use: in words, and as further overrides.
+    /// States of wear: in words, and as further overrides.
     pub degraded: Vec<(String, Vec<String>)>,
 }
 
-/// Price (US$) of a new rack for two barrels: about 100 in 2009 (cedarrivercellars.com); that it may be twice as much
-/// by now is an assumption.
+/// Price (US$) of a new rack for two barrels: about 100 in 2009 (cedarrivercellars.com); the upper value, twice that by
+/// now, is an assumption.
 const RACK: [f64; 2] = [100.0, 200.0];
 
-/// The same of a rack on posts, which has some twice the steel: an assumption.
+/// Price (US$) of a rack on posts, which has about twice the steel: an assumption.
 const RACK_ON_POSTS: [f64; 2] = [200.0, 400.0];
 
-/// Cost (US$) of a barrel's place elsewhere, half a rack and its floor: an assumption.
+/// Cost (US$) of storing a barrel elsewhere, half a rack and its floor: an assumption.
 const PLACE: [f64; 2] = [100.0, 300.0];
 
-/// All that can be done for a stack, which as it is comes first.
+/// Returns all single protections of a stack, the first of which is the stack as it is.
 pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     let Some(stack) = scenario.stack() else { return Vec::new() };
     let (levels, columns) = (stack.levels, stack.columns);
@@ -122,7 +122,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
     all
 }
 
-/// What a device costs (US$) on so many levels as it is set to, or else on all.
+/// Returns the price of a device (US$) on the number of levels that it is set to, by default on all.
 fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     let set = |change: &String| change.split_once(".levels=")?.1.parse::<u32>().ok();
     let count = match cost.each {
@@ -132,15 +132,15 @@ fn price(cost: &Cost, changes: &[String], levels: u32) -> [f64; 2] {
     times(cost.dollars, count)
 }
 
-/// A name as that of a folder.
+/// Converts a name to that of a folder.
 pub(crate) fn slug(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let dashed: String = name.chars().map(plain).collect();
     dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-/// Two at once, the second for the stack that the first leaves; none of one kind, since each changes the same fields,
-/// and none where the second does not go on that stack.
+/// Combines two protections, the second for the stack that the first leaves; `None` for two of one kind, since they
+/// change the same fields, and where the second does not fit that stack.
 pub(super) fn pair(
     scenario: &Scenario,
     one: &Protection,
@@ -168,7 +168,7 @@ pub(super) fn pair(
     })
 }
 
-/// A scenario with overrides, whatever it was made with; nothing is read from the disk.
+/// Applies overrides to a scenario, whatever its source; reads no file.
 pub(crate) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenario, ScenarioError> {
     let mut still = scenario.clone();
     still.motion.source = MotionSource::None;
@@ -178,15 +178,15 @@ pub(crate) fn changed(scenario: &Scenario, changes: &[String]) -> Result<Scenari
 }
 
 impl Protection {
-    /// A scenario with it.
+    /// Applies the protection to a scenario.
     ///
     /// # Errors
-    /// When it does not fit.
+    /// If it does not fit.
     pub fn on(&self, scenario: &Scenario) -> Result<Scenario, ScenarioError> {
         changed(scenario, &self.changes)
     }
 
-    /// What it is when worn or badly kept: in words, and in its place.
+    /// Returns its worn states: in words, and as protections in its place.
     pub(super) fn worn(&self) -> impl Iterator<Item = (&str, Self)> {
         self.degraded.iter().enumerate().map(|(at, (words, changes))| {
             let field = |change: &String| change.split('=').next().map(str::to_owned);

@@ -1,4 +1,4 @@
-//! The page: one table to act on, one figure, before and after, and what was not modeled.
+//! The page: a table to act on, a figure, before and after, and what was not modeled.
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
@@ -42,7 +42,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
     }
 }
 
-/// "a year", or "when shaken to 25, 50, 75 cm/s".
+/// Returns "a year at this site", or "when shaken to 25, 50, 75 cm/s".
 fn per(all: &Ranking) -> String {
     match &all.request.shaking {
         Shaking::Site(_) => "a year at this site".to_owned(),
@@ -60,12 +60,12 @@ fn is_site(all: &Ranking) -> bool {
     matches!(all.request.shaking, Shaking::Site(_))
 }
 
-/// How likely collapse is, or how often.
+/// Formats the probability or annual rate of collapse.
 fn collapse(all: &Ranking, value: f64) -> String {
     if is_site(all) { format!("{} times a year", significant(value, 2)) } else { percent(value) }
 }
 
-/// What comes first: how often the stack as it is, or what is recommended for it, falls without any shaking.
+/// Returns the opening statement if the stack as it is, or as recommended, falls without any shaking.
 fn by_themselves(all: &Ranking) -> String {
     let of = |one: Option<&Ranked>, name: &str| {
         let said = one.map(|one| fallen_at_rest(one.fallen_at_rest, one.runs, "runs"));
@@ -141,11 +141,11 @@ fn sentences(all: &Ranking) -> Vec<String> {
     said
 }
 
-/// Barrels of an event in hundredths, of a year in two digits, which may be far below one.
+/// Formats barrels of an event with two decimals, of a year with two digits, since they may be far below one.
 fn interval(all: &Ranking, estimate: &Estimate) -> String {
     let shown = |x: f64| match format!("{x:.2}") {
         _ if is_site(all) => significant(x, 2),
-        // Next to nothing has no sign.
+        // A rounded zero has no sign.
         text if text == "-0.00" => "0.00".to_owned(),
         text => text,
     };
@@ -214,7 +214,7 @@ fn legend(all: &Ranking) -> String {
     )
 }
 
-/// Cost against loss.
+/// Plots loss against cost.
 fn chart(all: &Ranking) -> Figure {
     let last = all.all.iter().map(|one| one.round).max();
     let series = [(true, "nothing beats it in both"), (false, "others")]
@@ -246,7 +246,7 @@ fn chart(all: &Ranking) -> Figure {
     )
 }
 
-/// What each changes, to be tried by hand.
+/// Tabulates the changes of each protection, for manual trials.
 fn changes(all: &Ranking) -> Table {
     let tried = all.all.iter().map(|one| &one.protection);
     Table::of(

@@ -1,4 +1,4 @@
-//! The studies behind the ranking: one for each protection, direction and round, alike in all but the stack.
+//! The studies behind the ranking: one per protection, direction and round, equal but for the stack.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::study::Study;
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Runs of a chunk, what is kept or lost at a stop.
+/// Runs of a chunk, the unit that is kept or lost at an interruption.
 const CHUNK: usize = 24;
 
 /// Both components of the bundled record, with its vertical.
@@ -18,13 +18,13 @@ pub(crate) const NAPA: &str = "[[motion]]\n\
      components = [\"horizontal-1\", \"horizontal-2\"]\n\
      each = { vertical = \"UP\" }\n\n";
 
-/// Name of the folder of a study below that of its protection.
+/// Returns the name of the folder of a study below that of its protection.
 pub(super) fn name(direction: &str, round: u32) -> String {
     format!("{direction}-{}", round + 1)
 }
 
-/// The study of a stack in one direction in a round, counted from 0: what it draws depends on the round alone, so all
-/// protections meet the same motions and the same quantiles of friction and of the constants of seats.
+/// Returns the study of a stack in one direction in a round, counted from 0: its draws depend on the round alone, so
+/// that all protections have the same motions and the same quantiles of friction and of the constants of seats.
 ///
 /// # Errors
 /// When a record cannot be read.
@@ -38,8 +38,8 @@ pub(super) fn study(
     shaken("protection", scenario, seed, &motions(request, round), levels)
 }
 
-/// The study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with what is not known
-/// of it drawn for each run by a seed.
+/// Returns the study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with uncertain
+/// parameters drawn for each run by a seed.
 ///
 /// # Errors
 /// When a record cannot be read.
@@ -65,8 +65,8 @@ pub(crate) fn shaken(
     Study::parse(&format!("{title}.toml"), &text)
 }
 
-/// The motions of a round: the records that were named, or else the bundled one in the first round and synthetic ones in
-/// all.
+/// Returns the motions of a round: the named records, or else synthetic ones, with the bundled record in the first
+/// round.
 fn motions(request: &Request, round: u32) -> String {
     let mut text = String::new();
     for record in &request.records {

@@ -1,4 +1,4 @@
-//! How protections compare: what each comes to under the same motions, which of two is better, who goes on.
+//! Comparison of protections under the same motions: estimates, paired differences, and selection for the next round.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use barrelstack_fragility::{Hazard, Interval, grouped_mean, mean_difference};
 
 use crate::decision::{Breakage, Case, Cases};
 
-/// Level of all intervals.
+/// Confidence level of all intervals.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// What became of a stack in one run, as shares of its barrels.
+/// Results of one run, as shares of the barrels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outcome {
     pub(super) collapsed: f64,
@@ -31,7 +31,7 @@ impl Outcome {
 /// The quantity by which protections are judged: barrels that fall.
 pub(super) const FALLEN: Quantity = |run| run.fallen;
 
-/// All runs of a stack in one direction: by motion, and of each by level of shaking.
+/// All runs of a stack in one direction: by motion, then by level of shaking.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Runs {
     by_motion: BTreeMap<String, Vec<Vec<Outcome>>>,
@@ -41,18 +41,18 @@ pub(super) struct Runs {
     pub(super) fallen_at_rest: usize,
 }
 
-/// What one quantity comes to.
+/// Estimate of one quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The mean over all motions, weighted over the levels of shaking.
     pub mean: f64,
-    /// Its 95 % interval, for which the runs of one motion go together.
+    /// Lower end of its 95 % interval, clustered by motion.
     pub low: f64,
-    /// The end of that interval.
+    /// Upper end of that interval.
     pub high: f64,
 }
 
-/// A quantity of the runs.
+/// A quantity of a run.
 pub(super) type Quantity = fn(&Outcome) -> f64;
 
 impl Runs {
@@ -63,7 +63,7 @@ impl Runs {
         self.count += cases.all.len() + cases.left_out;
         for case in &cases.all {
             let Some(velocity) = case.intensity(cases.main) else { continue };
-            // Levels went through text and back, and motions were scaled to them.
+            // Levels are rounded when written as text, and motions were scaled to these.
             let off = |level: &f64| (velocity / level - 1.0).abs();
             let nearest =
                 (0..levels.len()).min_by(|a, b| off(&levels[*a]).total_cmp(&off(&levels[*b])));
@@ -74,7 +74,7 @@ impl Runs {
         }
     }
 
-    /// What each motion comes to, by weights of the levels; none of a motion that lacks a level.
+    /// Returns the mean of each motion, weighted over the levels; motions that lack a level are left out.
     fn by_motion(&self, quantity: Quantity, weights: &[f64]) -> BTreeMap<&str, f64> {
         let weighted = |levels: &Vec<Vec<Outcome>>| {
             let mean = |runs: &Vec<Outcome>| {
@@ -91,12 +91,12 @@ impl Runs {
         motions.filter_map(|(name, levels)| Some((name.as_str(), weighted(levels)?))).collect()
     }
 
-    /// How many motions shook it at all levels.
+    /// Returns the number of motions under which it ran at all levels.
     pub(super) fn motions(&self) -> usize {
         self.by_motion.values().filter(|levels| levels.iter().all(|runs| !runs.is_empty())).count()
     }
 
-    /// What a quantity comes to, by weights of the levels; `most` is what one run can come to.
+    /// Estimates a quantity, weighted over the levels; `most` is its maximum in one run.
     pub(super) fn estimate(&self, quantity: Quantity, weights: &[f64], most: f64) -> Estimate {
         let values: Vec<f64> = self.by_motion(quantity, weights).into_values().collect();
         let scale = most * weights.iter().sum::<f64>();
@@ -109,9 +109,9 @@ impl Runs {
         Estimate { mean, low: scale * low, high: scale * high }
     }
 
-    /// By how much less a quantity is than in other runs under the same motions: the mean of the differences and its
-    /// 95 % interval ([`mean_difference`]), the best of so many tries; `most` is what one run can come to. None with
-    /// fewer than two motions in common.
+    /// Estimates by how much a quantity is less than in other runs under the same motions: the mean of the differences
+    /// and its 95 % interval ([`mean_difference`]), as the best of a number of tries; `most` is its maximum in one run.
+    /// `None` with fewer than two motions in common.
     pub(super) fn less_than(
         &self,
         other: &Self,
@@ -129,10 +129,10 @@ impl Runs {
     }
 }
 
-/// Weights of levels of shaking (m/s): how often a year each stands for, or without a hazard all alike.
+/// Returns weights of levels of shaking (m/s): the annual rate that each represents, or equal weights without a hazard.
 ///
-/// What becomes of a stack between two levels is taken as straight in the logarithm of the shaking, above the
-/// highest as at the highest, and below the lowest as falling to nothing at half of it.
+/// Results are interpolated linearly in the logarithm of the shaking between two levels, constant above the highest,
+/// and fall to zero at half of the lowest.
 pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     let Some(hazard) = hazard else { return vec![1.0 / levels.len() as f64; levels.len()] };
     let share = |at: usize, x: f64| {
@@ -151,11 +151,11 @@ pub(super) fn weights(levels: &[f64], hazard: Option<&Hazard>) -> Vec<f64> {
     (0..levels.len()).map(|at| hazard.expected(1.0, |x| share(at, x)).low).collect()
 }
 
-/// Who goes on to the next round: of those that are not worse than a cheaper one beyond doubt, the better half by mean,
-/// and four at least; the first, the stack as it is, always.
+/// Returns the trials that go on to the next round: of those not significantly worse than a cheaper one, the better
+/// half by mean, and at least four; always the first, the stack as it is.
 ///
-/// Beside the runs of each stands the middle of what it costs; `most` is what one run can come to. Beyond doubt is what
-/// holds for all pairs together.
+/// Each is given by its runs and the middle of its cost; `most` is the maximum of the quantity in one run. Significance
+/// is simultaneous over all pairs.
 pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Vec<usize> {
     const LEAST: usize = 4;
     let mean = |at: usize| all[at].0.estimate(FALLEN, weights, 1.0).mean;
@@ -174,7 +174,7 @@ pub(super) fn contenders(all: &[(&Runs, f64)], weights: &[f64], most: f64) -> Ve
     left
 }
 
-/// Those that no other beats in both cost and mean; by their numbers, the cheapest first.
+/// Returns the Pareto front of cost and mean, as indices, the cheapest first.
 pub(super) fn front(all: &[(f64, f64)]) -> Vec<usize> {
     let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
     let mut front: Vec<usize> =
@@ -213,7 +213,7 @@ mod tests {
         let less = one.less_than(&other, FALLEN, (&[1.0], 8.0), 1).unwrap();
         assert!((less.mean - 1.25).abs() < 1e-12, "{less:?}");
         let [a, b] = [&one, &other].map(|runs| runs.estimate(FALLEN, &[1.0], 8.0));
-        // Six motions are too few to know that a seventh would not do the opposite.
+        // Six motions are too few to exclude that a seventh would do the opposite.
         assert!(less.low < 0.0 && less.high - less.low < a.high - a.low + b.high - b.low);
         assert!(a.high > b.low, "{a:?} {b:?}");
     }
@@ -230,7 +230,7 @@ mod tests {
         let less = |own: &[f64], other: &[f64], tries: usize| {
             of(own).less_than(&of(other), FALLEN, (&[1.0], 8.0), tries).unwrap()
         };
-        // Two records: as it was, 2.00 (2.00 to 2.00) beyond doubt.
+        // Two records once gave 2.00 (2.00 to 2.00) as significant.
         let two = less(&[2.0, 2.0], &[4.0, 4.0], 1);
         assert!(two.mean == 2.0 && two.low < 0.0 && two.high > 4.0, "{two:?}");
         let falls = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0];
@@ -242,13 +242,13 @@ mod tests {
 
     #[test]
     fn weights_of_a_site_are_the_rate_at_which_something_happens_that_always_does() {
-        // Exceeded once in x⁻² years.
+        // An intensity of x is exceeded once in x² × 10⁴ years.
         let rows: Vec<(f64, f64)> =
             (0..60).map(|i| 0.01 * 1.1_f64.powi(i)).map(|x| (x, 1e-4 / (x * x))).collect();
         let hazard = Hazard::new(&rows).unwrap();
         let levels = [0.1, 0.2, 0.4];
         let found = weights(&levels, Some(&hazard));
-        // Of all that exceeds a level well above the lowest, each case counts once.
+        // Every exceedance of a level well above the lowest counts once.
         let above: f64 = found.iter().sum();
         let exact = hazard.expected(1.0, |x| {
             if x >= 0.1 { 1.0 } else { (x / 0.05).ln().max(0.0) / 2.0_f64.ln() }

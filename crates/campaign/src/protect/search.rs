@@ -1,4 +1,4 @@
-//! What is tried: a protected stack in every direction, and the rounds of studies that it goes through.
+//! Trials: a protected stack in every direction, and its rounds of studies.
 
 use std::num::NonZero;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::scenario::{Scenario, View};
 use crate::study::{RunOptions, Study, StudyError};
 use crate::system;
 
-/// A protection while it is tried.
+/// A protection under trial.
 pub(super) struct Trial {
     pub(super) protection: Protection,
     /// The stack in each direction.
@@ -32,26 +32,26 @@ impl Trial {
             .into_iter()
             .filter_map(|plane| Some((plane.view()?, plane.scenario)))
             .collect();
-        // Whether it can be built, and stands by itself, in every direction.
+        // It must stand by itself in every direction.
         stacks.iter().try_for_each(|(_, stack)| check(stack).map(drop))?;
         let runs = stacks.iter().map(|_| Runs::default()).collect();
         Ok(Self { protection, stacks, runs, round: 0 })
     }
 
-    /// Most barrels of a stack, in the direction that shows most of them.
+    /// Returns the number of barrels of the stack, in the direction with the larger number.
     pub(super) fn barrels(&self) -> f64 {
         let stacks = self.stacks.iter().filter_map(|(_, scenario)| scenario.stack());
         stacks.map(|stack| f64::from(stack.levels * stack.columns)).fold(0.0, f64::max)
     }
 
-    /// The direction in which more barrels fall.
+    /// Returns the direction in which more barrels fall.
     pub(super) fn worse(&self, weights: &[f64]) -> usize {
         let fallen = |at: usize| self.runs[at].estimate(FALLEN, weights, 1.0).mean;
         (0..self.runs.len()).max_by(|a, b| fallen(*a).total_cmp(&fallen(*b))).unwrap_or(0)
     }
 }
 
-/// What all trials of a search share.
+/// State shared by all trials of a search.
 pub(super) struct Search<'a> {
     pub(super) request: &'a Request,
     pub(super) base: &'a Scenario,
@@ -63,7 +63,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Those that can be built and paid for; why not of the others is kept.
+    /// Returns trials of those that can be built and paid for; records the reasons for the others.
     pub(super) fn trials(&mut self, protections: Vec<Protection>) -> Vec<Trial> {
         let mut trials = Vec::new();
         for protection in protections {
@@ -76,7 +76,7 @@ impl Search<'_> {
             }
             match Trial::new(self.base, protection) {
                 Ok(trial) => trials.push(trial),
-                // Where a field stands in the text that was made here tells nobody anything.
+                // The place of a field in a generated text is of no use to the reader.
                 Err(error) => {
                     let reason = error.to_string();
                     self.not_tried
@@ -128,7 +128,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What is left of those on the front when they are worn, under the motions of the first round.
+    /// Tries the worn states of those on the front, under the motions of the first round.
     pub(super) fn worn(
         &mut self,
         trials: &[Trial],

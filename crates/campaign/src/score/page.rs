@@ -40,7 +40,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
     }
 }
 
-/// "`two-barrel` racks with chocks and straps".
+/// Describes what is scored: "`two-barrel` racks with chocks and straps".
 fn scored(sheet: &Sheet) -> String {
     let Some(stack) = sheet.scenario.stack() else { return sheet.scenario.title.clone() };
     let devices: Vec<&str> = stack.devices.present().iter().map(|words| words.many).collect();
@@ -48,12 +48,12 @@ fn scored(sheet: &Sheet) -> String {
     format!("`{}` racks{with}{}", stack.rack.base, devices.join(" and "))
 }
 
-/// A velocity (m/s) in whole cm/s.
+/// Formats a velocity (m/s) in whole cm/s.
 fn shown(velocity: f64) -> String {
     format!("{:.0}", 100.0 * velocity)
 }
 
-/// What comes first: how many stacks fall without any shaking.
+/// Returns the opening statement if stacks fall without any shaking.
 fn by_themselves(sheet: &Sheet) -> String {
     let sum = |of: fn(&Scored) -> usize| sheet.rows.iter().map(of).sum();
     fallen_at_rest(sum(|row| row.fallen_at_rest), sum(|row| row.runs), "runs")
@@ -92,7 +92,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
     said
 }
 
-/// "42 cm/s".
+/// Formats a capacity: "42 cm/s".
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),

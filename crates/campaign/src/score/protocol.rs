@@ -1,4 +1,4 @@
-//! What every rack has to go through, which must not change under a name: scores compare only within one protocol.
+//! The protocol of a score, which must not change under its name: scores compare only within one protocol.
 
 use std::fmt::Write as _;
 
@@ -17,16 +17,16 @@ pub struct Protocol {
     pub velocities: Vec<f64>,
     /// Periods (s) of the pulses.
     pub periods: Vec<f64>,
-    /// How many synthetic motions, and the seed of these and of friction.
+    /// Number of synthetic motions.
     pub synthetic: u32,
-    /// The seed.
+    /// Seed of these and of friction.
     pub seed: u32,
-    /// The chance of collapse at which the velocity is the score.
+    /// Probability of collapse at which the velocity is the score.
     pub chance: f64,
 }
 
-/// Friction of barrels on wet cradles, as condensation and washing leave them: lists of coefficients say about 0.2 for
-/// wet metal on dry wood. An assumption for barrels, which nobody has tested wet.
+/// Friction of barrels on wet cradles, as condensation and washing leave them: tables give about 0.2 for wet metal on
+/// dry wood. An assumption for barrels, for which no wet tests are known.
 const WET: f64 = 0.2;
 
 /// A state in which a stack is scored.
@@ -34,14 +34,14 @@ const WET: f64 = 0.2;
 pub struct State {
     /// In words.
     pub name: String,
-    /// What it changes, as overrides of the scenario.
+    /// Overrides of the scenario.
     pub changes: Vec<String>,
 }
 
 impl Protocol {
-    /// The protocol of the RockScore: stacks of four levels; six velocity pulses, both components of the bundled
-    /// record and sixteen synthetic motions, at six levels; friction, stiffness and damping of seats drawn as variants
-    /// draw them. Under its first number friction alone was drawn, less widely, and constants belonged to contact elements.
+    /// Returns the protocol of the RockScore: stacks of four levels; six velocity pulses, both components of the
+    /// bundled record and sixteen synthetic motions, at six levels; friction, stiffness and damping of seats drawn as
+    /// for variants. Version 1 drew friction alone, less widely, and stated constants per contact element.
     pub fn rockscore() -> Self {
         Self {
             name: "rockscore/2",
@@ -54,17 +54,17 @@ impl Protocol {
         }
     }
 
-    /// What it makes of a scenario, as overrides.
+    /// Returns the overrides that stack a scenario by the protocol.
     pub(super) fn stacked(&self) -> Vec<String> {
         vec![format!("stack.levels={}", self.levels)]
     }
 
-    /// How many motions there are.
+    /// Returns the number of motions.
     pub fn count(&self) -> usize {
         self.periods.len() + 2 + self.synthetic as usize
     }
 
-    /// As good as new, with wet cradles, and with every device as use leaves it.
+    /// Returns the states: as good as new, with wet cradles, and with each device worn.
     pub fn states(&self, scenario: &Scenario) -> Vec<State> {
         let state = |name: &str, changes: Vec<String>| State { name: name.to_owned(), changes };
         let friction = |field: &str| format!("interface.barrel-rack.friction.{field}={WET}");
@@ -83,7 +83,7 @@ impl Protocol {
         states
     }
 
-    /// The motions, as sets of a study.
+    /// Returns the motions, as sets of a study.
     pub(super) fn motions(&self) -> String {
         let mut text = String::new();
         for period in &self.periods {

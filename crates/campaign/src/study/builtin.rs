@@ -11,12 +11,12 @@ const ALL: &[(&str, &str)] = &[
     ("tuned-mass", include_str!("../../studies/tuned-mass.toml")),
 ];
 
-/// Names of all built-in studies.
+/// Returns the names of all built-in studies.
 pub fn names() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|(name, _)| *name)
 }
 
-/// The text of a built-in study.
+/// Returns the text of a built-in study.
 pub fn get(name: &str) -> Option<&'static str> {
     ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

@@ -1,9 +1,9 @@
 //! Claims: a process works on a chunk as long as it holds a file of the folder locked.
 //!
 //! The lock is one of the operating system (`flock`, on network file systems too), so it ends with its process
-//! however that ends, and the next one takes the chunk over.
-//! A process that was stopped (`kill -STOP`) holds it, too: the file says which one that is.
-//! Where a file system has no locks, nobody is kept out: a chunk may be run twice, and either shard will do.
+//! however that ends, and another process takes over the chunk.
+//! A stopped process (`kill -STOP`) keeps its lock; the file names it.
+//! File systems without locks exclude nobody: a chunk may be run twice, and either shard will do.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Write as _};
@@ -13,41 +13,41 @@ use std::time::Duration;
 use super::error::StudyError;
 use crate::system;
 
-/// A chunk that no other process works on while this lives.
+/// Exclusive claim of a chunk, released on drop.
 #[derive(Debug)]
 pub(super) struct Claim {
     path: PathBuf,
-    // Closed, and so unlocked, behind the removal of its name.
+    // Dropped, and so unlocked, after its name is removed.
     _file: File,
 }
 
-/// Who holds a chunk.
+/// Holder of a chunk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Holder {
-    /// The process and its machine, as people say it: "process 4711 on node-3".
+    /// The process and its machine: "process 4711 on node-3".
     pub who: String,
-    /// How long it has held the chunk.
+    /// Time since it claimed the chunk.
     pub age: Duration,
 }
 
 impl Claim {
-    /// Takes it; none while another process or thread has it.
+    /// Claims the chunk; `None` while another process or thread holds it.
     pub(super) fn take(path: PathBuf) -> Result<Option<Self>, StudyError> {
         let failed = StudyError::system("claim a chunk by", &path);
         remove_foreign(&path).map_err(failed)?;
         let mut file = system::open_to_change(&path).map_err(failed)?;
         match file.try_lock() {
-            // Any other refusal says that there are no locks here, each file system in its own words.
+            // Any other error means that the file system has no locks, each in its own words.
             Ok(()) | Err(TryLockError::Error(_)) => {}
             Err(TryLockError::WouldBlock) => return Ok(None),
         }
-        // Only for people: a full disk keeps nobody from working.
+        // For information only: a full disk must not prevent the work.
         drop(file.set_len(0).and_then(|()| file.write_all(this_process().as_bytes())));
         Ok(Some(Self { path, _file: file }))
     }
 }
 
-/// Removes what stands in the place of a claim and is none: a link, or a second name of some other file.
+/// Removes anything in the place of a claim that is not one: a link, or a second name of another file.
 fn remove_foreign(path: &Path) -> std::io::Result<()> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -73,7 +73,7 @@ fn has_other_names(_: &fs::Metadata) -> bool {
     false
 }
 
-/// This process and its machine, as people say it.
+/// Names this process and its machine.
 fn this_process() -> String {
     let host = ["/proc/sys/kernel/hostname", "/etc/hostname"]
         .iter()
@@ -83,7 +83,7 @@ fn this_process() -> String {
     host.map_or(process.clone(), |host| format!("{process} on {host}"))
 }
 
-/// Who holds a chunk of a folder, as its claim says; none where there is no claim or this process has it.
+/// Returns the holder of a chunk by its claim; `None` if there is no claim or this process has it.
 pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
     let path = folder.join("shards").join(format!("{chunk:06}.claim"));
     let text = String::from_utf8(system::read(&path, 1000).ok()?).ok()?;
@@ -98,7 +98,7 @@ pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // Whoever opened the file before and locks it after looks for the shard once more, and finds it.
+        // A process that opened the file before and locks it later looks for the shard once more, and finds it.
         drop(fs::remove_file(&self.path));
     }
 }

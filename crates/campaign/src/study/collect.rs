@@ -1,4 +1,4 @@
-//! From the shards of a folder to its rows, part by part: memory does not grow with the number of cases.
+//! Reads the rows of a study from the shards of a folder, in parts: memory does not grow with the number of cases.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -15,30 +15,30 @@ use super::shard;
 use super::stop::Tally;
 use super::table::StudyTable;
 
-/// The rows of a study, with what they come from.
+/// The rows of a study, with their provenance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collected {
-    /// One row a case.
+    /// One row per case.
     pub table: StudyTable,
-    /// What the rows come from.
+    /// Their provenance.
     pub provenance: Provenance,
 }
 
-/// How far a study is.
+/// Progress of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
-    /// What the folder belongs to.
+    /// Provenance of the folder.
     pub provenance: Provenance,
-    /// How the cases that are done ended.
+    /// Counts of finished cases by outcome.
     pub tally: Tally,
-    /// Chunks that are still to be run, ascending.
+    /// Chunks still to be run, ascending.
     pub missing: Vec<usize>,
 }
 
 /// The shards that count, in the order of their first cases.
 ///
-/// Of a Monte Carlo design the chunks count that are done without a gap, up to the one with which there are enough
-/// cases: which of the later ones were run by chance changes nothing.
+/// Of a Monte Carlo design the contiguous finished chunks count, up to the one that completes the required number of
+/// cases: which later ones happen to be run changes nothing.
 struct Shards {
     provenance: Provenance,
     paths: BTreeMap<usize, PathBuf>,
@@ -77,21 +77,21 @@ impl Shards {
     }
 }
 
-/// Reads what is done of a study, finished or not: `visit` is given all rows in the order of the cases, in tables
-/// of some chunks each, with what the folder belongs to.
+/// Reads the finished rows of a study, complete or not: `visit` receives all rows in the order of the cases, in tables
+/// of some chunks each, with the provenance of the folder.
 ///
 /// # Errors
-/// When the folder is that of no study, or a shard is damaged.
+/// If the folder is not that of a study, or a shard is damaged.
 pub fn read_shards<E: From<StudyError>>(
     folder: &Path,
     visit: &mut dyn FnMut(&Provenance, &StudyTable) -> Result<(), E>,
 ) -> Result<Provenance, E> {
     let mut parts = Shards::open(folder)?;
     let specs = parts.provenance.columns.clone();
-    // Rows that a chunk further on may have cases between.
+    // Rows before which a later chunk may have cases.
     let mut open = StudyTable::empty(&specs);
     while let Some(part) = parts.read()? {
-        // Chunks are opened in the order of the cases, so nothing that follows is before the first of this one.
+        // Chunks are opened in the order of their first cases, so no later row precedes the first of this one.
         if let Some(Some(first)) = part.integers("case").and_then(|cases| cases.first()) {
             let later = open.split_off(open.rows_before(*first));
             let ready = std::mem::replace(&mut open, later);
@@ -108,7 +108,7 @@ pub fn read_shards<E: From<StudyError>>(
 }
 
 /// Writes the rows of a study into its folder: `table.csv`, `table.parquet`, `columns.csv` and `provenance.json`;
-/// `visit` is given them on the way, as by [`read_shards`].
+/// `visit` receives them meanwhile, as from [`read_shards`].
 ///
 /// # Errors
 /// As [`read_shards`], and when a file cannot be written.
@@ -141,7 +141,7 @@ pub fn collect(
     drop(csv);
     let provenance = serde_json::to_string_pretty(&made)
         .map_err(|error| StudyError::Table(error.to_string()))?;
-    // The table travels alone: what it comes from goes with it.
+    // The table may be copied alone: it carries its provenance.
     let study = study_text(folder, &made)?;
     let about = [("study", study), ("provenance", provenance.clone())];
     parquet.finish(&about).map_err(|error| encode(&error))?;
@@ -153,7 +153,7 @@ pub fn collect(
 }
 
 impl Collected {
-    /// Reads what is done of a study, finished or not, all at once.
+    /// Reads the finished rows of a study, complete or not, at once.
     ///
     /// # Errors
     /// As [`read_shards`].
@@ -167,7 +167,7 @@ impl Collected {
         Ok(Self { table, provenance })
     }
 
-    /// How far the study is.
+    /// Returns the progress of a study.
     ///
     /// # Errors
     /// As [`read_shards`].

@@ -1,4 +1,4 @@
-//! Which cases a study has: the designs, each a deterministic list.
+//! Designs of studies, each a deterministic list of cases.
 
 use barrelstack_fragility::sobol::Axis;
 use barrelstack_motion::Random;
@@ -9,41 +9,41 @@ use super::setting::Setting;
 use super::{Factor, Levels, Study, Variation};
 use barrelstack_report::column::Value;
 
-/// The cases of a study.
+/// Design of the cases of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Design {
     /// Every combination of all values, levels and motions.
     FullFactorial,
     /// The base, and every other value of one factor at a time, for every level and motion.
     OneAtATime {
-        /// Quantiles that stand for a distribution.
+        /// Quantiles that represent a distribution.
         quantiles: Vec<f64>,
-        /// Stacks for each motion, for which the distributions are drawn instead; 0 where quantiles stand for them.
+        /// Draws for each motion of factors with distributions; 0 to use quantiles instead.
         draws: u32,
     },
     /// Samples with one in each of `count` equal shares of every factor.
     LatinHypercube {
-        /// How many.
+        /// Number of samples.
         count: u32,
     },
     /// Points of Sobol', shifted at random.
     Sobol {
-        /// How many.
+        /// Number of points.
         count: u32,
     },
     /// Blocks of points of Sobol' for first and total sensitivity indices (Saltelli et al. 2010): two samples
     /// and, for every varied quantity, the first with that quantity of the second.
     Saltelli {
-        /// How many blocks.
+        /// Number of blocks.
         count: u32,
     },
-    /// Random samples until the probability of collapse is known well enough.
+    /// Random samples until the probability of collapse is known precisely enough.
     MonteCarlo {
         /// Half of the width of the 95 % interval (Wilson) of the collapse probability at which to stop.
         half_width: Option<f64>,
-        /// Number of cases before the interval is looked at.
+        /// Number of cases before the interval is first tested.
         least: u32,
-        /// Number of cases at which to stop in any case.
+        /// Maximum number of cases.
         most: u32,
     },
     /// Every motion at every level; factors crossed where they have values, drawn where they have a distribution.
@@ -53,13 +53,13 @@ pub enum Design {
 }
 
 impl Design {
-    /// Whether the share of collapse among all cases is that of what they are drawn from: they are a sample of it,
-    /// and neither levels that were asked for nor cases that differ from others in one thing.
+    /// `true` if the cases are a sample of the stated distributions, so that the share of collapse among them estimates
+    /// its probability; `false` if they have requested levels or differ from others in one thing.
     pub fn is_sample(&self) -> bool {
         matches!(self, Self::LatinHypercube { .. } | Self::Sobol { .. } | Self::MonteCarlo { .. })
     }
 
-    /// The word used in files.
+    /// Returns the word used in files.
     pub fn name(&self) -> &'static str {
         match self {
             Self::FullFactorial => "full-factorial",
@@ -74,22 +74,22 @@ impl Design {
     }
 }
 
-/// One case before it is built.
+/// A case before it is built.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Case {
-    /// Its place in the table; of an adaptive design with gaps.
+    /// Its number in the table; of an adaptive design with gaps.
     pub(super) number: u64,
-    /// What tells it from every other case, however many there are; also the seed of what is drawn for it.
+    /// Its identity, independent of the number of cases; also the seed of its draws.
     pub(super) id: u64,
-    /// The motion, by its place in the study.
+    /// Index of the motion in the study.
     pub(super) motion: usize,
     /// The intensity (SI) that it is scaled to.
     pub(super) level: Option<f64>,
-    /// A value for each factor; none where it keeps that of the base.
+    /// A value for each factor; `None` where it keeps that of the base.
     pub(super) settings: Vec<Option<Setting>>,
 }
 
-/// What the cases of a design are made from: crossed lists, or samples.
+/// Source of the cases of a design: crossed lists, or samples.
 #[derive(Clone, Debug)]
 pub(super) enum Cases {
     /// Every combination: the motion slowest, then the factors in order, the level fastest.
@@ -98,14 +98,14 @@ pub(super) enum Cases {
     OneAtATime {
         /// Factor and value of each change.
         changes: Vec<(usize, Setting)>,
-        /// Draws of everything else for each motion, alike for all changes and levels.
+        /// Draws of all other factors for each motion, equal for all changes and levels.
         draws: u64,
     },
     /// Points of the unit cube whose axes are motion, level and factors.
     Sampled(Sampling),
 }
 
-/// How points of the unit cube are found.
+/// Method of sampling the unit cube.
 #[derive(Clone, Debug)]
 pub(super) enum Sampling {
     /// From the seed of each case.
@@ -118,9 +118,9 @@ pub(super) enum Sampling {
     Saltelli { axes: Vec<[Axis; 2]>, exchanged: Vec<usize> },
 }
 
-/// A seed made of a seed and words.
+/// Derives a seed from a seed and words.
 pub(super) fn seed_of(seed: u64, words: &str) -> u64 {
-    // The generator's seeding spreads what is left alike in the hash.
+    // The generator's seeding mixes bits that the hash leaves correlated.
     Random::new(fnv1a(format!("{seed}|{words}").as_bytes())).bits()
 }
 
@@ -133,7 +133,7 @@ fn pick(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count - 1)
 }
 
-/// A whole number below `count`, each as likely (Lemire's multiplication, bias below 2⁻³²).
+/// Returns a uniformly distributed integer below `count` (Lemire's multiplication, bias below 2⁻³²).
 #[expect(clippy::cast_possible_truncation, reason = "below the count")]
 fn below(random: &mut Random, count: usize) -> usize {
     ((u128::from(random.bits()) * count as u128) >> 64) as usize
@@ -179,7 +179,7 @@ impl Cases {
         }
     }
 
-    /// How many cases there are; of an incremental dynamic analysis, hunts; of Monte Carlo, at most.
+    /// Returns the number of cases; of an incremental dynamic analysis, hunts; of Monte Carlo, the maximum.
     pub(super) fn count(&self, study: &Study) -> u64 {
         let motions = study.motions.len() as u64;
         let levels = study.crossed_levels().len() as u64;
@@ -202,7 +202,7 @@ impl Cases {
         }
     }
 
-    /// A case by its number; of an incremental dynamic analysis a hunt, without its level.
+    /// Returns a case by its number; of an incremental dynamic analysis a hunt, without its level.
     pub(super) fn case(&self, study: &Study, number: u64) -> Case {
         match self {
             Self::Crossed => crossed(study, number),
@@ -212,7 +212,7 @@ impl Cases {
     }
 }
 
-/// The last digit of a number in a base, taken off.
+/// Removes the last digit of a number in a base and returns it.
 #[expect(clippy::cast_possible_truncation, reason = "below the length of a list")]
 fn digit(rest: &mut u64, base: usize) -> usize {
     let digit = *rest % base as u64;
@@ -251,7 +251,7 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     rest /= draws.max(1);
     let motion = digit(&mut rest, study.motions.len());
     let mut settings = vec![None; study.factors.len()];
-    // What is drawn knows of the motion and of nothing else, so that rows differ in their change alone.
+    // Draws depend on the motion alone, so that rows differ in their change only.
     for (factor, setting) in study.factors.iter().zip(&mut settings).filter(|_| draws > 0) {
         if let Variation::Distribution(distribution) = &factor.variation {
             let words = format!("draw {draw} of {}", study.motions[motion].name);
@@ -265,7 +265,7 @@ fn one_at_a_time(study: &Study, changes: &[(usize, Setting)], draws: u64, number
     Case { number, id: study.identity(motion, level, &settings), motion, level, settings }
 }
 
-/// Every value of every factor that is not that of the base, but for those that are drawn.
+/// Returns every value of every factor other than that of the base, except for drawn factors.
 fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Setting)> {
     let mut changes = Vec::new();
     for (index, factor) in factors.iter().enumerate() {
@@ -285,7 +285,7 @@ fn changes(factors: &[Factor], quantiles: &[f64], drawn: bool) -> Vec<(usize, Se
 
 fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
     let id = seed_of(study.seed, &format!("sample {number}"));
-    // Numbers of sampled designs are below the 32 bits of their count.
+    // Numbers of sampled designs fit the 32 bits of their count.
     let point = u32::try_from(number).unwrap_or(u32::MAX);
     let axes = study.axes();
     let coordinate = |axis: usize| {
@@ -326,13 +326,13 @@ fn sampled(study: &Study, sampling: &Sampling, number: u64) -> Case {
 }
 
 impl Study {
-    /// The axes of the unit cube from which samples are taken.
+    /// Returns the axes of the unit cube of samples.
     pub(super) fn axes(&self) -> Vec<String> {
         let factors = self.factors.iter().map(|factor| format!("factor {}", factor.name));
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
     }
 
-    /// The axes that take more than one value, with their names for people.
+    /// Returns the axes that take more than one value, with their names for people.
     pub(super) fn varied(&self) -> Vec<(usize, String)> {
         let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
             Levels::List(levels) => levels.len() > 1,
@@ -346,12 +346,12 @@ impl Study {
         always.into_iter().enumerate().filter_map(of).chain(factors).collect()
     }
 
-    /// The levels that are crossed with the rest; one without a level where there are none.
+    /// Returns the levels that are crossed with the rest; a single `None` without levels.
     pub(super) fn crossed_levels(&self) -> &[Option<f64>] {
         &self.levels
     }
 
-    /// The identity of a case of a crossed design: what it is, not where it stands.
+    /// Returns the identity of a case of a crossed design: its contents, not its position.
     fn identity(&self, motion: usize, level: Option<f64>, settings: &[Option<Setting>]) -> u64 {
         let mut words = vec![format!("case of {}", self.motions[motion].name)];
         words.extend(
@@ -363,7 +363,7 @@ impl Study {
         seed_of(self.seed, &words.join("|"))
     }
 
-    /// The value of a factor in a case, as the table has it.
+    /// Returns the value of a factor in a case, as in the table.
     pub(super) fn told(&self, case: &Case, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),

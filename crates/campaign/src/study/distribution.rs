@@ -14,11 +14,11 @@ use super::setting::{Domain, Setting};
 pub struct Distribution {
     shape: Shape,
     domain: Domain,
-    /// Where it was written.
+    /// Its place in the file.
     origin: Origin,
 }
 
-/// Forms, in SI units.
+/// Shape of a distribution, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
     Uniform {
@@ -39,16 +39,16 @@ enum Shape {
         dispersion: f64,
         cut: Cut,
     },
-    /// Values, each with the probability of it and those before.
+    /// Values, each with its cumulative probability.
     Discrete(Vec<(f64, Setting)>),
 }
 
-/// Where a distribution is cut off.
+/// Truncation of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cut {
     /// Least and greatest value.
     values: [f64; 2],
-    /// The probabilities of lying below each, uncut.
+    /// Probabilities below each, before truncation.
     below: [f64; 2],
 }
 
@@ -100,7 +100,7 @@ impl Distribution {
         Ok(Self { shape, domain, origin })
     }
 
-    /// The value below which a share `u` of the distribution lies, from 0 up to but not including 1.
+    /// Returns the quantile for a probability `u`, from 0 up to but not including 1.
     pub(super) fn quantile(&self, u: f64) -> Setting {
         let value = match &self.shape {
             Shape::Uniform { from, to } => from + u * (to - from),
@@ -119,7 +119,7 @@ impl Distribution {
         self.domain.setting(value, self.origin)
     }
 
-    /// The values of a discrete distribution.
+    /// Returns the values of a discrete distribution.
     pub(super) fn settings(&self) -> Option<impl Iterator<Item = &Setting>> {
         if let Shape::Discrete(values) = &self.shape {
             Some(values.iter().map(|(_, setting)| setting))
@@ -149,9 +149,9 @@ impl Cut {
         Ok(Self { values, below })
     }
 
-    /// The share of the uncut distribution below what has a share `u` of the cut one below it.
+    /// Converts a probability of the truncated distribution to one of the untruncated distribution.
     fn uncut(&self, u: f64) -> f64 {
-        // Short of 0 and 1, where quantiles have no end; beyond this no draw of 53 bits comes.
+        // Keep short of 0 and 1, where quantiles are infinite; no draw of 53 bits lies beyond.
         (self.below[0] + u * (self.below[1] - self.below[0])).clamp(1e-300, 1.0 - 1e-16)
     }
 

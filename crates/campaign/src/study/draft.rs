@@ -1,4 +1,4 @@
-//! Files that have their names only when they are whole and on the disk.
+//! Files that get their names only when they are complete and on the disk.
 
 use std::fs::{self, File, TryLockError};
 use std::hash::{BuildHasher as _, Hasher as _, RandomState};
@@ -10,7 +10,7 @@ use crate::system;
 
 use super::error::StudyError;
 
-/// Writes a file under another name, brings it to the disk, and gives it its own.
+/// Writes a file under a temporary name, syncs it to the disk, and renames it.
 pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     let write = || -> std::io::Result<()> {
         let draft = Draft::create(path)?;
@@ -20,23 +20,23 @@ pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StudyError> {
     write().map_err(StudyError::system("write", path))
 }
 
-/// How often a folder is made anew that others take away.
+/// Maximum number of times that a folder removed by others is created again.
 const TRIES: u32 = 10;
 
-/// Files of this process that have not got their names.
+/// Temporary files of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the files that this process is writing and that have not got their names, and lets it begin no others: it
-/// ends.
+/// Removes the temporary files of this process before it exits; the lock stays held, so that no other files are
+/// begun.
 pub fn remove_drafts() {
     let drafts = system::taken(&DRAFTS);
     for draft in drafts.iter().flat_map(|drafts| drafts.iter()) {
-        // It may have got its name since, and then it is whole.
+        // If it was renamed in the meantime it is complete, and there is nothing to remove.
         drop(fs::remove_file(draft));
     }
 }
 
-/// A file that is being written under another name; gone again where it never gets its own.
+/// A temporary file, removed on drop unless it was renamed.
 pub(super) struct Draft {
     pub(super) file: File,
     path: PathBuf,
@@ -44,13 +44,13 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Begins a file, under a name that no other draft ever had or will have: whoever tidies up behind a draft that got
-    /// its own name in between must not find another one in its place.
+    /// Creates a temporary file under a unique name: cleanup after a draft that was renamed in the meantime must not
+    /// find another draft in its place.
     pub(super) fn create(whole: &Path) -> std::io::Result<Self> {
         let name = whole.file_name().unwrap_or_default().to_string_lossy();
         let mut tries = 0_u32;
         loop {
-            // Keyed anew each time by numbers that the system draws.
+            // Random keys of the system make the name unique.
             let number = RandomState::new().build_hasher().finish();
             let path = whole.with_file_name(format!(".{name}.{number:016x}.part"));
             tries += 1;
@@ -58,14 +58,14 @@ impl Draft {
             let file = match File::options().write(true).create_new(true).open(&path) {
                 Ok(file) => file,
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
-                // Another process that only tried whether it may write here took its empty folder away again.
+                // Another process that only tested write access removed its empty folder again.
                 Err(error) if error.kind() == ErrorKind::NotFound && tries < TRIES => {
                     whole.parent().map_or(Ok(()), fs::create_dir_all)?;
                     continue;
                 }
                 Err(error) => return Err(error),
             };
-            // Tells those who tidy the folder that its writer is alive. One of them may have come before.
+            // The lock shows processes that clean the folder that the writer is alive. One may have been faster.
             let taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !taken && path.exists() {
                 drafts.push(path.clone());
@@ -74,7 +74,7 @@ impl Draft {
         }
     }
 
-    /// Brings it to the disk, and gives it its name.
+    /// Syncs the file to the disk and renames it.
     pub(super) fn name(self) -> std::io::Result<()> {
         self.file.sync_all()?;
         fs::rename(&self.path, &self.whole)?;
@@ -84,7 +84,7 @@ impl Draft {
 
 impl Drop for Draft {
     fn drop(&mut self) {
-        // Not there any more where it got its name.
+        // Already gone if it was renamed.
         drop(fs::remove_file(&self.path));
         if let Ok(mut drafts) = DRAFTS.lock() {
             drafts.retain(|path| *path != self.path);
@@ -92,7 +92,7 @@ impl Drop for Draft {
     }
 }
 
-/// Brings the names in a folder to the disk, where the system has a way to.
+/// Syncs the entries of a folder to the disk, where the system supports that.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> std::io::Result<()> {
     File::open(folder)?.sync_all()
@@ -109,8 +109,8 @@ mod tests {
 
     use super::*;
 
-    /// Between the moment when a draft gets its name and the one when its writer is done, another writer may have begun
-    /// a draft that is called as the first was.
+    /// Between the renaming of a draft and the end of its writer, another writer may begin a draft of the same
+    /// name.
     #[test]
     fn writers_of_one_file_leave_the_drafts_of_the_others_alone() {
         let folder = tempfile::tempdir().unwrap();

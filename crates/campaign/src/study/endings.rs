@@ -1,4 +1,4 @@
-//! Which cases were followed until nothing moved, and what ended the others.
+//! Counts of cases by how they ended: followed until nothing moved, or stopped before.
 
 use std::fmt::Write as _;
 
@@ -13,30 +13,30 @@ use super::table::StudyTable;
 use crate::scenario::Until;
 use crate::watch::Ending;
 
-/// How the cases with a verdict came to their end.
+/// Counts of cases with a verdict by how they ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Endings {
-    /// All of them.
+    /// All cases with a verdict.
     pub judged: u64,
-    /// Those that were followed until the ground was still, or calm after a collapse, and nothing moved; with those
-    /// that fell under their own weight, so that there was nothing to follow.
+    /// Cases followed until the ground was still, or calm after a collapse, and nothing moved; includes those
+    /// that fell under their own weight before any shaking.
     pub followed: u64,
-    /// Those that were stopped a while after their collapse, because the study says so.
+    /// Cases stopped a fixed time after their collapse, as the study states.
     pub stopped: u64,
-    /// Those that were ended by the length that the study gives them.
+    /// Cases ended by the duration that the study states.
     pub short: u64,
-    /// Those of them under which the ground still moved.
+    /// Of these, cases in which the ground still moved.
     pub cut: u64,
-    /// Those of these that stood until then.
+    /// Of these, cases in which the stack still stood.
     pub open: u64,
-    /// The longest time (s) of a motion that was cut off.
+    /// Longest part of a motion that was cut off (s).
     pub longest_cut: f64,
-    /// Those in which something still moved when the patience of the study was over.
+    /// Cases in which something still moved at the time limit of the study.
     pub moving: u64,
 }
 
 impl Endings {
-    /// Adds those of a table.
+    /// Adds the cases of a table.
     pub fn add(&mut self, table: &StudyTable) {
         let (Some(outcomes), Some(ended), Some(left)) =
             (table.texts("outcome"), table.texts("ended"), table.numbers("motion_left"))
@@ -63,11 +63,11 @@ impl Endings {
         }
     }
 
-    /// Largest share of cases in which something still moves when their time is over with which means over
-    /// the others are given.
+    /// Largest share of cases in which something still moves at the time limit for which means over the others
+    /// are reported.
     const MOST_MOVING: f64 = 0.02;
 
-    /// Why these cases do not tell what falls; none where they do.
+    /// Returns the reason why falls are unknown in these cases; `None` where they are known.
     pub fn no_losses(&self) -> Option<String> {
         let Self { judged, stopped, short, moving, .. } = *self;
         if stopped > 0 {
@@ -91,7 +91,7 @@ impl Endings {
         })
     }
 
-    /// What the reader of any result must know; nothing where every case was followed to its end.
+    /// Returns caveats for the reader of any result; empty where every case was followed to its end.
     pub fn sentences(&self) -> Vec<String> {
         let mut said = Vec::new();
         if self.cut > 0 {
@@ -135,7 +135,7 @@ described! {
 }
 
 impl Study {
-    /// How long the cases are followed, and which motions are cut short.
+    /// Returns how long the cases are followed, and which motions are cut short.
     ///
     /// # Errors
     /// When a motion cannot be read.
@@ -158,7 +158,7 @@ impl Study {
                     Shaking::Synthetic(made) => Some(&**made),
                     Shaking::Base | Shaking::Spec(_) => None,
                 };
-                // Realizations of one ensemble are equally long, whatever their seeds, and may be a hundred thousand.
+                // Realizations of one ensemble have one duration whatever their seeds, and may be a hundred thousand.
                 let end = match (made, last) {
                     (Some(made), Some((other, end))) if made.is_of_ensemble(other) => end,
                     _ => cache.unscaled(motion, &base.motion, run.similitude)?.ground.end(),
@@ -176,7 +176,7 @@ impl Study {
 }
 
 impl Following {
-    /// In a sentence for people, `motions` being all there are.
+    /// Describes it in a sentence; `motions` is the number of motions.
     pub fn words(&self, motions: usize) -> String {
         let mut said = match self.duration {
             None if self.to_rest => format!(

@@ -15,10 +15,10 @@ use super::design::seed_of;
 use super::fields::{Maker, Soil};
 use super::motions::{Making, Motion, Shaking, Synthetic};
 
-/// Most motions of a study, and files that a folder may give.
+/// Maximum number of motions of a study, and of files of a folder.
 pub(super) const MOST: usize = 100_000;
 
-/// The motions of one `[[motion]]`, whose number counts from 1.
+/// Reads the motions of one `[[motion]]`, given by its number from 1.
 pub(super) fn read(
     set: &Reader<'_>,
     opened: &Opened,
@@ -31,13 +31,13 @@ pub(super) fn read(
     let pattern = set.text("pattern")?;
     let bundled = set.optional_catalog_name("bundled")?;
     let components = set.texts("components")?;
-    // These are read by the scenario's own reader.
+    // The scenario's own reader reads these.
     let tables = ["sine", "pulse", "each", "scale"];
     for table in tables {
         set.skip(table);
     }
     if let Some(synthetic) = set.optional_section("synthetic")? {
-        // A formula stands in where only the scale is read: what a record alone can be scaled to is refused.
+        // A formula stands in to read the scale alone: scaling that needs a record is refused.
         let stand_in = "{ amplitude = \"1 g\", period = \"1 s\", cycles = 1 }";
         let stand_in = parse_value(stand_in, set.origin_of("synthetic")).value;
         let scale = motion_of(set, opened, number, &[("sine", stand_in)])?.scale;
@@ -90,7 +90,7 @@ pub(super) fn read(
     Ok(motions)
 }
 
-/// The motion that `each`, `sine`, `pulse` and `scale` of a set describe, with further entries.
+/// Reads the motion that `each`, `sine`, `pulse` and `scale` of a set describe, with further entries.
 fn motion_of(
     set: &Reader<'_>,
     opened: &Opened,
@@ -126,7 +126,7 @@ fn motion_of(
     template::motion(&opened.sources, &format!("motion.{number}"), &table, origin)
 }
 
-/// The files of a folder whose names match a pattern, in the order of their names, as paths relative to the study.
+/// Returns the files of a folder whose names match a pattern, sorted, as paths relative to the study.
 fn matching(
     set: &Reader<'_>,
     folder: &Path,
@@ -168,12 +168,12 @@ fn matching(
     Ok(names.into_iter().map(path).collect())
 }
 
-/// Whether a name matches a pattern: `*` stands for any letters, `?` for one; upper and lower case are alike.
+/// `true` if a name matches a pattern: `*` matches any characters, `?` one; case is ignored.
 fn matches(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) =
         (pattern.to_lowercase().chars().collect(), name.to_lowercase().chars().collect());
     let (mut p, mut n) = (0, 0);
-    // Where the last star stood, and where the name was then: there it goes on when what follows does not match.
+    // Positions in pattern and name at the last star, to resume from after a mismatch.
     let mut star: Option<(usize, usize)> = None;
     while n < name.len() {
         if pattern.get(p) == Some(&'*') {
@@ -193,7 +193,7 @@ fn matches(pattern: &str, name: &str) -> bool {
     pattern[p..].iter().all(|letter| *letter == '*')
 }
 
-/// The realizations of an ensemble.
+/// Returns the realizations of an ensemble.
 fn ensemble(
     reader: Reader<'_>,
     name: Option<String>,
@@ -241,7 +241,7 @@ fn ensemble(
     };
     reader.finish();
     let name = name.unwrap_or_else(|| kind.name().to_owned());
-    // The seed of a realization depends on its set and its number, not on how many there are.
+    // The seed of a realization depends on its set and its number, not on the number of realizations.
     let of_set = |realization: u32| match own {
         Some(own) => seed_of(own, &format!("realization {realization}")),
         None => seed_of(seed, &format!("motion {number}, realization {realization}")),
@@ -258,7 +258,7 @@ fn ensemble(
 }
 
 fn source(reader: &Reader<'_>) -> Result<BooreSource, ScenarioError> {
-    // The formulas have kilometers and bar.
+    // The formulas use kilometers and bar.
     let kilometers = reader.quantity("distance")? / 1000.0;
     let mut source = BooreSource::western(reader.number("magnitude")?, kilometers);
     source.stress = reader.quantity("stress")? / 1e5;

@@ -1,4 +1,4 @@
-//! Why a study cannot be planned, run or collected.
+//! Errors of studies.
 
 use std::path::{Path, PathBuf};
 
@@ -6,28 +6,28 @@ use crate::ground::GroundError;
 use crate::scenario::ScenarioError;
 use crate::system;
 
-/// Why a study cannot be planned, run or collected.
+/// Error of planning, running or collecting a study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The study file, its base scenario or a value of a factor is wrong, at a place.
     #[error(transparent)]
     File(#[from] ScenarioError),
-    /// A motion of the study cannot be read or made.
+    /// A motion of the study cannot be read or generated.
     #[error("the motion \"{name}\" of the study: {error}")]
     Motion {
         /// Its name.
         name: String,
-        /// Why.
+        /// The reason.
         error: Box<GroundError>,
     },
-    /// The system refused.
+    /// A system call failed.
     #[error("cannot {doing} {path}: {reason}", path = path.display())]
     System {
-        /// What was tried, such as "write".
+        /// The attempted action, such as "write".
         doing: &'static str,
         /// The path.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the system.
         reason: String,
     },
     /// The folder holds something else.
@@ -35,7 +35,7 @@ pub enum StudyError {
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// What it holds, and what to do, as a sentence that goes on from its name.
+        /// Its contents, and the remedy, as a sentence that continues its name.
         reason: String,
     },
     /// A shard is damaged.
@@ -46,19 +46,19 @@ pub enum StudyError {
     Shard {
         /// The file.
         path: PathBuf,
-        /// What shows it.
+        /// The evidence.
         reason: String,
     },
     /// There is no built-in study of that name.
     #[error("{0}")]
     BuiltIn(String),
-    /// A table that does not hold together.
+    /// A table is inconsistent.
     #[error("{0}")]
     Table(String),
     /// A chunk that the study does not have.
     #[error("{0}")]
     Chunk(String),
-    /// The caller asked to stop.
+    /// The caller cancelled.
     #[error("stopped")]
     Stopped,
 }
@@ -70,7 +70,7 @@ impl From<parquet::errors::ParquetError> for StudyError {
 }
 
 impl StudyError {
-    /// What the system said when something was tried with a path.
+    /// Returns a function that wraps system errors of an action on a path.
     pub(crate) fn system(
         doing: &'static str,
         path: &Path,

@@ -21,45 +21,45 @@ use super::table::StudyTable;
 use crate::ensemble::{CaseResult, Width};
 use crate::pool;
 
-/// How long (s) to wait for chunks that others have claimed before looking again.
+/// Polling interval (s) while other processes hold the remaining chunks.
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
-/// How a study is run.
+/// Options of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RunOptions {
-    /// Threads; as many as there are cores without.
+    /// Number of threads; by default, the number of cores.
     pub threads: Option<NonZero<usize>>,
-    /// The vector unit in which cases run; the widest of the machine without. The table does not depend on it.
+    /// Vector unit for the cases; by default, the widest of the machine. The table does not depend on it.
     pub lanes: Option<Width>,
 }
 
-/// How far a study is.
+/// Progress of a study.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Cases in all; of an adaptive design, at most.
+    /// Number of cases in all; of an adaptive design, the maximum.
     pub cases: u64,
-    /// Cases of chunks that others did: earlier runs, and those beside this one.
+    /// Cases of chunks finished by others: earlier runs, and concurrent ones.
     pub before: u64,
-    /// Cases that this run has done.
+    /// Cases finished by this run.
     pub now: u64,
-    /// How the cases of both ended.
+    /// Counts of both by outcome.
     pub tally: Tally,
-    /// Chunks in all; of an adaptive design, at most.
+    /// Number of chunks in all; of an adaptive design, the maximum.
     pub chunks: usize,
-    /// Chunks that are done.
+    /// Number of finished chunks.
     pub chunks_done: usize,
     /// Damaged shards that were found and set aside; their chunks are run again.
     pub damaged: usize,
-    /// Whether the manifest of the folder was damaged and has been written anew.
+    /// `true` if the manifest of the folder was damaged and has been written anew.
     pub manifest_healed: bool,
-    /// A chunk that another process holds, while there is nothing else to do.
+    /// A chunk held by another process, while there is nothing else to do.
     pub waits_for: Option<usize>,
 }
 
-/// What became of a chunk that was to be run.
+/// Result of running a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChunkRun {
-    /// Its shard was there, or another process has made it meanwhile.
+    /// Its shard existed, or another process made it in the meantime.
     Before,
     /// It was run.
     Now,
@@ -67,21 +67,21 @@ pub enum ChunkRun {
     Again,
 }
 
-/// What a folder holds of some chunks.
+/// Finished chunks of a folder.
 #[derive(Default)]
 struct Done {
-    /// How the cases of each chunk with a sound shard ended.
+    /// Counts by outcome of each chunk with a sound shard.
     tallies: BTreeMap<usize, Tally>,
     /// Damaged shards that were set aside.
     damaged: usize,
 }
 
-/// What threads share.
+/// State shared by threads.
 struct Shared<'a> {
     study: &'a Study,
     folder: &'a Folder,
     cache: MotionCache,
-    /// What tells the shards from all others.
+    /// Keys of the shards of this study.
     keys: Keys,
     lanes: Width,
     rule: Option<StopRule>,
@@ -90,16 +90,16 @@ struct Shared<'a> {
     tell: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
 }
 
-/// What threads take turns with.
+/// State behind the mutex.
 struct State {
-    /// Chunks that nobody here has taken, the next one last.
+    /// Chunks that no thread here has taken, the next one last.
     open: Vec<usize>,
-    /// Those of them that another process has claimed.
+    /// Those of them claimed by another process.
     elsewhere: Vec<usize>,
-    /// How the cases of each chunk that is done ended.
+    /// Counts by outcome of each finished chunk.
     done: BTreeMap<usize, Tally>,
     progress: Progress,
-    /// Why the run ends early.
+    /// Error that ends the run early.
     failed: Option<StudyError>,
 }
 
@@ -122,14 +122,13 @@ impl Study {
     /// Runs all chunks that are missing from a folder; other processes may do so at the same time, and each chunk
     /// is run by one of them.
     ///
-    /// `tell` hears of every case that is done, and many times a second between, from several threads, and may stop
-    /// the run; what was done until then is
-    /// kept, and the next run goes on from there.
-    /// How many threads there are changes nothing about the table.
+    /// `tell` is called after each case and many times a second in between, from several threads, and may cancel the
+    /// run. Finished chunks are kept, and the next run resumes from there.
+    /// The table does not depend on the number of threads.
     ///
     /// # Errors
     /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
-    /// [`StudyError::Stopped`] when `tell` stopped it.
+    /// [`StudyError::Stopped`] when `tell` cancelled it.
     pub fn run_all(
         &self,
         folder: &Path,
@@ -143,7 +142,7 @@ impl Study {
         place.clean()?;
         let keys = self.keys()?;
         let Done { tallies: done, damaged } = self.done(&place, 0..self.chunk_count(), &keys)?;
-        // What is not of this study is set aside by now, so nobody takes it for its own.
+        // Foreign shards are set aside by now, so that none is taken for one of this study.
         place.describe(self)?;
         let rule = self.stop_rule();
         let mut progress =
@@ -182,11 +181,11 @@ impl Study {
         if let Some(error) = state.failed {
             return Err(error);
         }
-        // What others that were killed beside this run left behind.
+        // Clean up after concurrent runs that were killed.
         place.clean()
     }
 
-    /// Runs all its cases and keeps their table in memory.
+    /// Runs all cases and returns their table, in memory.
     ///
     /// ```
     /// use barrelstack_campaign::study::Study;
@@ -226,7 +225,7 @@ impl Study {
             self.compute(*chunk, &mut resources)?.ok_or(StudyError::Stopped)
         };
         let rule = self.stop_rule();
-        // Without a rule all at once; with one, no chunk is begun that may not be needed.
+        // Without a rule all at once; with one, begin no chunk that may not be needed.
         let together = if rule.is_some() { 1 } else { chunks.len().max(1) };
         let (mut parts, mut tally) = (Vec::new(), Tally::default());
         for chunks in chunks.chunks(together) {
@@ -242,7 +241,7 @@ impl Study {
         StudyTable::join(&self.columns(), &parts)
     }
 
-    /// Runs one chunk in lanes of a width and writes its shard, unless it is there.
+    /// Runs one chunk in lanes of a width and writes its shard, unless it exists.
     ///
     /// # Errors
     /// When there is no such chunk, or as [`Study::run`].
@@ -282,10 +281,10 @@ impl Study {
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
     }
 
-    /// What a folder holds of some chunks.
+    /// Returns the finished chunks of a folder among some.
     ///
-    /// A shard that is damaged, or holds other cases than its chunk has now, is set aside, and its chunk is not done:
-    /// the latter was made before the study grew, maybe by a process that has not ended yet.
+    /// A shard that is damaged, or holds cases that its chunk no longer has, is set aside, and its chunk is not done:
+    /// the latter was made before the study grew, maybe by a process that is still running.
     fn done(&self, folder: &Folder, chunks: Range<usize>, keys: &Keys) -> Result<Done, StudyError> {
         let (mut done, specs) = (Done::default(), self.columns());
         for (chunk, path) in folder.shards()?.into_iter().filter(|(n, _)| chunks.contains(n)) {
@@ -294,7 +293,7 @@ impl Study {
                     done.tallies.insert(chunk, Tally::of(&table));
                 }
                 Ok(_) => set_aside(&path, "replaced")?,
-                // Another process set it aside meanwhile.
+                // Another process set it aside in the meantime.
                 Err(_) if !path.exists() => {}
                 Err(StudyError::Shard { .. }) => {
                     done.damaged += 1;
@@ -307,7 +306,7 @@ impl Study {
     }
 }
 
-/// Gives a shard another ending, so that its chunk is run again and nothing is lost; another process may have done so.
+/// Renames a shard, so that its chunk is run again and nothing is lost; another process may have done so.
 fn set_aside(path: &Path, ending: &str) -> Result<(), StudyError> {
     match std::fs::rename(path, path.with_extension(ending)) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -322,7 +321,7 @@ impl Shared<'_> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes chunks until there are none, or none are needed.
+    /// Takes chunks until none are left or needed.
     fn work(&self) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(chunk) = self.take() else { return };
@@ -333,7 +332,7 @@ impl Shared<'_> {
         }
     }
 
-    /// The next chunk; none when the chunks without a gap are enough.
+    /// Takes the next chunk; `None` when the contiguous finished chunks suffice.
     fn take(&self) -> Option<usize> {
         let mut state = self.state();
         if let Some(rule) = self.rule {
@@ -350,7 +349,7 @@ impl Shared<'_> {
             state.open = std::mem::take(&mut state.elsewhere);
             state.progress.waits_for = state.open.last().copied();
             drop(state);
-            // Their owners finish them, or die and leave them to us.
+            // Their owners finish them, or die and release their claims.
             std::thread::sleep(LOOK_AGAIN);
             state = self.state();
             self.tell(&mut state);
@@ -359,7 +358,7 @@ impl Shared<'_> {
         state.open.pop()
     }
 
-    /// Runs a chunk, unless another process has it or has done it.
+    /// Runs a chunk, unless another process has claimed or finished it.
     fn claimed(&self, chunk: usize) -> Result<(), StudyError> {
         let Some(_claim) = self.folder.claim(chunk)? else {
             self.state().elsewhere.push(chunk);

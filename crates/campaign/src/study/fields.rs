@@ -14,7 +14,7 @@ use motion::MOTIONS;
 /// Version of the language of study files.
 pub(super) const SCHEMA: i64 = 1;
 
-/// Most cases, samples or realizations that may be asked for at once.
+/// Maximum number of cases, samples or realizations.
 pub(super) const MOST: i64 = 10_000_000;
 
 named! {

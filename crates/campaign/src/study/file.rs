@@ -1,4 +1,4 @@
-//! From a study file to a checked study.
+//! Reads a study file and checks it.
 
 mod factor;
 
@@ -25,7 +25,7 @@ use factor::{LOW, clash, read_factor, read_variation};
 
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
-/// Most cases that a design may have.
+/// Maximum number of cases of a design.
 const MOST_CASES: u64 = 10_000_000;
 
 /// Cases, or hunts, of a chunk where each takes long.
@@ -35,7 +35,7 @@ impl Study {
     /// Reads a study file, the scenarios it extends, and the bytes of its records.
     ///
     /// # Errors
-    /// The first problem found, at its place.
+    /// The first problem found, with its place.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
         read(&Opened::load(path)?, None)
     }
@@ -48,7 +48,8 @@ impl Study {
         read(&Opened::parse(source_name, text)?, None)
     }
 
-    /// As [`Study::parse`], with records that `fetch` gives by their paths, so that no file is opened.
+    /// Reads a study from text as [`Study::parse`], with records that `fetch` returns by path, so that no file is
+    /// opened.
     ///
     /// ```
     /// use barrelstack_campaign::Study;
@@ -73,7 +74,7 @@ impl Study {
     /// ```
     ///
     /// # Errors
-    /// As [`Study::load`], and when `fetch` has none.
+    /// As [`Study::load`], and when `fetch` fails.
     pub fn parse_with(
         source_name: &str,
         text: &str,
@@ -100,7 +101,7 @@ impl Study {
     }
 }
 
-/// Gives the bytes of a file by its path, or says why there are none.
+/// Returns the bytes of a file by its path, or the reason why there are none.
 type Fetch<'a> = &'a mut dyn FnMut(&Path) -> Result<Vec<u8>, String>;
 
 fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> {
@@ -114,7 +115,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     top.integer("schema")?;
     let title = top.optional_text("title")?.unwrap_or_else(|| opened.stem());
     let seed = u64::from(top.integer("seed")?);
-    // The base is read by the scenario's own reader; here it only has to be a table.
+    // The scenario's own reader reads the base; here it only has to be a table.
     let base = top.table("base")?;
     let sets = top.sections("motion")?;
     if let Some(motion) = base.get("motion").filter(|_| !sets.is_empty()) {
@@ -124,7 +125,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
         return Err(top.error_at(motion.origin, Problem::Inconsistent { message }).into());
     }
     let mut template = opened.template("base", &title, sets.is_empty())?;
-    // How long a scenario is run was chosen for its own motion and for a film of it.
+    // The inherited duration of a scenario suits its own motion and an animation of it.
     template.forget_inherited("run", &crate::scenario::run::ENDS);
     let scenario = template.with([])?;
     runs(&top, &scenario)?;
@@ -156,7 +157,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     }
     let in_space = scenario.is_spatial() || factors.iter().any(|factor| factor.in_space);
     let (design, chunk, intensity) = read_design(top.section("design")?, intensity, &factors)?;
-    // Nothing runs side by side in space, and a case takes as long as many of a plane.
+    // Cases in space do not run in lockstep, and one takes as long as many in a plane.
     let usual = if in_space || matches!(design, Design::Ida(_)) { FEW } else { Sizes::Growing };
     let levels = match &intensity {
         Some(Intensity { levels: Levels::List(levels), .. }) => {
@@ -208,7 +209,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     Ok(study)
 }
 
-/// Has the files of all motions at hand.
+/// Loads the files of all motions into memory.
 fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     let mut base = study.scenario(&[])?.motion;
     for motion in &mut study.motions {
@@ -227,7 +228,7 @@ fn hold(study: &mut Study, fetch: Fetch<'_>) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// The fingerprint of everything that rows depend on.
+/// Returns the fingerprint of everything that rows depend on.
 fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     let mut all = vec![env!("CARGO_PKG_VERSION").to_owned(), crate::ensemble::VERSION.to_string()];
     all.extend(study.template.texts().map(str::to_owned));
@@ -239,7 +240,7 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// Refuses too many motions, and two of one name.
+/// Checks the number of motions and that their names are unique.
 fn few_of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     if motions.len() > ensembles::MOST {
         let message = format!(
@@ -262,7 +263,7 @@ fn few_of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Sc
     Ok(())
 }
 
-/// What levels of a measure are written in.
+/// Returns the dimensions in which levels of a measure are written.
 fn dimension_of(measure: IntensityMeasure) -> Option<&'static [Dimension]> {
     match measure.unit() {
         "m/s2" => Some(&[Dimension::ACCELERATION]),
@@ -301,7 +302,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
     Ok(Intensity { measure, levels })
 }
 
-/// Reads `[design]`; gives it with the size of its chunks, if it states one, and the intensity that it works with.
+/// Reads `[design]`; returns it with the stated size of its chunks, if any, and its intensity.
 fn read_design(
     reader: Reader<'_>,
     intensity: Option<Intensity>,

@@ -1,12 +1,12 @@
-//! The folder of a study: what it belongs to, and the shards of the chunks that are done.
+//! The folder of a study: its manifest, and the shards of finished chunks.
 //!
 //! ```text
-//! study.json                        what the shards belong to
-//! study.toml                        the study file, as it was
+//! study.json                        the provenance of the shards
+//! study.toml                        a copy of the study file
 //! shards/000012-<fingerprint>.parquet   one chunk; its name holds the fingerprint of its bytes
-//! shards/000013.claim               a process works on the chunk as long as it holds this file locked
-//! table.csv, table.parquet, columns.csv, provenance.json   all rows, what their columns are, and what they
-//!                                   come from, written when the study is collected
+//! shards/000013.claim               locked by the process that works on the chunk
+//! table.csv, table.parquet, columns.csv, provenance.json   all rows, their columns, and their provenance,
+//!                                   written when the study is collected
 //! ```
 
 use std::fs::{self, File};
@@ -39,10 +39,10 @@ const FILE_LIMIT: usize = 1 << 30;
 pub(super) const MANIFEST: &str = "study.json";
 const SHARDS: &str = "shards";
 
-/// The study file, as it was.
+/// Copy of the study file.
 const COPY: &str = "study.toml";
 
-/// Under this key a shard says what its chunk holds.
+/// Metadata key of the key of a chunk in its shard.
 const KEY: &str = "chunk";
 
 described! {
@@ -91,7 +91,7 @@ described! {
 }
 
 impl Provenance {
-    /// Whether cases are drawn, each with a motion, a level and factors of its own.
+    /// `true` if cases are drawn, each with a motion, a level and factors of its own.
     pub fn is_sampled(&self) -> bool {
         self.is_sample() || self.design == "saltelli"
     }
@@ -121,17 +121,17 @@ described! {
 #[derive(Clone, Debug)]
 pub(super) struct Folder {
     path: PathBuf,
-    /// Fingerprint of the study that it is opened for.
+    /// Fingerprint of the study for which it is open.
     study: String,
-    /// Whether its manifest was damaged and has been written anew.
+    /// `true` if its manifest was damaged and has been written anew.
     pub(super) healed: bool,
 }
 
 impl Folder {
-    /// A folder for a study: made when it is not there, checked when it is.
+    /// Opens a folder for a study: creates it if missing, checks it if not.
     ///
-    /// The folder of a study that grew, or changed in nothing that all its cases have in common, is kept; only a run as
-    /// a whole may decide that (`grows`), and makes the folder its own by [`Folder::describe`].
+    /// The folder of a study that grew, or changed in nothing that all its cases have in common, is kept; only a run of
+    /// the whole study may decide that (`grows`), and takes it over by [`Folder::describe`].
     pub(super) fn open(path: &Path, study: &Study, grows: bool) -> Result<Self, StudyError> {
         let mut folder = Self { path: path.to_owned(), study: study.fingerprint(), healed: false };
         let refuse = |reason: String| Err(StudyError::Folder { folder: path.to_owned(), reason });
@@ -140,16 +140,16 @@ impl Folder {
         }
         let (manifest, shards) = (path.join(MANIFEST), path.join(SHARDS));
         if fs::symlink_metadata(&shards).is_ok() {
-            // There already: refused where it is a link.
+            // Already there: refused if it is a link.
             system::folder_below(path, Path::new(SHARDS))
                 .map_err(StudyError::system("write in", &shards))?;
         }
-        // Listed before the manifest is looked for: what another run makes in between comes after its manifest.
+        // List before looking for the manifest: files that another run makes meanwhile come after its manifest.
         let foreign = first_in(path, &[SHARDS]).or_else(|| first_in(&shards, &[]));
         if manifest.is_file() {
             let known = match manifest::read(path)? {
                 Manifest::Sound(known) => known,
-                // The chunks say themselves whether they are of this study; its copy says whose folder this is.
+                // Chunks carry their own keys; the copy of the study file identifies the folder.
                 Manifest::Damaged(how) => {
                     let copy = system::read(&path.join(COPY), FILE_LIMIT).unwrap_or_default();
                     if !grows || copy != study.text.as_bytes() {
@@ -182,7 +182,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Writes what the folder belongs to, where that is not there or is what the study was before it grew.
+    /// Writes the manifest if it is missing or states an earlier form of the study.
     pub(super) fn describe(&self, study: &Study) -> Result<(), StudyError> {
         let manifest = self.path.join(MANIFEST);
         // An earlier version may have made other keys of the same motions.
@@ -194,7 +194,7 @@ impl Folder {
         if !manifest.is_file() || !self.is_ours()? || !same(&manifest_of(&self.path)?) {
             manifest::write(&self.path, &study.provenance()?)?;
         }
-        // After the manifest, so that a folder without one holds nothing of ours but an empty folder of shards.
+        // After the manifest, so that a folder without one has at most an empty folder of shards of ours.
         let copy = self.path.join(COPY);
         if system::read(&copy, FILE_LIMIT).is_ok_and(|text| text == study.text.as_bytes()) {
             return Ok(());
@@ -202,19 +202,19 @@ impl Folder {
         write_whole(&copy, study.text.as_bytes())
     }
 
-    /// Whether the folder still belongs to the study that it was opened for.
+    /// `true` if the folder still belongs to the study that it was opened for.
     fn is_ours(&self) -> Result<bool, StudyError> {
         Ok(manifest_of(&self.path)?.study_hash == self.study)
     }
 
-    /// The shards of chunks, sorted.
+    /// Returns the shards of chunks, sorted.
     pub(super) fn shards(&self) -> Result<Vec<(usize, PathBuf)>, StudyError> {
         shards(&self.path)
     }
 
-    /// Claims a chunk for this process and thread; none while another has it.
+    /// Claims a chunk for this process and thread; `None` while another has it.
     ///
-    /// A process that began before the study grew is refused: it would make what the study was.
+    /// A process that began before the study grew is refused, since it would compute the earlier study.
     pub(super) fn claim(&self, chunk: usize) -> Result<Option<Claim>, StudyError> {
         let claim = Claim::take(self.path.join(SHARDS).join(format!("{chunk:06}.claim")))?;
         if claim.is_some() && !self.is_ours()? {
@@ -227,7 +227,7 @@ impl Folder {
         Ok(claim)
     }
 
-    /// Removes what killed runs left behind.
+    /// Removes files left behind by killed runs.
     pub(super) fn clean(&self) -> Result<(), StudyError> {
         let shards = self.path.join(SHARDS);
         for path in list(&self.path)?.into_iter().chain(list(&shards)?) {
@@ -239,9 +239,9 @@ impl Folder {
             if !(claim || draft) {
                 continue;
             }
-            // Whoever is alive holds it locked; it may also have its own name by now, or be gone. Network file
-            // systems lock only what is open for writing.
-            // What is no file, such as a link, was left by nobody that may be alive.
+            // A live owner holds it locked; it may also have been renamed by now, or be gone. Network file
+            // systems lock only files that are open for writing.
+            // Anything but a file, such as a link, has no live owner.
             let found = fs::symlink_metadata(&path);
             if found.is_ok_and(|found| !found.is_file()) {
                 drop(fs::remove_file(&path));
@@ -255,8 +255,8 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes the shard of a chunk: under another name first, so that it has its name only when it is whole and on the
-    /// disk.
+    /// Writes the shard of a chunk: under a temporary name first, so that it is renamed only when it is complete and on
+    /// the disk.
     pub(super) fn write_shard(
         &self,
         chunk: usize,
@@ -270,7 +270,7 @@ impl Folder {
     }
 }
 
-/// The bytes of a file of a folder.
+/// Returns the bytes of a file of a folder.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
         doing: "read",
@@ -279,7 +279,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
     })
 }
 
-/// The first name in a folder but for some names and hidden ones, as a sentence may give it; none where there is no
+/// Returns the first name in a folder except for some names and hidden ones, to be reported; `None` if there is no
 /// folder.
 fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
     let names = fs::read_dir(folder).ok()?.flatten();
@@ -287,7 +287,7 @@ fn first_in(folder: &Path, but: &[&str]) -> Option<String> {
     names.filter(|name| !but.contains(&name.as_str()) && !name.starts_with('.')).min()
 }
 
-/// The files of a folder, sorted.
+/// Returns the files of a folder, sorted.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     let failed = StudyError::system("list", folder);
     let entries = fs::read_dir(folder).map_err(failed)?;
@@ -297,20 +297,20 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     Ok(paths)
 }
 
-/// The shards of a folder with their chunks, sorted.
+/// Returns the shards of a folder with their chunks, sorted.
 pub(super) fn shards(folder: &Path) -> Result<Vec<(usize, PathBuf)>, StudyError> {
     let paths = list(&folder.join(SHARDS))?.into_iter();
     Ok(paths.filter_map(|path| Some((named(&path)?.0, path))).collect())
 }
 
-/// Chunk and fingerprint in the name of a shard; none for any other file.
+/// Returns chunk and fingerprint in the name of a shard; `None` for any other file.
 fn named(path: &Path) -> Option<(usize, u64)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".parquet")?;
     let (chunk, hash) = name.split_once('-')?;
     Some((chunk.parse().ok()?, u64::from_str_radix(hash, 16).ok()?))
 }
 
-/// The copy of the study file in a folder, which must be the one that its manifest states.
+/// Returns the copy of the study file in a folder, which must match the fingerprint in its manifest.
 pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, StudyError> {
     let path = folder.join(COPY);
     let bytes = read_file(&path)?;
@@ -325,7 +325,7 @@ pub(super) fn study_text(folder: &Path, made: &Provenance) -> Result<String, Stu
     })
 }
 
-/// Reads a shard and the key of its chunk; what its bytes are must be what its name says.
+/// Reads a shard and the key of its chunk; its bytes must match the fingerprint in its name.
 pub(super) fn read_shard(
     path: &Path,
     specs: &[ColumnSpec],
@@ -353,7 +353,7 @@ pub(super) fn read_shard(
 }
 
 impl Study {
-    /// What the rows of the study come from, before there are any.
+    /// Returns the provenance of the rows of the study, before there are any.
     ///
     /// # Errors
     /// When a record cannot be read.
@@ -394,17 +394,17 @@ impl Study {
         })
     }
 
-    /// The fingerprint of its file as files have it.
+    /// Returns the fingerprint of its file as text.
     fn text_hash(&self) -> String {
         format!("{:016x}", fnv1a(self.text.as_bytes()))
     }
 
-    /// The fingerprint as files have it.
+    /// Returns its fingerprint as text.
     fn fingerprint(&self) -> String {
         format!("{:016x}", self.hash())
     }
 
-    /// The factors that stripes draw anew for each case, and changes one at a time for each of some stacks.
+    /// Returns the factors that stripes draw anew for each case, and one-at-a-time designs for each draw.
     fn drawn(&self) -> Vec<String> {
         let drawn = self.factors.iter().filter(|factor| factor.crossed().is_none());
         let names = drawn.map(|factor| factor.name.clone());
@@ -412,7 +412,7 @@ impl Study {
         if draws { names.collect() } else { Vec::new() }
     }
 
-    /// When there are enough cases; none where all are run.
+    /// Returns the stop rule; `None` where all cases are run.
     pub(super) fn stop_rule(&self) -> Option<StopRule> {
         let Design::MonteCarlo { half_width, least, .. } = self.design else { return None };
         half_width.map(|half_width| StopRule { half_width, least })

@@ -1,4 +1,4 @@
-//! What a folder may keep when its study has changed: the chunks whose cases are still the same.
+//! Chunks that a folder keeps when its study changes: those whose cases are still the same.
 
 use barrelstack_report::described;
 
@@ -10,8 +10,8 @@ use super::motions::hash_files;
 use crate::scenario::fnv1a;
 use crate::scenario::quantity::plain;
 
-// How many samples there are is not among them, nor which motions: these tell cases from each other, and the
-// key of a chunk holds them. More samples and more motions come behind those that there were.
+// Sample count and motions are excluded: they identify cases, and the key of a chunk holds them. Further samples and
+// motions come after the existing ones.
 described! {
     /// One thing on which every case of a study depends, with its fingerprint.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
@@ -23,16 +23,16 @@ described! {
     }
 }
 
-/// What tells the shards of a study from all others.
+/// Keys of the shards of a study.
 pub(super) struct Keys {
-    /// What all cases have in common.
+    /// Fingerprint of all that the cases have in common.
     common: String,
-    /// Every motion.
+    /// Fingerprints of the motions.
     motions: Vec<u64>,
 }
 
 impl Study {
-    /// What all cases have in common.
+    /// Returns all that the cases have in common.
     pub(super) fn common(&self) -> Result<Vec<Common>, StudyError> {
         let base = self.template.with([])?;
         let factors: Vec<String> = self
@@ -73,18 +73,18 @@ impl Study {
         Ok(parts.into_iter().map(common).collect())
     }
 
-    /// Whether each case takes a motion by its sample, so that which one depends on how many there are.
+    /// `true` if the motion of a case depends on its sample, and so on the number of motions.
     fn is_sampled(&self) -> bool {
         self.design.is_sample() || matches!(self.design, Design::Saltelli { .. })
     }
 
-    /// What tells the shards of this study from all others.
+    /// Returns the keys of the shards of this study.
     pub(super) fn keys(&self) -> Result<Keys, StudyError> {
         let common: Vec<String> = self.common()?.into_iter().map(|one| one.hash).collect();
         Ok(Keys { common: common.join(" "), motions: self.motion_keys()? })
     }
 
-    /// What tells the motions from all others: how each is made, and the bytes of its files.
+    /// Returns fingerprints of the motions: how each is made, and the bytes of its files.
     fn motion_keys(&self) -> Result<Vec<u64>, StudyError> {
         let base = self.scenario(&[])?;
         let key = |motion: &super::Motion| {
@@ -95,7 +95,8 @@ impl Study {
         self.motions.iter().map(key).collect()
     }
 
-    /// What a chunk holds: what all cases have in common, and its cases, their motions, levels and values, in order.
+    /// Returns the key of a chunk: all that cases have in common, and its cases with motions, levels and values, in
+    /// order.
     pub(super) fn chunk_key(&self, chunk: usize, keys: &Keys) -> u64 {
         let words = |case: &Case| {
             let settings: Vec<String> = case
@@ -114,8 +115,8 @@ impl Study {
     }
 }
 
-/// What is different between what a folder belongs to and a study; none where they have in common what all cases
-/// depend on, so that chunks may be kept.
+/// Returns the difference between the provenance of a folder and of a study; `None` where they agree on all that
+/// the cases have in common, so that chunks may be kept.
 pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<String> {
     if known.version != wanted.version {
         return Some(format!(
@@ -126,7 +127,7 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
     if known.seed != wanted.seed {
         return Some(format!("its seed is {}, that of this one {}", known.seed, wanted.seed));
     }
-    // A motion that is gone or is another under its name would leave rows behind that nobody can place.
+    // A removed motion, or another one under its name, would leave rows that belong to no motion.
     let same = |a: &MotionSource, b: &MotionSource| {
         (&a.name, &a.hash, &a.key) == (&b.name, &b.hash, &b.key)
     };

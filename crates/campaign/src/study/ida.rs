@@ -1,9 +1,9 @@
-//! Incremental dynamic analysis: the levels of one hunt, found one after the other.
+//! Incremental dynamic analysis: the levels of one hunt.
 
-/// How the levels of a motion are found: hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523).
+/// Selection of the levels of a motion: hunt and fill (Vamvatsikos and Cornell 2004, Earthquake Spectra 20:523).
 ///
 /// Levels rise in growing steps until the stack collapses; then the gap between the highest level that it stood and
-/// the lowest that felled it is narrowed, each time at a third of it; what runs are left go to the middle of the
+/// the lowest at which it fell is narrowed, each time at a third of it; the remaining runs go to the middle of the
 /// widest gaps below.
 /// All levels are in SI units of the intensity measure.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,21 +12,21 @@ pub struct Hunt {
     pub first: f64,
     /// First step up.
     pub step: f64,
-    /// By how much each step is longer than the one before.
+    /// Increment of each step over the one before.
     pub growth: f64,
-    /// Gap, over the highest level that stood, at which it is narrow enough.
+    /// Gap, over the highest level that stood, at which narrowing ends.
     pub resolution: f64,
-    /// Runs of each hunt.
+    /// Number of runs of each hunt.
     pub runs: u32,
 }
 
-/// A level that was run, and whether the stack collapsed; none where that could not be told.
+/// A level that was run, and `true` if the stack collapsed; `None` without a verdict.
 pub(super) type Seen = (f64, Option<bool>);
 
 impl Hunt {
-    /// The next level to run after those that were; none when the hunt is over.
+    /// Returns the next level to run, given those that were run; `None` when the hunt is over.
     pub(super) fn next(&self, seen: &[Seen]) -> Option<f64> {
-        // A run without a verdict would come out the same at the next level: the hunt ends with it.
+        // A run without a verdict would fail again at the next level: the hunt ends with it.
         let known: Vec<(f64, bool)> = seen
             .iter()
             .map(|(level, fell)| fell.map(|fell| (*level, fell)))
@@ -45,7 +45,7 @@ impl Hunt {
             known.iter().filter(|(level, fell)| !*fell && *level < fall).map(|(level, _)| *level);
         let stood = stood.fold(0.0, f64::max);
         let gap = fall - stood;
-        // Where no level stood, a tenth of the first one takes its place.
+        // If no level stood, a tenth of the first one takes its place.
         if gap > self.resolution * stood.max(0.1 * self.first) {
             return Some(stood + gap / 3.0);
         }
@@ -65,7 +65,7 @@ mod tests {
         Hunt { first: 0.1, step: 0.1, growth: 0.05, resolution: 0.1, runs: 14 }
     }
 
-    /// All levels of a hunt of a stack that collapses where `falls` says.
+    /// Returns all levels of a hunt of a stack that collapses where `falls` is true.
     fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<Seen> {
         let mut seen = Vec::new();
         while let Some(level) = hunt.next(&seen) {

@@ -1,7 +1,7 @@
-//! The manifest of a folder: what its shards belong to, with a fingerprint of its own bytes.
+//! The manifest of a folder: the provenance of its shards, with a fingerprint of its own bytes.
 //!
 //! The last field of `study.json` is the fingerprint (FNV-1a, 64 bits) of the whole file with zeros in its place, so that
-//! no byte of it can change without being noticed. It guards against damage, not against somebody who means to deceive.
+//! no byte of it can change unnoticed. It protects against damage, not against tampering.
 
 use std::path::Path;
 
@@ -10,24 +10,24 @@ use super::error::StudyError;
 use super::folder::{LAYOUT, MANIFEST, Provenance, read_file};
 use crate::scenario::fnv1a;
 
-/// Before the fingerprint, which ends the file.
+/// Text before the fingerprint, which ends the file.
 const BEFORE: &str = ",\n  \"fingerprint\": \"";
 
-/// Behind it.
+/// Text after it.
 const BEHIND: &str = "\"\n}\n";
 
 /// Digits of a fingerprint.
 const DIGITS: usize = 16;
 
-/// What a folder says that it belongs to.
+/// A manifest as read.
 pub(super) enum Manifest {
-    /// As it was written.
+    /// Unchanged since it was written.
     Sound(Box<Provenance>),
-    /// Changed since; what shows it, as a clause.
+    /// Changed since; the evidence, as a clause.
     Damaged(String),
 }
 
-/// The bytes with zeros in place of the fingerprint, and that fingerprint; none where there is none.
+/// Returns the bytes with zeros in place of the fingerprint, and that fingerprint; `None` if there is none.
 fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     let rest = bytes.strip_suffix(BEHIND.as_bytes())?;
     let (head, stated) = rest.split_at_checked(rest.len().checked_sub(DIGITS)?)?;
@@ -35,7 +35,7 @@ fn parted(bytes: &[u8]) -> Option<(Vec<u8>, &[u8])> {
     Some(([head, &[b'0'; DIGITS], BEHIND.as_bytes()].concat(), stated))
 }
 
-/// Writes what a folder belongs to.
+/// Writes the manifest of a folder.
 pub(super) fn write(folder: &Path, made: &Provenance) -> Result<(), StudyError> {
     let text =
         serde_json::to_string_pretty(made).map_err(|error| StudyError::Table(error.to_string()))?;
@@ -45,10 +45,10 @@ pub(super) fn write(folder: &Path, made: &Provenance) -> Result<(), StudyError> 
     write_whole(&folder.join(MANIFEST), sealed(&format!("{found:016x}")).as_bytes())
 }
 
-/// What a folder belongs to, as far as its manifest can be relied on.
+/// Reads the manifest of a folder and checks its fingerprint.
 ///
 /// # Errors
-/// When there is none, it cannot be read, or another version wrote it.
+/// If it is missing, cannot be read, or was written by another version.
 pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
     let path = folder.join(MANIFEST);
@@ -102,7 +102,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     Ok(Manifest::Sound(Box::new(known)))
 }
 
-/// The manifest of a folder.
+/// Returns the manifest of a folder.
 pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     match read(folder)? {
         Manifest::Sound(known) => Ok(*known),
@@ -110,7 +110,7 @@ pub(crate) fn manifest_of(folder: &Path) -> Result<Provenance, StudyError> {
     }
 }
 
-/// A refusal of a damaged manifest.
+/// Returns the error for a damaged manifest.
 pub(super) fn damaged(folder: &Path, how: &str) -> StudyError {
     let reason = format!(
         "holds a damaged {MANIFEST}: {how}; run the study whose file is study.toml there once more into this folder, \

@@ -1,4 +1,4 @@
-//! The motions of a study: records, formulas and ensembles made from random numbers.
+//! The motions of a study: records, formulas and synthetic ensembles.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -19,16 +19,16 @@ use super::error::StudyError;
 pub(super) struct Motion {
     /// Its name in the table, unique.
     pub(super) name: String,
-    /// Where it comes from.
+    /// Its source.
     pub(super) shaking: Shaking,
 }
 
-/// Where a motion comes from.
+/// Source of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Shaking {
     /// The motion of the base, with the values of the case.
     Base,
-    /// As a scenario would have it.
+    /// As in a scenario.
     Spec(Box<MotionSpec>),
     /// One realization of an ensemble.
     Synthetic(Box<Synthetic>),
@@ -44,7 +44,7 @@ pub(super) struct Synthetic {
     pub(super) scale: crate::scenario::Scale,
 }
 
-/// How it is made.
+/// Model of a synthetic motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Making {
     Boore(BooreSource),
@@ -53,7 +53,7 @@ pub(super) enum Making {
 }
 
 impl std::fmt::Display for Making {
-    /// How it is made, with units.
+    /// Describes the model, with units.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Boore(source) => write!(f, "stochastic method: {source}"),
@@ -66,7 +66,7 @@ impl std::fmt::Display for Making {
 }
 
 impl Synthetic {
-    /// Whether it differs from another in nothing but its seed.
+    /// `true` if it differs from another in its seed alone.
     pub(super) fn is_of_ensemble(&self, other: &Self) -> bool {
         Self { seed: 0, ..self.clone() } == Self { seed: 0, ..other.clone() }
     }
@@ -84,7 +84,7 @@ impl Synthetic {
 }
 
 impl Shaking {
-    /// The motion for a stack of a length scale, with the scale of its own source.
+    /// Returns the motion for a stack of a length scale, with the scale of its own source.
     pub(super) fn ground(&self, base: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
         match self {
             Self::Base => ground::of_spec(base, similitude),
@@ -100,7 +100,7 @@ impl Shaking {
         }
     }
 
-    /// All components of the motion for a stack of a length scale, with the scale of its own source.
+    /// Returns all components of the motion for a stack of a length scale, with the scale of its own source.
     fn in_space(
         &self,
         base: &MotionSpec,
@@ -109,12 +109,12 @@ impl Shaking {
         match self {
             Self::Base => barrelstack_space::Ground::of_spec(base, similitude),
             Self::Spec(spec) => barrelstack_space::Ground::of_spec(spec, similitude),
-            // One component is made of random numbers.
+            // Synthetic motions have one component.
             Self::Synthetic(_) => Ok(self.ground(base, similitude)?.into()),
         }
     }
 
-    /// Where it comes from, as people would say it; the study has the numbers.
+    /// Describes its source for people; the study has the numbers.
     pub(super) fn source(&self, base: &MotionSpec) -> String {
         let spec: &MotionSpec = match self {
             Self::Base => base,
@@ -137,7 +137,7 @@ impl Shaking {
         }
     }
 
-    /// Fingerprint of how it is made, wherever its files lie and whatever they are called.
+    /// Fingerprint of how it is made, independent of the places and names of its files.
     pub(super) fn key(&self) -> u64 {
         let mut made = self.clone();
         if let Self::Spec(spec) = &mut made {
@@ -146,7 +146,7 @@ impl Shaking {
         fnv1a(format!("{made:?}").as_bytes())
     }
 
-    /// The files that it is read from.
+    /// Returns the files that it is read from.
     pub(super) fn files<'a>(&'a self, base: Option<&'a MotionSpec>) -> Vec<&'a FileRef> {
         let spec = match self {
             Self::Base => base,
@@ -167,7 +167,7 @@ impl Shaking {
     }
 }
 
-/// The fingerprint of the bytes of files; none where there are no files.
+/// Returns the fingerprint of the bytes of files; `None` without files.
 pub(super) fn hash_files(name: &str, files: &[&FileRef]) -> Result<Option<u64>, StudyError> {
     let mut all = Vec::new();
     for file in files {
@@ -184,7 +184,7 @@ pub(super) fn unreadable(name: &str, path: &Path, reason: String) -> StudyError 
     StudyError::Motion { name: name.to_owned(), error: Box::new(error) }
 }
 
-/// The intensity measures that a table has, with their columns.
+/// The intensity measures of a table, with their columns.
 pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("pga", IntensityMeasure::Pga),
     ("pgv", IntensityMeasure::Pgv),
@@ -197,30 +197,30 @@ pub(super) const MEASURES: [(&str, IntensityMeasure); 9] = [
     ("d5_95", IntensityMeasure::D5_95),
 ];
 
-/// A motion ready to shake, with what it measures.
+/// A scaled motion with its intensity measures.
 #[derive(Clone, Debug)]
 pub(super) struct Shaken {
     pub(super) ground: Arc<Ground>,
-    /// The factor by which it was multiplied for its level.
+    /// Scale factor for its level.
     pub(super) factor: f64,
-    /// [`MEASURES`] of the horizontal component, as shaken (SI); none for ground at rest.
+    /// [`MEASURES`] of the horizontal component, as scaled (SI); `None` for ground at rest.
     pub(super) measures: Option<[f64; 9]>,
 }
 
-/// A motion as its source has it, kept for the cases that share it.
+/// Cache entry: an unscaled motion, shared by cases.
 #[derive(Debug)]
 struct Kept<T> {
     shaking: Shaking,
-    /// The motion of the base, where that is what shakes.
+    /// The motion of the base, if that is the source.
     base: Option<MotionSpec>,
     similitude: f64,
-    /// What was made of it.
+    /// The cached value.
     made: Arc<T>,
-    /// Its size (bytes).
+    /// Size of the value (bytes).
     size: usize,
 }
 
-/// What was made of the motions that were used last.
+/// Cache of the most recently used motions.
 #[derive(Debug)]
 struct Shelf<T>(Mutex<Vec<Kept<T>>>);
 
@@ -230,18 +230,18 @@ impl<T> Default for Shelf<T> {
     }
 }
 
-/// The motions that were used last, so that none is read for every case.
+/// Caches of the most recently used motions, so that none is read for every case.
 #[derive(Debug, Default)]
 pub(super) struct MotionCache {
     in_plane: Shelf<Shaken>,
     in_space: Shelf<barrelstack_space::Ground>,
 }
 
-/// Most memory (bytes) that a shelf takes.
+/// Maximum memory (bytes) of a cache.
 const CACHE: usize = 64 << 20;
 
 impl<T> Shelf<T> {
-    /// What is made of a motion, with its size (bytes), unless it is there.
+    /// Returns the value of a motion; `make` computes it with its size (bytes) if it is not cached.
     fn get(
         &self,
         motion: &Motion,
@@ -256,7 +256,7 @@ impl<T> Shelf<T> {
         if let Ok(mut cache) = self.0.lock()
             && let Some(at) = cache.iter().position(same)
         {
-            // What was used last stands last, and what stands first goes first.
+            // Most recently used last; the first is evicted first.
             let kept = cache.remove(at);
             let made = Arc::clone(&kept.made);
             cache.push(kept);
@@ -280,7 +280,7 @@ impl<T> Shelf<T> {
 }
 
 impl MotionCache {
-    /// A motion as its source has it: from the cache, or read.
+    /// Returns an unscaled motion: from the cache, or read.
     pub(super) fn unscaled(
         &self,
         motion: &Motion,
@@ -295,7 +295,7 @@ impl MotionCache {
         })
     }
 
-    /// All components of a motion as its source has it, not turned: from the cache, or read.
+    /// Returns all components of an unscaled motion, not turned: from the cache, or read.
     pub(super) fn in_space(
         &self,
         motion: &Motion,
@@ -309,7 +309,7 @@ impl MotionCache {
         })
     }
 
-    /// A motion scaled to a level of a measure.
+    /// Returns a motion scaled to a level of a measure.
     pub(super) fn at_level(
         &self,
         motion: &Motion,
@@ -341,7 +341,7 @@ fn measure(motion: &GroundMotion) -> Result<[f64; 9], MotionError> {
     Ok(values)
 }
 
-/// How measures grow with the factor: Arias with its square, a ratio and a time not at all, the rest with itself.
+/// Scales measures by the factor of the motion: Arias by its square, a ratio and a time not, the others linearly.
 fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     for (value, (_, measure)) in values.iter_mut().zip(MEASURES) {
         if measure == IntensityMeasure::Arias {
@@ -353,7 +353,7 @@ fn scaled_measures(mut values: [f64; 9], factor: f64) -> [f64; 9] {
     values
 }
 
-/// Memory (bytes) that a motion takes: acceleration, velocity and displacement at every step.
+/// Returns the memory (bytes) of a motion: acceleration, velocity and displacement at every step.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of samples")]
 fn size(ground: &Ground) -> usize {
     let Some(motion) = &ground.motion else { return 0 };

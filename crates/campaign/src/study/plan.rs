@@ -1,4 +1,4 @@
-//! How the cases of a study are dealt into chunks.
+//! Divides the cases of a study into chunks.
 
 use super::Study;
 use super::design::{Case, Design};
@@ -9,7 +9,7 @@ use barrelstack_report::column::Value;
 pub struct Chunk {
     /// Its number, from 0.
     pub number: usize,
-    /// How many cases it has; of an incremental dynamic analysis, hunts.
+    /// Number of cases; of an incremental dynamic analysis, hunts.
     pub cases: usize,
     /// The first of them.
     pub first: u64,
@@ -17,14 +17,14 @@ pub struct Chunk {
     pub last: u64,
 }
 
-/// How many cases a chunk has, by its place: as the study says, or 64 and twice as many after every 512 chunks.
+/// Number of cases of a chunk, by its position: as the study states, or 64 and twice as many after every 512 chunks.
 ///
-/// Small enough that a stop loses little and many workers find work, and so few that a million cases make some
+/// Small enough that an interruption loses little and many workers find work, and so few that a million cases make some
 /// 2,500 files. The last of many chunks take longest: those of a million cases are 16 times as long as the first.
-/// A chunk stays what it is however many follow it.
+/// A chunk does not change with the number of chunks after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sizes {
-    /// All alike.
+    /// All equal.
     Given(u32),
     /// Growing.
     Growing,
@@ -33,15 +33,15 @@ pub(super) enum Sizes {
 /// Chunks of a size before it doubles.
 const ALIKE: u64 = 512;
 
-/// Most doublings, far from where a number of cases has no room; ten million cases, the most that a study has, end
-/// behind the eighth.
+/// Maximum number of doublings, far below overflow; ten million cases, the most that a study has, end after the
+/// eighth.
 const DOUBLINGS: u64 = 40;
 
 /// Cases of the first chunks.
 const FIRST: u64 = 64;
 
 impl Sizes {
-    /// The first case of a chunk in the order of the cases, and how many it has.
+    /// Returns the first case of a chunk in the order of the cases, and its number of cases.
     fn span(self, chunk: u64) -> (u64, u64) {
         match self {
             Self::Given(size) => (chunk * u64::from(size), u64::from(size)),
@@ -53,7 +53,7 @@ impl Sizes {
         }
     }
 
-    /// How many chunks hold so many cases.
+    /// Returns the number of chunks for a number of cases.
     fn chunks(self, cases: u64) -> u64 {
         match self {
             Self::Given(size) => cases.div_ceil(u64::from(size)),
@@ -70,8 +70,8 @@ impl Sizes {
 /// All chunks of a study.
 ///
 /// Cases of one chunk have the same bodies and contacts where the design allows, so that they can be run in lockstep.
-/// Each case goes to the open chunk of its kind, and a chunk is opened when there is none, so that cases which are
-/// added behind change no chunk that was full.
+/// Each case goes to the open chunk of its kind, and a chunk is opened when there is none, so that later additions of
+/// cases change no full chunk.
 #[derive(Clone, Debug)]
 pub(super) enum Chunks {
     /// In the order of the cases.
@@ -84,7 +84,7 @@ impl Chunks {
     pub(super) fn of(study: &Study) -> Self {
         let (count, sizes) = (study.cases.count(study), study.chunk);
         let mixed = study.factors.iter().any(|factor| factor.structural);
-        // Chunks of Monte Carlo come in the order of the cases, since it stops after one of them.
+        // Chunks of Monte Carlo are in the order of the cases, since it stops after one of them.
         let ordered = matches!(study.design, Design::MonteCarlo { .. });
         if !mixed || ordered {
             return Self::Even { count, sizes };
@@ -120,7 +120,7 @@ impl Chunks {
         }
     }
 
-    /// The numbers of the cases of a chunk, ascending.
+    /// Returns the numbers of the cases of a chunk, ascending.
     pub(super) fn numbers(&self, chunk: usize) -> Vec<u64> {
         match self {
             Self::Even { count, sizes } => {
@@ -135,7 +135,7 @@ impl Chunks {
 }
 
 impl Study {
-    /// All chunks, in order.
+    /// Returns all chunks, in order.
     pub fn plan(&self) -> impl Iterator<Item = Chunk> {
         (0..self.chunks.len()).map(|number| {
             let cases = self.chunks.numbers(number);
@@ -145,12 +145,12 @@ impl Study {
         })
     }
 
-    /// How many chunks there are.
+    /// Returns the number of chunks.
     pub fn chunk_count(&self) -> usize {
         self.chunks.len()
     }
 
-    /// The values of the factors that change what bodies and contacts there are.
+    /// Returns the values of the factors that change which bodies and contacts there are.
     fn structure(&self, case: &Case) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
         (0..self.factors.len()).filter(structural).map(|index| self.told(case, index)).collect()

@@ -1,4 +1,4 @@
-//! From the numbers of a chunk to its rows: cases are built, shaken by the engine, and told.
+//! Computes the rows of a chunk: builds its cases, runs them, and tabulates the results.
 
 use std::sync::Arc;
 
@@ -17,29 +17,29 @@ use crate::ensemble::{Audience, CaseResult, Prepared, Width, simulate_in};
 use crate::ground::Ground;
 use crate::outcome::Outcome;
 
-/// Most cases that are built at once: many enough to run in lockstep, few enough to hold their motions.
+/// Maximum number of cases built at once: enough to run in lockstep, few enough to hold their motions.
 const BATCH: usize = 128;
 
-/// What a chunk needs while it runs.
+/// Resources of a chunk while it runs.
 pub(super) struct Resources<'a> {
-    /// Motions that were used before.
+    /// Cache of motions.
     pub(super) cache: &'a MotionCache,
-    /// The vector unit in which cases run.
+    /// Vector unit for the cases.
     pub(super) lanes: Width,
-    /// Hears of every case that is done.
+    /// Callback after each case.
     pub(super) tell: &'a mut dyn FnMut(&CaseResult),
-    /// Whether to stop.
+    /// Returns `true` to cancel.
     pub(super) stop: &'a dyn Fn() -> bool,
 }
 
-/// A case with what shakes it, or why it cannot run.
+/// A built case with its motion, or the reason why it cannot run.
 struct Built {
     shaken: Option<Shaken>,
     prepared: Result<Prepared, String>,
 }
 
 impl Study {
-    /// The rows of a chunk; none when asked to stop.
+    /// Computes the rows of a chunk; `None` when cancelled.
     pub(super) fn compute(
         &self,
         chunk: usize,
@@ -65,7 +65,7 @@ impl Study {
         Ok(Some(table))
     }
 
-    /// The rows of hunts that go on side by side, one level each at a time; none when asked to stop.
+    /// Runs hunts side by side, one level each at a time, and returns their rows; `None` when cancelled.
     fn hunts(
         &self,
         hunt: &Hunt,
@@ -109,7 +109,7 @@ impl Study {
         Some(rows.into_iter().map(|(_, row)| row).collect())
     }
 
-    /// Builds cases and runs them, those in a plane side by side; what cannot be built is told as such.
+    /// Builds cases and runs them, those in a plane in lockstep; reports those that cannot be built.
     fn shake(
         &self,
         cases: &[Case],
@@ -183,7 +183,7 @@ impl Study {
         built
     }
 
-    /// The scenario with values in place of those of the base.
+    /// Returns the scenario with the values of some factors replaced.
     pub(super) fn scenario(&self, settings: &[Option<Setting>]) -> Result<Scenario, ScenarioError> {
         let changes = self.factors.iter().zip(settings).flat_map(|(factor, setting)| {
             let fields = factor.fields.iter().map(String::as_str);
@@ -199,10 +199,10 @@ impl Study {
         Ok(scenario)
     }
 
-    /// The motions of the study with their names, as their sources have them: a level scales them later.
+    /// Returns the motions of the study with their names, unscaled: a level scales them later.
     ///
     /// # Errors
-    /// Names the first motion that cannot be had.
+    /// Names the first motion that cannot be read or generated.
     pub fn grounds(&self) -> Result<Vec<(String, Arc<Ground>)>, StudyError> {
         let (cache, base) = (MotionCache::default(), self.scenario(&[])?);
         let ground = |motion: &Motion| {
@@ -212,7 +212,7 @@ impl Study {
         self.motions.iter().map(ground).collect()
     }
 
-    /// The motion of a case.
+    /// Returns the scaled motion of a case.
     fn shaken(
         &self,
         case: &Case,
@@ -224,15 +224,15 @@ impl Study {
         cache.at_level(motion, &scenario.motion, scenario.run.similitude, level)
     }
 
-    /// Reads every record once, so that one which is no record is told before the work and not after it.
+    /// Parses every record up front, so that a bad file fails before any run.
     ///
     /// # Errors
-    /// Names the first motion that cannot be had.
+    /// Names the first motion that cannot be read or generated.
     pub(super) fn try_motions(&self, cache: &MotionCache) -> Result<(), StudyError> {
         let scenario = self.scenario(&[])?;
         let mut tried: Option<&Synthetic> = None;
         for motion in &self.motions {
-            // Realizations of an ensemble differ in their seeds alone: the first speaks for all.
+            // Realizations of an ensemble differ in their seeds alone: test the first for all.
             if let Shaking::Synthetic(synthetic) = &motion.shaking {
                 if tried.is_some_and(|tried| {
                     Synthetic { seed: tried.seed, ..(**synthetic).clone() } == *tried
@@ -250,7 +250,7 @@ impl Study {
     }
 }
 
-/// Refuses what no study runs: a stack that is looked at in both planes, and a free scene in space.
+/// Refuses scenes that no study runs: a stack in both planes, and a free scene in space.
 pub(super) fn runs(top: &Reader<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
     let message = match (&scenario.scene, scenario.stack()) {
         (Scene::Spatial(_), _) => {

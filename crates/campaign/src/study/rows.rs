@@ -1,4 +1,4 @@
-//! From what became of a case to its row.
+//! Converts the result of a case to its row.
 
 use super::Study;
 use super::design::Case;
@@ -12,10 +12,10 @@ use barrelstack_space::columns;
 const KEYS: [(&str, ValueKind); 3] =
     [("case", ValueKind::Integer), ("id", ValueKind::Text), ("chunk", ValueKind::Integer)];
 
-/// Columns that tell the motion.
+/// Columns of the motion.
 const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
 
-/// What a column tells.
+/// Returns the meaning of a column.
 pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     match (spec.role, spec.name.as_str()) {
         (Role::Key, "case") => "number of the case in its study",
@@ -33,7 +33,7 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     }
 }
 
-/// The names of the columns that every table has.
+/// Returns the names of the columns that every table has.
 pub(super) fn fixed_columns() -> impl Iterator<Item = &'static str> {
     let keys = KEYS.iter().map(|(name, _)| *name);
     let measures = MEASURES.iter().map(|(name, _)| *name);
@@ -41,7 +41,7 @@ pub(super) fn fixed_columns() -> impl Iterator<Item = &'static str> {
 }
 
 impl Study {
-    /// The columns of the table, in order.
+    /// Returns the columns of the table, in order.
     pub(super) fn columns(&self) -> Vec<ColumnSpec> {
         let unit = self.intensity.as_ref().map_or("", |intensity| intensity.measure.unit());
         let key = |(name, kind): &(&str, ValueKind)| ColumnSpec::new(name, "", Role::Key, *kind);
@@ -60,7 +60,7 @@ impl Study {
         fixed.chain(columns::specs().filter(|_| self.in_space)).collect()
     }
 
-    /// The row of a case; `shaken` is none where the motion could not be had.
+    /// Returns the row of a case; `shaken` is `None` where the motion failed.
     pub(super) fn row(
         &self,
         case: &Case,
@@ -85,12 +85,12 @@ impl Study {
     }
 }
 
-/// A text; none when it is empty.
+/// Returns a text; `None` if it is empty.
 fn text(text: &str) -> Option<Value> {
     (!text.is_empty()).then(|| Value::Text(text.to_owned()))
 }
 
-/// A number, unless it is none: a NaN in a table looks like a value and is none.
+/// Returns a number; `None` for NaN, which would look like a value in a table.
 fn number(value: Option<f64>) -> Option<Value> {
     value.filter(|value| !value.is_nan()).map(Value::Number)
 }

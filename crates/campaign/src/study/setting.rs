@@ -1,4 +1,4 @@
-//! One value of a factor: as a scenario file has it, and as a table has it.
+//! One value of a factor, in the forms of a scenario file and of a table.
 
 use crate::scenario::field::{Field, Kind, Named as _, Range};
 use crate::scenario::reader::Reader;
@@ -11,14 +11,14 @@ use barrelstack_report::column::{Value, ValueKind};
 /// One value of a factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
-    /// As a scenario file has it, with the place where it was written.
+    /// As in a scenario file, with its place there.
     pub(super) node: Node,
-    /// As the table has it, in SI units.
+    /// As in the table, in SI units.
     pub(super) value: Value,
 }
 
 impl Setting {
-    /// The number (SI) that it is.
+    /// Returns its number (SI).
     pub(super) fn number(&self) -> f64 {
         match &self.value {
             Value::Number(value) => *value,
@@ -27,13 +27,13 @@ impl Setting {
         }
     }
 
-    /// The value in words that tell it from every other, for the identity of a case.
+    /// Returns the value as unambiguous text, for the identity of a case.
     pub(super) fn word(&self) -> String {
         word(&self.value)
     }
 }
 
-/// A value of a table in words that tell it from every other.
+/// Returns a value of a table as unambiguous text.
 pub(crate) fn word(value: &Value) -> String {
     match value {
         Value::Number(value) => crate::scenario::quantity::plain(*value),
@@ -42,11 +42,11 @@ pub(crate) fn word(value: &Value) -> String {
     }
 }
 
-/// What values a field takes, and how they are written.
+/// Domain of a field: its values, and how they are written.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Domain {
     kind: Kind,
-    /// What numbers of it measure; of several that the field allows, the one that this study uses.
+    /// Dimension of its numbers; of several that the field allows, the one that this study uses.
     dimension: Dimension,
 }
 
@@ -57,7 +57,7 @@ impl PartialEq for Domain {
 }
 
 impl Domain {
-    /// The domain of a field, or none where it does not hold a single value.
+    /// Returns the domain of a field, or `None` if it does not hold a single value.
     pub(super) fn of(field: &Field) -> Option<Self> {
         let dimension = match field.kind {
             Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) => dimensions[0],
@@ -83,13 +83,13 @@ impl Domain {
         Some(Self { kind: field.kind, dimension })
     }
 
-    /// Positive quantities of a dimension.
+    /// Returns the domain of positive quantities of a dimension.
     pub(super) fn positive(dimensions: &'static [Dimension]) -> Self {
         Self { kind: Kind::Quantity(dimensions, Range::POSITIVE), dimension: dimensions[0] }
     }
 
-    /// The same domain where values measure what a first one does: a field may allow an acceleration or a velocity,
-    /// a column holds one of them.
+    /// Fixes the dimension to that of a first value: a field may allow an acceleration or a velocity, a column holds
+    /// one of them.
     #[must_use]
     pub(super) fn fixed_by(self, node: &Node) -> Self {
         let Kind::Quantity(dimensions, _) = self.kind else { return self };
@@ -99,12 +99,12 @@ impl Domain {
         Self { dimension, ..self }
     }
 
-    /// Whether values are numbers of any size between two.
+    /// `true` if values are real numbers.
     pub(super) fn continuous(self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Quantity(..))
     }
 
-    /// What a column of its values holds.
+    /// Returns the kind of a column of its values.
     pub(super) fn column_kind(self) -> ValueKind {
         if self.continuous() {
             ValueKind::Number
@@ -115,7 +115,7 @@ impl Domain {
         }
     }
 
-    /// The unit of a column of its values.
+    /// Returns the unit of a column of its values.
     pub(super) fn unit(self) -> String {
         if self.dimension == Dimension::NONE || self.column_kind() == ValueKind::Text {
             String::new()
@@ -124,7 +124,7 @@ impl Domain {
         }
     }
 
-    /// A number (SI) as a value.
+    /// Converts a number (SI) to a value.
     pub(super) fn setting(self, number: f64, origin: Origin) -> Setting {
         let written = if let Kind::Quantity(..) = self.kind {
             Written::Text(Quantity { value: number, dimension: self.dimension }.to_string())
@@ -134,7 +134,7 @@ impl Domain {
         Setting { node: Node { origin, value: written }, value: Value::Number(number) }
     }
 
-    /// A value as written.
+    /// Reads a value.
     pub(super) fn read(
         self,
         reader: &Reader<'_>,
@@ -145,7 +145,7 @@ impl Domain {
         let value = match (kind, &node.value) {
             (Kind::Number(range), _) => Value::Number(reader.read_number(name, node, range)?),
             (Kind::Quantity(_, range), _) => {
-                // The written number is read again by the scenario, to the same bits.
+                // The scenario reads the written number again, to the same bits.
                 Value::Number(reader.read_quantity(name, node, &[self.dimension], range)?.value)
             }
             (Kind::Integer(..), _) => Value::Integer(reader.read_integer(name, node, kind)?),
@@ -163,14 +163,14 @@ impl Domain {
         Ok(Setting { node: node.clone(), value })
     }
 
-    /// A required number (SI) of a reader's field.
+    /// Reads a required number (SI) of a field.
     pub(super) fn number(
         self,
         reader: &Reader<'_>,
         name: &'static str,
     ) -> Result<f64, ScenarioError> {
         let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
-        // A range or a deviation may lie where a value itself may not, so that only its unit is looked at.
+        // A range or a deviation may lie outside of the field's range, so that only its unit is checked.
         let open = if let Kind::Quantity(dimensions, _) = self.kind {
             Kind::Quantity(dimensions, Range::ANY)
         } else {
@@ -179,7 +179,7 @@ impl Domain {
         Ok(Self { kind: open, ..self }.read(reader, name, &node)?.number())
     }
 
-    /// A required list of values, no two alike.
+    /// Reads a required list of values, no two equal.
     pub(super) fn settings(
         self,
         reader: &Reader<'_>,
@@ -198,7 +198,7 @@ impl Domain {
         Ok(settings)
     }
 
-    /// The values of `[….range]`.
+    /// Reads the values of `[….range]`.
     pub(super) fn range(
         self,
         reader: &Reader<'_>,
@@ -256,14 +256,14 @@ impl Domain {
         Ok(settings)
     }
 
-    /// The value of the base of a study, from its resolved scenario.
+    /// Returns the value of the base of a study, from its resolved scenario.
     pub(super) fn told(self, written: &Written) -> Option<Value> {
         match (self.column_kind(), written) {
             (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),
             (ValueKind::Number, Written::Float(value)) => Some(Value::Number(*value)),
             (ValueKind::Number, Written::Integer(value)) => value.map(|v| Value::Number(v as f64)),
             (ValueKind::Number, Written::Text(text)) => {
-                // A base that states another of the dimensions which the field allows has no number here.
+                // A base with another of the dimensions that the field allows has no number here.
                 Quantity::parse_as(text, &[self.dimension]).ok().map(|q| Value::Number(q.value))
             }
             (ValueKind::Text, Written::Text(text)) => Some(Value::Text(text.clone())),
@@ -273,8 +273,8 @@ impl Domain {
     }
 }
 
-/// A number of twelve digits: 0.4 and not 0.39999999999999997, as anyone would write it.
+/// Rounds a number to twelve digits: 0.4 and not 0.39999999999999997.
 fn rounded(value: f64) -> f64 {
-    // What is written in twelve digits is a number.
+    // A number in twelve digits always parses.
     format!("{value:.11e}").parse().unwrap_or(value)
 }

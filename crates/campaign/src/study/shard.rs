@@ -1,4 +1,4 @@
-//! Tables as Parquet files; the only place that knows the format.
+//! Tables as Parquet files; the only module that knows the format.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use parquet::schema::types::{Type, TypePtr};
 use super::table::StudyTable;
 use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 
-/// Under this key of a file's metadata stand the columns: name, unit and role.
+/// Metadata key of the columns in a file: name, unit and role.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
-/// The names of columns as files of columns have them: letters, digits and underscores, as SQL takes them
-/// without quotes.
+/// Converts names of columns for formats of columns: letters, digits and underscores, as SQL takes them without
+/// quotes.
 pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for spec in specs {
@@ -42,13 +42,13 @@ pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Ve
     names
 }
 
-/// Rows of a group, which is what is held in memory while a table is written.
+/// Rows of a group, which are held in memory while a table is written.
 const GROUP: usize = 1 << 15;
 
-/// Writes a table part by part: the same rows and texts give the same bytes, however they were parted.
+/// Writes a table in parts: the same rows and texts give the same bytes, however they are divided.
 pub(super) struct Writer<W: std::io::Write + Send> {
     file: SerializedFileWriter<W>,
-    /// Rows that make no whole group yet.
+    /// Rows of an incomplete group.
     rows: StudyTable,
 }
 
@@ -84,7 +84,7 @@ impl<W: std::io::Write + Send> Writer<W> {
         group.close().map(drop)
     }
 
-    /// Ends the file with what it comes from, as pairs of key and text.
+    /// Ends the file with its provenance, as pairs of key and text.
     pub(super) fn finish(mut self, about: &[(&str, String)]) -> Result<(), ParquetError> {
         let rest = self.rows.split_off(0);
         self.group(&rest)?;
@@ -96,7 +96,7 @@ impl<W: std::io::Write + Send> Writer<W> {
     }
 }
 
-/// A table as the bytes of a Parquet file, with what it comes from as pairs of key and text; the same table
+/// Returns a table as the bytes of a Parquet file, with its provenance as pairs of key and text; the same table
 /// and pairs give the same bytes.
 pub(super) fn to_bytes(
     table: &StudyTable,
@@ -128,7 +128,7 @@ fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 
-/// Levels that tell which rows have a value, and the values that there are.
+/// Returns definition levels, which mark the rows that have a value, and the values.
 fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>, Vec<U>) {
     let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
     (levels, values.iter().flatten().map(as_stored).collect())
@@ -158,7 +158,7 @@ fn write_column<W: std::io::Write + Send>(
     writer.close()
 }
 
-/// A table from the bytes of a Parquet file written by [`to_bytes`], and a text that was given beside it, by its key.
+/// Reads a table from the bytes of a Parquet file written by [`to_bytes`], and the text stored beside it under a key.
 pub(super) fn from_bytes(
     bytes: Vec<u8>,
     key: &str,

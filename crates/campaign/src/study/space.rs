@@ -1,5 +1,5 @@
-//! Cases of stacks that are looked at in space: each is the run of its scenario, to the last bit, and tells
-//! directions besides what a plane tells.
+//! Cases of stacks in space: each is the run of its scenario, bit for bit, and records directions besides the results
+//! of a plane.
 
 use std::ops::ControlFlow;
 
@@ -15,15 +15,15 @@ use crate::ensemble::CaseResult;
 use crate::scenario::Scenario;
 use crate::watch::Ending;
 
-/// What became of a case.
+/// Result of a case.
 pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
-    /// Where the first body left its seat to, and each fallen barrel came to lie from where it stood; none of a case
-    /// in a plane, or without a verdict.
+    /// Heading in which the first body left its seat, and of each fallen barrel from where it stood; `None` for a
+    /// case in a plane, or without a verdict.
     ways: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
-/// Of a case in a plane, or one that could not run.
+/// For a case in a plane, or one that could not run.
 impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
         Self { result, ways: None }
@@ -38,7 +38,7 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, times one factor; none when asked to stop.
+    /// Runs a case in space under all components of its motion, scaled by one factor; `None` when cancelled.
     pub(super) fn run_in_space(
         &self,
         case: &Case,
@@ -66,7 +66,7 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
     }
 }
 
-/// The values of a case in the columns of space.
+/// Returns the values of a case in the columns of space.
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
     columns::values(finished.ways.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

@@ -1,11 +1,11 @@
-//! When enough cases have been run: the collapse probability and its interval.
+//! Stop rule of a Monte Carlo design: the collapse probability and its interval.
 
 use barrelstack_fragility::wilson;
 use barrelstack_report::described;
 
 use super::table::StudyTable;
 
-/// How many cases ended how.
+/// Counts of cases by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Cases in all.
@@ -24,7 +24,7 @@ impl Tally {
         self.collapsed += u64::from(outcome == "collapse");
     }
 
-    /// The tally of a table.
+    /// Returns the tally of a table.
     pub fn of(table: &StudyTable) -> Self {
         let mut tally = Self::default();
         for outcome in table.texts("outcome").unwrap_or_default() {
@@ -33,7 +33,7 @@ impl Tally {
         tally
     }
 
-    /// Both together.
+    /// Returns the sum of both.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Tally {
         }
     }
 
-    /// The fraction of judged cases that collapsed, with its 95 % interval (Wilson); none without any.
+    /// Returns the fraction of judged cases that collapsed, with its 95 % interval (Wilson); `None` without any.
     pub fn collapse(&self) -> Option<(f64, [f64; 2])> {
         if self.judged == 0 {
             return None;
@@ -68,7 +68,7 @@ described! {
 }
 
 impl StopRule {
-    /// Whether these cases, which are all of the chunks up to one, are enough.
+    /// `true` if these cases, all of the chunks up to one, suffice.
     pub(super) fn met(&self, tally: Tally) -> bool {
         let half = tally.collapse().map(|(_, [low, high])| 0.5 * (high - low));
         tally.cases >= u64::from(self.least) && half.is_some_and(|half| half <= self.half_width)

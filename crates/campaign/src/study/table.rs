@@ -1,4 +1,4 @@
-//! The table of a study: one row a case, in the order of the cases.
+//! The table of a study: one row per case, in the order of the cases.
 
 use std::fmt::Write as _;
 
@@ -8,10 +8,10 @@ use super::error::StudyError;
 use super::shard;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values, to_csv};
 
-/// One row a case, in the order of the cases; typed columns in SI units.
+/// One row per case, in the order of the cases; typed columns in SI units.
 ///
 /// Columns are found by name without the unit, such as `pgv`.
-/// A value is `None` where it does not apply (the mode of a stack that stood) or is not known (anything of a
+/// A value is `None` where it does not apply (the mode of a stack that stood) or is unknown (anything of a
 /// case that could not run, whose reason stands in `error`).
 ///
 /// ```no_run
@@ -28,7 +28,7 @@ pub struct StudyTable {
 }
 
 impl StudyTable {
-    /// A table of columns of the same length.
+    /// Creates a table from columns of the same length.
     ///
     /// # Errors
     /// When two columns have the same name, or lengths or kinds differ.
@@ -58,12 +58,12 @@ impl StudyTable {
         Ok(Self { columns })
     }
 
-    /// A table without rows, whose columns have names of their own.
+    /// Creates a table without rows, whose columns have unique names.
     pub fn empty(specs: &[ColumnSpec]) -> Self {
         Self { columns: specs.iter().cloned().map(Column::empty).collect() }
     }
 
-    /// Appends a row, one value a column.
+    /// Appends a row, one value per column.
     ///
     /// # Errors
     /// When a value is missing or is of another kind than its column.
@@ -78,7 +78,7 @@ impl StudyTable {
         pairs.try_for_each(|(column, value)| column.values.push(value)).map_err(StudyError::Table)
     }
 
-    /// Tables of the same columns as one, sorted by case.
+    /// Joins tables of the same columns, sorted by case.
     pub(super) fn join(specs: &[ColumnSpec], parts: &[Self]) -> Result<Self, StudyError> {
         let mut order: Vec<(i64, usize, usize)> = Vec::new();
         for (index, part) in parts.iter().enumerate() {
@@ -103,53 +103,53 @@ impl StudyTable {
         Ok(table)
     }
 
-    /// How many cases there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// All columns, in order.
+    /// Returns all columns, in order.
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// What the columns hold, in order.
+    /// Returns the specifications of the columns, in order.
     pub fn specs(&self) -> impl Iterator<Item = &ColumnSpec> {
         self.columns.iter().map(|column| &column.spec)
     }
 
-    /// The columns of a role, in order, such as all factors.
+    /// Returns the columns of a role, in order, such as all factors.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(move |column| column.spec.role == role)
     }
 
-    /// The column of a name, without its unit.
+    /// Returns the column of a name, without its unit.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.spec.name == name)
     }
 
-    /// The numbers (SI) of a column; `None` when there is no such column of numbers.
+    /// Returns the numbers (SI) of a column; `None` if there is no such column of numbers.
     pub fn numbers(&self, name: &str) -> Option<&[Option<f64>]> {
         if let Values::Number(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// The whole numbers of a column; `None` when there is no such column of whole numbers.
+    /// Returns the integers of a column; `None` if there is no such column of integers.
     pub fn integers(&self, name: &str) -> Option<&[Option<i64>]> {
         if let Values::Integer(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// The texts of a column; `None` when there is no such column of texts.
+    /// Returns the texts of a column; `None` if there is no such column of texts.
     pub fn texts(&self, name: &str) -> Option<&[Option<String>]> {
         if let Values::Text(values) = &self.column(name)?.values { Some(values) } else { None }
     }
 
-    /// How many rows stand before a case, in a table sorted by case.
+    /// Returns the number of rows before a case, in a table sorted by case.
     pub(super) fn rows_before(&self, case: i64) -> usize {
         let cases = self.integers("case").unwrap_or_default();
         cases.partition_point(|number| number.is_some_and(|number| number < case))
     }
 
-    /// Takes off the rows from a place on.
+    /// Splits off the rows from an index on.
     pub(super) fn split_off(&mut self, row: usize) -> Self {
         let split = |column: &mut Column| Column {
             spec: column.spec.clone(),
@@ -165,12 +165,12 @@ impl StudyTable {
         pairs.try_for_each(append).map_err(StudyError::Table)
     }
 
-    /// The table as CSV, as [`to_csv`] writes columns.
+    /// Returns the table as CSV, as [`to_csv`] writes columns.
     pub fn to_csv(&self) -> String {
         to_csv(&self.columns)
     }
 
-    /// The table as the bytes of a Parquet file; the same table gives the same bytes.
+    /// Returns the table as the bytes of a Parquet file; the same table gives the same bytes.
     ///
     /// # Errors
     /// When it cannot be encoded.
@@ -178,7 +178,7 @@ impl StudyTable {
         Ok(shard::to_bytes(self, &[])?)
     }
 
-    /// What every column is, as CSV: its name in CSV and in Parquet files, unit, role, kind, and meaning.
+    /// Describes every column, as CSV: its names in CSV and Parquet files, unit, role, kind, and meaning.
     pub fn dictionary(&self) -> String {
         let mut text = "csv,parquet,unit,role,kind,meaning\n".to_owned();
         let names = shard::plain_names(self.specs());
@@ -197,10 +197,10 @@ impl StudyTable {
         text
     }
 
-    /// A table from the bytes of a Parquet file that [`StudyTable::to_parquet`] gave.
+    /// Reads a table from the bytes of a Parquet file from [`StudyTable::to_parquet`].
     ///
     /// # Errors
-    /// When the bytes are none.
+    /// If the bytes are not such a file.
     pub fn from_parquet(bytes: Vec<u8>) -> Result<Self, StudyError> {
         Ok(shard::from_bytes(bytes, "")?.0)
     }

@@ -8,7 +8,7 @@ use barrelstack_campaign::study::{
     Collected, Column, ColumnSpec, MotionSource, Provenance, Role, StudyTable, ValueKind, Values,
 };
 
-/// Two barrels on two levels; the time for which they are shaken comes behind.
+/// Two barrels on two levels; the duration of shaking is appended.
 pub(crate) const HEAD: &str = "\
 schema = 1
 title = \"two barrels for a moment\"
@@ -74,8 +74,8 @@ pub(crate) fn made(
     Collected { table, provenance }
 }
 
-/// Says what was not tested.
+/// Reports a skipped test.
 pub(crate) fn skipped(why: &str) {
-    // Straight to the terminal: the runner keeps what tests that pass print by the usual way.
+    // Write to the terminal directly: the runner captures `print!` of passing tests.
     std::io::stdout().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
 }

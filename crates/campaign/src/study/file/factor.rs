@@ -1,4 +1,4 @@
-//! A factor of a study file: which fields it sets, and what values they take.
+//! Reads a factor of a study file: the fields that it sets, and their values.
 
 use barrelstack_report::column::{ColumnSpec, Role};
 
@@ -10,10 +10,10 @@ use crate::study::distribution::Distribution;
 use crate::study::setting::{Domain, Setting};
 use crate::study::{Factor, Variation, rows};
 
-/// The quantile that is tried for the low end of a distribution, and from 1 for the high end.
+/// Probability of the quantile that is tried for the low end of a distribution, and from 1 for the high end.
 pub(super) const LOW: f64 = 1e-6;
 
-/// Two factors that would set the same field, or take the same column.
+/// Returns an error if two factors set the same field, or have the same column.
 pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Option<ScenarioError> {
     let error = |message| Some(top.inconsistent("factor", message));
     for factor in factors {
@@ -69,7 +69,7 @@ pub(super) fn read_factor(
         return Err(reader.one_of(&["values", "range", "distribution"]));
     };
     reader.finish();
-    // Every value is tried by itself, so that one which the scenario refuses is told now and here.
+    // Try every value by itself, so that one which the scenario refuses is reported at its place before any run.
     let ends: Vec<Setting> = match &variation {
         Variation::Values(values) => values.clone(),
         Variation::Distribution(distribution) => match distribution.settings() {
@@ -109,7 +109,7 @@ fn domain_of(
         return Err(reader.inconsistent(key, message));
     }
     if matches!(path, "motion.record" | "motion.vertical_record") {
-        // What these files hold is part of the fingerprint of the study only where [[motion]] lists them.
+        // The contents of these files are part of the fingerprint of the study only where [[motion]] lists them.
         let message = format!("`{path}` names a file; list the `records` of [[motion]]");
         return Err(reader.inconsistent(key, message));
     }
@@ -126,7 +126,7 @@ fn domain_of(
     })
 }
 
-/// The first value that a range or a distribution states.
+/// Returns the first value that a range or a distribution states.
 fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     match ["from", "mean", "median", "values"].into_iter().find(|key| section.has(key)) {
         Some("values") => Ok(section.nodes("values")?.and_then(|nodes| nodes.first().cloned())),
@@ -135,7 +135,7 @@ fn first_of(section: &Reader<'_>) -> Result<Option<Node>, ScenarioError> {
     }
 }
 
-/// Reads a list (whose key is given), a range or a distribution; none where there is none of them.
+/// Reads a list (whose key is given), a range or a distribution; `None` if there is none of them.
 pub(super) fn read_variation(
     reader: &Reader<'_>,
     domain: Domain,
