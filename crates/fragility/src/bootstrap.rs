@@ -1,4 +1,4 @@
-//! Confidence by drawing counts from a fitted curve.
+//! Parametric bootstrap of a fitted curve.
 
 use crate::curve::Lognormal;
 use crate::evidence::{Stripe, evidence};
@@ -11,15 +11,15 @@ use crate::proportion::Interval;
 pub struct Replicates {
     /// The curve of the data themselves.
     pub fitted: Lognormal,
-    /// One curve for each resampled data set that determines one, in the order drawn.
+    /// One curve for each resampled data set that determines one, in order of sampling.
     pub curves: Vec<Lognormal>,
-    /// Drawn data sets that do not, for the reasons of [`FitError`]. They are left out of
+    /// Number of resampled data sets that determine no curve ([`FitError`]). They are excluded from
     /// every interval; above a few percent the intervals are too narrow.
     pub refused: usize,
 }
 
 impl Replicates {
-    /// The interval of anything computed from a curve: percentiles, corrected for bias (Efron 1987).
+    /// Returns the interval of a function of the curve: percentiles, corrected for bias (Efron 1987).
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let mut values: Vec<f64> = self.curves.iter().map(&of).collect();
         values.sort_by(f64::total_cmp);
@@ -29,9 +29,9 @@ impl Replicates {
         Interval { low: bounds[0], high: bounds[1] }
     }
 
-    /// The interval of the chance of failure at each intensity.
+    /// Returns the interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
-        // The score is a monotone function of the chance and does not run into 0 and 1.
+        // The score is a monotone function of the probability and is not bounded by 0 and 1.
         let score = |curve: &Lognormal, x: f64| ln(x / curve.median) / curve.dispersion;
         let chance = |x: &f64| {
             let scores = self.interval(level, |curve| score(curve, *x));
@@ -40,18 +40,18 @@ impl Replicates {
         intensities.iter().map(chance).collect()
     }
 
-    /// The interval of the median.
+    /// Returns the interval of the median.
     pub fn median(&self, level: f64) -> Interval {
         self.interval(level, |curve| curve.median)
     }
 
-    /// The interval of the dispersion.
+    /// Returns the interval of the dispersion.
     pub fn dispersion(&self, level: f64) -> Interval {
         self.interval(level, |curve| curve.dispersion)
     }
 }
 
-/// The score of the share of ascending values that lie below one, ties halved.
+/// Returns the normal score of the fraction of sorted values below a value, with ties counted half.
 fn bias(ascending: &[f64], value: f64) -> f64 {
     let below = ascending.partition_point(|x| *x < value);
     let same = ascending[below..].partition_point(|x| *x <= value);
@@ -60,12 +60,12 @@ fn bias(ascending: &[f64], value: f64) -> f64 {
     normal_quantile(share.clamp(1.0 / (n + 1.0), n / (n + 1.0)))
 }
 
-/// How many of `cases` fail when each does with a chance.
+/// Draws the number of failures among `cases`, each with the given probability.
 pub(crate) fn binomial(cases: u32, chance: f64, uniform: &mut impl FnMut() -> f64) -> u32 {
     (0..cases).map(|_| u32::from(uniform() < chance)).sum()
 }
 
-/// Counts drawn from a curve at the intensities and numbers of cases of `stripes`.
+/// Draws counts from a curve at the intensities and numbers of cases of `stripes`.
 pub(crate) fn drawn(
     stripes: &[Stripe],
     chance: impl Fn(usize) -> f64,
@@ -76,11 +76,11 @@ pub(crate) fn drawn(
     stripes.iter().enumerate().map(draw).collect()
 }
 
-/// Draws counts from the fitted curve itself and fits each again (parametric bootstrap): for
-/// independent cases whose curve is believed.
+/// Draws counts from the fitted curve and fits each sample again (parametric bootstrap): for
+/// independent cases that follow the curve.
 ///
 /// # Errors
-/// As [`fit`] for the data themselves, or when fewer than half of the drawn data sets determine a
+/// As [`fit`] for the data themselves, or if fewer than half of the samples determine a
 /// curve.
 pub fn simulate(
     stripes: &[Stripe],

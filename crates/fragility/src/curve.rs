@@ -2,7 +2,7 @@
 
 use crate::math::{exp, ln, normal, normal_quantile};
 
-/// The chance of failure at an intensity `x`: `Φ(ln(x/θ)/β)`.
+/// The probability of failure at an intensity `x`: `Φ(ln(x/θ)/β)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lognormal {
     /// `θ`, the intensity at which half of the cases fail, in the unit of the intensities.
@@ -12,7 +12,7 @@ pub struct Lognormal {
 }
 
 impl Lognormal {
-    /// Chance of failure at an intensity; 0 at and below zero.
+    /// Returns the probability of failure at an intensity; 0 at and below zero.
     pub fn probability(&self, intensity: f64) -> f64 {
         if intensity <= 0.0 {
             return 0.0;
@@ -20,7 +20,7 @@ impl Lognormal {
         normal(ln(intensity / self.median) / self.dispersion)
     }
 
-    /// The intensity at which failure has a chance.
+    /// Returns the intensity at which failure has the given probability.
     pub fn intensity(&self, probability: f64) -> f64 {
         self.median * exp(self.dispersion * normal_quantile(probability))
     }

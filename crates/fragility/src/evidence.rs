@@ -1,22 +1,22 @@
-//! Evidence: where a capacity lies.
+//! Evidence: observations of capacities.
 
 use crate::fit::FitError;
 
-/// What one case says of the intensity at which it begins to fail.
+/// The information of one case on the intensity at which it begins to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Capacity {
-    /// It is this intensity.
+    /// Exactly this intensity.
     At(f64),
     /// It failed here: the capacity is at or below.
     Below(f64),
     /// It stood here: the capacity is above.
     Above(f64),
-    /// It stood at the first and failed at the second.
+    /// It stood at the first intensity and failed at the second.
     Between(f64, f64),
 }
 
 impl Capacity {
-    /// The lowest and the highest capacity that this allows; 0 and infinity where it does not bound it.
+    /// Returns the lowest and the highest possible capacity; 0 and infinity if unbounded.
     pub fn bounds(self) -> (f64, f64) {
         match self {
             Self::At(x) => (x, x),
@@ -27,26 +27,26 @@ impl Capacity {
     }
 }
 
-/// One observation, or several of the same.
+/// One observation, or several identical ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// Where the capacity lies.
+    /// The capacity observed.
     pub capacity: Capacity,
-    /// How many cases say so.
+    /// Number of cases with this observation.
     pub weight: f64,
-    /// What the case shares with others, such as the number of its record: cases of one group are
-    /// left out together. Of no meaning where none is.
+    /// Group of dependent cases, such as the index of the record: cases of one group are left out together.
+    /// Ignored by methods without groups.
     pub group: usize,
 }
 
 impl Evidence {
-    /// A case of a group that failed, or stood, at an intensity.
+    /// Creates the evidence of a case of a group that failed, or stood, at an intensity.
     pub fn case(intensity: f64, failed: bool, group: usize) -> Self {
         let capacity = if failed { Capacity::Below(intensity) } else { Capacity::Above(intensity) };
         Self { capacity, weight: 1.0, group }
     }
 
-    /// A capacity that stands for itself.
+    /// Creates the evidence of a single capacity.
     pub fn capacity(capacity: Capacity, group: usize) -> Self {
         Self { capacity, weight: 1.0, group }
     }
@@ -57,20 +57,20 @@ impl Evidence {
 pub struct Stripe {
     /// In the unit of the intensity measure.
     pub intensity: f64,
-    /// How many were run.
+    /// Number of cases run.
     pub cases: u32,
-    /// How many of them failed.
+    /// Number of failures.
     pub failures: u32,
 }
 
 impl Stripe {
-    /// Raw share of failures; NaN without cases.
+    /// Returns the raw fraction of failures; NaN without cases.
     pub fn fraction(&self) -> f64 {
         f64::from(self.failures) / f64::from(self.cases)
     }
 }
 
-/// The evidence of counts, each stripe a group of its own.
+/// Converts counts to evidence, with each stripe as a group of its own.
 pub fn evidence(stripes: &[Stripe]) -> Vec<Evidence> {
     let mut all = Vec::with_capacity(2 * stripes.len());
     for (group, stripe) in stripes.iter().enumerate() {
@@ -88,7 +88,7 @@ pub fn evidence(stripes: &[Stripe]) -> Vec<Evidence> {
     all
 }
 
-/// Counts of cases, each `(intensity, failed)`, in ascending order of intensity; cases of the very
+/// Counts cases, each `(intensity, failed)`, in ascending order of intensity; cases of exactly the
 /// same intensity share a stripe.
 pub fn stripes(cases: impl IntoIterator<Item = (f64, bool)>) -> Vec<Stripe> {
     let mut sorted: Vec<(f64, bool)> = cases.into_iter().collect();
@@ -106,7 +106,7 @@ pub fn stripes(cases: impl IntoIterator<Item = (f64, bool)>) -> Vec<Stripe> {
     found
 }
 
-/// Whether every intensity is a positive number, every bracket in order and every weight positive.
+/// Checks that every intensity is a positive number, every bracket in order and every weight positive.
 pub(crate) fn check(all: &[Evidence]) -> Result<(), FitError> {
     if all.is_empty() {
         return Err(FitError::Empty);

@@ -7,16 +7,16 @@ use crate::likelihood::{Known, Likelihood, Score, Top, covariance};
 use crate::math::{exp, ln, ln_choose, normal_quantile};
 use crate::proportion::Interval;
 
-/// Whether the dispersion is fitted.
+/// Treatment of the dispersion in a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Dispersion {
-    /// Found with the median.
+    /// Fitted together with the median.
     Free,
-    /// Given (`β > 0`), such as from similar structures, where the data cannot tell it.
+    /// Given (`β > 0`), such as from similar structures, where the data cannot determine it.
     Fixed(f64),
 }
 
-/// Why data do not determine a curve.
+/// The reason why data do not determine a curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// No evidence.
@@ -25,11 +25,11 @@ pub enum FitError {
     /// A number that cannot be an intensity or a count.
     #[error("observation {}: expected {expected}, found {found}", index + 1)]
     Invalid {
-        /// Place in the evidence, from 0.
+        /// Index in the evidence, from 0.
         index: usize,
-        /// What belongs there.
+        /// Expected value.
         expected: &'static str,
-        /// What is there.
+        /// Value found.
         found: f64,
     },
     /// A dispersion that is not a positive number.
@@ -56,7 +56,7 @@ pub enum FitError {
         /// The lowest intensity.
         smallest: f64,
     },
-    /// One capacity explains everything.
+    /// A single capacity explains all cases.
     #[error(
         "failures and survivals do not overlap: a single capacity between {above} and {below} \
          explains every case, and the dispersion cannot be found; add cases between these \
@@ -68,50 +68,50 @@ pub enum FitError {
         /// Every failure is at or above this intensity.
         below: f64,
     },
-    /// Failure is as likely at low intensities.
+    /// Failure does not become likelier with intensity.
     #[error(
         "failure does not become likelier with intensity, so no fragility curve describes the \
          cases; look at the raw fractions, and try another intensity measure"
     )]
     NotIncreasing,
-    /// The numbers broke down.
+    /// The iteration broke down.
     #[error(
         "the fit did not converge, which data of usual size do not cause; check for intensities \
          that differ by many orders of magnitude"
     )]
     NotConverged,
-    /// Too few resampled data sets had a curve.
+    /// Too few resampled data sets determine a curve.
     #[error(
         "only {usable} of {replicates} resampled data sets determine a curve; add cases, or give \
          the dispersion"
     )]
     Unstable {
-        /// Resampled sets with a curve.
+        /// Number of resampled data sets with a curve.
         usable: usize,
-        /// All of them.
+        /// Number of resampled data sets.
         replicates: usize,
     },
 }
 
-/// A fitted curve and how sure it is.
+/// A fitted curve and its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
     /// Median and dispersion.
     pub curve: Lognormal,
     /// Standard error of `ln θ`.
     pub median_error: f64,
-    /// Standard error of `ln β`; zero where the dispersion was given.
+    /// Standard error of `ln β`; zero if the dispersion was given.
     pub dispersion_error: f64,
     /// Covariance of `ln θ` and `ln β`.
     pub covariance: f64,
     /// Logarithm of the likelihood, without binomial coefficients; see [`Fit::ln_likelihood_of`].
     pub ln_likelihood: f64,
-    /// How many parameters were fitted: 1 or 2.
+    /// Number of fitted parameters: 1 or 2.
     pub parameters: usize,
 }
 
 impl Fit {
-    /// The logarithm of the likelihood of counts, with their binomial coefficients (Baker 2015,
+    /// Returns the log-likelihood of counts, with their binomial coefficients (Baker 2015,
     /// eq. 9).
     pub fn ln_likelihood_of(&self, stripes: &[Stripe]) -> f64 {
         let coefficients: f64 =
@@ -119,32 +119,32 @@ impl Fit {
         self.ln_likelihood + coefficients
     }
 
-    /// The interval of the median at a confidence level, from its standard error.
+    /// Returns the interval of the median at a confidence level, from its standard error.
     pub fn median_interval(&self, level: f64) -> Interval {
         around(self.curve.median, self.median_error, level)
     }
 
-    /// The interval of the dispersion at a confidence level, from its standard error.
+    /// Returns the interval of the dispersion at a confidence level, from its standard error.
     pub fn dispersion_interval(&self, level: f64) -> Interval {
         around(self.curve.dispersion, self.dispersion_error, level)
     }
 }
 
-/// A positive value times and over `exp(z error)`.
+/// Returns a positive value divided and multiplied by `exp(z error)`.
 fn around(value: f64, error: f64, level: f64) -> Interval {
     let reach = exp(-normal_quantile(0.5 * (1.0 - level)) * error);
     Interval { low: value / reach, high: value * reach }
 }
 
 /// Fits a curve to evidence: `z = (ln x − ln θ)/β` is the score of an intensity, and the likelihood
-/// of each observation is the chance, or the density, of its capacity.
+/// of each observation is the probability, or the density, of its capacity.
 ///
 /// For counts this is the fit of Baker (2015), for capacities that of a normal distribution to
 /// their logarithms, with `n` and not `n − 1` below the sum of squares ([`moments`] has that).
 /// Standard errors are those of the observed information and take the cases as independent.
 ///
 /// # Errors
-/// A [`FitError`] when the evidence does not determine a curve.
+/// A [`FitError`] if the evidence does not determine a curve.
 pub fn fit(evidence: &[Evidence], dispersion: Dispersion) -> Result<Fit, FitError> {
     check(evidence)?;
     existence(evidence, dispersion)?;
@@ -189,13 +189,13 @@ fn fixed(evidence: &[Evidence], beta: f64) -> Result<Fit, FitError> {
     })
 }
 
-/// The top over intercept `a = −ln θ/β` and slope `b = 1/β`.
+/// Maximizes the likelihood over intercept `a = −ln θ/β` and slope `b = 1/β`.
 pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     let start = [-middle(evidence), 1.0];
-    // Started from a shape that is too narrow for nobody: β = 1 about the middle.
+    // Starts from β = 1 about the middle, wide enough for any data.
     let top = free_likelihood(evidence).top(start).ok_or(FitError::NotConverged)?;
     let [intercept, slope] = top.parameters;
-    // A slope so slight that the median is beyond all numbers is none.
+    // A slope so small that the median overflows counts as none.
     let median = exp(-intercept / slope);
     if slope > 0.0 && median > 0.0 && median.is_finite() {
         Ok(top)
@@ -204,17 +204,17 @@ pub(crate) fn top_free(evidence: &[Evidence]) -> Result<Top<2>, FitError> {
     }
 }
 
-/// Likelihood over `(a, b)`: `z = a + b ln x`.
+/// Returns the likelihood over `(a, b)`: `z = a + b ln x`.
 fn free_likelihood(evidence: &[Evidence]) -> Likelihood<2> {
     likelihood(evidence, Some(1), 0.0, |u| Score { offset: 0.0, row: [1.0, u] })
 }
 
-/// Likelihood over `a`: `z = a + ln x/β`.
+/// Returns the likelihood over `a`: `z = a + ln x/β`.
 pub(crate) fn fixed_likelihood(evidence: &[Evidence], beta: f64) -> Likelihood<1> {
     likelihood(evidence, None, -ln(beta), |u| Score { offset: u / beta, row: [1.0] })
 }
 
-/// The likelihood of evidence where `score` tells `z` from `ln x`; `ln_slope` is the logarithm of a
+/// Returns the likelihood of evidence, where `score` gives `z` for `ln x`; `ln_slope` is the logarithm of a
 /// slope that is not a parameter.
 pub(crate) fn likelihood<const N: usize>(
     evidence: &[Evidence],
@@ -232,7 +232,7 @@ pub(crate) fn likelihood<const N: usize>(
     Likelihood { terms, slope }
 }
 
-/// The mean of the logarithms of all intensities.
+/// Returns the mean of the logarithms of all intensities.
 fn middle(evidence: &[Evidence]) -> f64 {
     let (mut sum, mut weight) = (0.0, 0.0);
     for item in evidence {
@@ -248,11 +248,11 @@ fn middle(evidence: &[Evidence]) -> f64 {
     sum / weight
 }
 
-/// Whether the likelihood has a top at a positive, finite dispersion.
+/// Checks that the likelihood has a maximum at a positive, finite dispersion.
 ///
-/// It has none where one single capacity agrees with all evidence, since the dispersion then
-/// shrinks to nothing, nor where the likelihood falls from `b = 1/β = 0` on, since failure then
-/// becomes less likely with intensity; both are exact, as the likelihood is concave.
+/// It has none if a single capacity agrees with all evidence, since the dispersion then tends to zero, nor
+/// if the likelihood decreases from `b = 1/β = 0` on, since failure then becomes less likely with intensity;
+/// both criteria are exact, as the likelihood is concave.
 fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitError> {
     let (mut above, mut below) = (0.0_f64, f64::INFINITY);
     let (mut largest, mut smallest) = (0.0_f64, f64::INFINITY);
@@ -303,7 +303,7 @@ fn existence(evidence: &[Evidence], dispersion: Dispersion) -> Result<(), FitErr
     Ok(())
 }
 
-/// Median and dispersion of exact capacities by their moments: `ln θ` the mean of the logarithms,
+/// Estimates median and dispersion of exact capacities by moments: `ln θ` is the mean of the logarithms,
 /// `β` their sample standard deviation with `n − 1` (Baker 2015, eqs. 2 and 3).
 ///
 /// # Errors

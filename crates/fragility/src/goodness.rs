@@ -1,4 +1,4 @@
-//! Whether a fitted curve describes the data.
+//! Goodness of fit of a fitted curve.
 
 use crate::bootstrap::drawn;
 use crate::curve::Lognormal;
@@ -6,24 +6,24 @@ use crate::evidence::{Stripe, evidence};
 use crate::fit::{Dispersion, Fit, FitError, fit, moments};
 use crate::math::{chi_square_above, exp, ln, normal, normal_quantile};
 
-/// Counts against a curve.
+/// Goodness of fit of counts to a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goodness {
-    /// Twice the logarithm of the likelihood of the raw fractions over that of the curve, over all
+    /// Twice the logarithm of the likelihood ratio of the raw fractions to the curve, over all
     /// stripes.
     pub deviance: f64,
     /// Sum of squared residuals over their binomial variance, over the pooled groups.
     pub pearson: f64,
-    /// Groups after neighbors were pooled until each expects at least one failure and one survival.
+    /// Number of groups, after pooling neighbors until each expects at least one failure and one survival.
     pub groups: usize,
-    /// Groups less fitted parameters.
+    /// Degrees of freedom: groups minus fitted parameters.
     pub freedom: usize,
-    /// The chance of so large a `pearson` if the curve is true; 1 without freedom, which says
-    /// nothing.
+    /// The probability of a `pearson` at least as large if the curve is true; 1 without degrees of freedom,
+    /// which is no evidence.
     pub p: f64,
 }
 
-/// Twice the logarithm of the likelihood ratio of raw fractions to given chances.
+/// Returns twice the logarithm of the likelihood ratio of raw fractions to given probabilities.
 pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64 {
     // x ln(x/y), zero at x = 0.
     let part = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * ln(x / y) };
@@ -37,10 +37,10 @@ pub(crate) fn deviance(stripes: &[Stripe], chance: impl Fn(usize) -> f64) -> f64
         .sum()
 }
 
-/// Pearson's test of counts against a fitted curve, in groups of neighboring stripes as Hosmer and
+/// Computes Pearson's test of counts against a fitted curve, in groups of neighboring stripes as Hosmer and
 /// Lemeshow (1980), and the deviance.
 ///
-/// Cases must be independent: counts in which the same records return at every level scatter less
+/// Cases must be independent: counts that reuse the same records at every level scatter less
 /// than binomially, and the test is then too lenient.
 pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     let mut sorted = stripes.to_vec();
@@ -48,8 +48,8 @@ pub fn goodness(stripes: &[Stripe], found: &Fit) -> Goodness {
     goodness_in_bins(&sorted.iter().map(|stripe| vec![*stripe]).collect::<Vec<_>>(), found)
 }
 
-/// The same over bins of cases of different intensities, in ascending order: what a bin expects is the sum
-/// over its cases, since a curve bends within it.
+/// Like [`goodness`], over bins of cases of different intensities in ascending order: the expectation of a bin is
+/// the sum over its cases, since the curve bends within it.
 pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     let chance = |s: &Stripe| found.curve.probability(s.intensity);
     // Cases, failures, expected failures, variance.
@@ -85,11 +85,11 @@ pub fn goodness_in_bins(bins: &[Vec<Stripe>], found: &Fit) -> Goodness {
     }
 }
 
-/// The chance of so large a deviance if the fitted curve is true, by drawing counts from it and
-/// fitting each draw again: right for small counts, where χ² is not.
+/// Estimates the probability of a deviance at least as large if the fitted curve is true, by sampling counts
+/// from it and fitting each sample: valid for small counts, where χ² is not.
 ///
 /// # Errors
-/// As [`fit`], or when fewer than half of the draws determine a curve.
+/// As [`fit`], or if fewer than half of the samples determine a curve.
 pub fn goodness_by_simulation(
     stripes: &[Stripe],
     dispersion: Dispersion,
@@ -116,18 +116,18 @@ pub fn goodness_by_simulation(
     Ok((worse + 1) as f64 / (usable + 1) as f64)
 }
 
-/// Capacities against a lognormal distribution.
+/// Test of capacities against a lognormal distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normality {
-    /// Largest distance of the distribution of the capacities from the fitted one (Lilliefors
+    /// Largest distance of the empirical distribution of the capacities from the fitted one (Lilliefors
     /// 1967).
     pub distance: f64,
-    /// The chance of so large a distance if capacities are lognormal.
+    /// The probability of a distance at least as large if capacities are lognormal.
     pub p: f64,
 }
 
-/// Lilliefors's test whether exact capacities are lognormal with a median and dispersion of their
-/// own; its distribution does not depend on these and is drawn here.
+/// Computes Lilliefors's test that exact capacities are lognormal with unknown median and dispersion;
+/// its distribution does not depend on these and is simulated.
 ///
 /// # Errors
 /// As [`moments`].

@@ -1,8 +1,8 @@
-//! Hazard: how often a site is shaken how hard, and what comes of it.
+//! Seismic hazard of a site, and its integration with fragility or loss.
 
 use crate::math::{exp, ln};
 
-/// Why a table is not a hazard curve.
+/// The reason why a table is not a hazard curve.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum HazardError {
     /// Fewer than two rows.
@@ -13,9 +13,9 @@ pub enum HazardError {
     Invalid {
         /// Row, from 0.
         row: usize,
-        /// Which of the two.
+        /// The invalid quantity.
         what: &'static str,
-        /// What is there.
+        /// Value found.
         found: f64,
     },
     /// Intensities out of order.
@@ -28,7 +28,7 @@ pub enum HazardError {
         row: usize,
         /// The intensity of the row before.
         before: f64,
-        /// What is there.
+        /// Value found.
         found: f64,
     },
     /// Rates that rise.
@@ -42,45 +42,44 @@ pub enum HazardError {
         row: usize,
         /// The rate of the row before.
         before: f64,
-        /// What is there.
+        /// Value found.
         found: f64,
     },
 }
 
-/// Annual rate at which each intensity is exceeded at a site.
+/// Annual rate of exceedance of each intensity at a site.
 ///
-/// Between rows `ln λ` is linear in `ln x`. Outside of the table nothing is made up: shaking
-/// weaker than the first row is taken to do nothing, and for shaking stronger than the last row
-/// results come as bounds ([`Rate`]).
+/// Between rows `ln λ` is linear in `ln x`. The table is not extrapolated: shaking weaker than the first row
+/// is taken to have no effect, and for shaking stronger than the last row results are bounds ([`Rate`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hazard {
     rows: Vec<(f64, f64)>,
 }
 
-/// An annual rate, with what the end of the hazard table leaves open.
+/// An annual rate, bounded for the intensities beyond the hazard table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// A year, if shaking beyond the last row did no more than that of the last row.
+    /// Rate (1/year) if shaking beyond the last row has the effect of the last row.
     pub low: f64,
-    /// A year, if shaking beyond the last row did the worst.
+    /// Rate (1/year) if shaking beyond the last row has the worst effect.
     pub high: f64,
-    /// What shaking of the intensity of the first row does: where it is not small, weaker and more
+    /// Effect of shaking of the intensity of the first row: if not small, weaker and more
     /// frequent shaking matters and the table begins too high.
     pub at_first: f64,
 }
 
-/// A share of a rate by intensity.
+/// Contribution of a range of intensities to a rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
-    /// Intensities from here.
+    /// Lower intensity.
     pub from: f64,
-    /// To here.
+    /// Upper intensity.
     pub to: f64,
-    /// A year.
+    /// Rate (1/year).
     pub rate: f64,
 }
 
-/// Abscissas and weights of Gauss and Legendre's five points on −1 to 1.
+/// Abscissas and weights of five-point Gauss–Legendre quadrature on −1 to 1.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -89,12 +88,12 @@ const GAUSS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// Width of the pieces of an integral in `ln x`; a fragility of dispersion 0.05 is still
+/// Width of the integration intervals in `ln x`; a fragility of dispersion 0.05 is still
 /// integrated to 10⁻⁹.
 const PIECE: f64 = 0.01;
 
 impl Hazard {
-    /// A curve through rows of intensity and annual rate of exceedance (1/year), ascending in
+    /// Creates a curve through rows of intensity and annual rate of exceedance (1/year), in ascending order of
     /// intensity.
     ///
     /// # Errors
@@ -121,12 +120,12 @@ impl Hazard {
         Ok(Self { rows: rows.to_vec() })
     }
 
-    /// The table.
+    /// Returns the rows of the table.
     pub fn rows(&self) -> &[(f64, f64)] {
         &self.rows
     }
 
-    /// Annual rate at which an intensity is exceeded; `None` outside of the table.
+    /// Returns the annual rate of exceedance of an intensity; `None` outside of the table.
     pub fn exceedance(&self, intensity: f64) -> Option<f64> {
         let after = self.rows.partition_point(|(x, _)| *x < intensity);
         let next = *self.rows.get(after)?;
@@ -138,7 +137,7 @@ impl Hazard {
         Some(before.1 * exp(exponent * ln(intensity / before.0)))
     }
 
-    /// The intensity of a mean return period (years) of exceedance; `None` outside of the table.
+    /// Returns the intensity of a mean return period (years) of exceedance; `None` outside of the table.
     pub fn intensity(&self, return_period: f64) -> Option<f64> {
         let rate = 1.0 / return_period;
         let pair = self.rows.windows(2).find(|pair| pair[0].1 >= rate && rate >= pair[1].1)?;
@@ -149,8 +148,8 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// The integral of what happens at each intensity over the rate of that intensity, from one to
-    /// another, both within the table.
+    /// Integrates an effect over the rate density of intensity, between two intensities within
+    /// the table.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {
@@ -161,7 +160,7 @@ impl Hazard {
             }
             // λ(u) = r0 exp(−k (u − u0)), and −dλ = k λ du.
             let (u0, k) = (ln(x0), -ln(r1 / r0) / ln(x1 / x0));
-            // Steep hazard is cut finer, as well as steep fragility.
+            // Steep hazard needs finer intervals, as does steep fragility.
             let pieces = ((high - low) / PIECE * (1.0 + 0.02 * k)).ceil().clamp(1.0, 1e6);
             let width = (high - low) / pieces;
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≤ 1e6")]
@@ -182,14 +181,14 @@ impl Hazard {
         [self.rows[0], self.rows[self.rows.len() - 1]]
     }
 
-    /// Annual rate of an event whose chance at an intensity is `probability`, such as failure
+    /// Returns the annual rate of an event with the given probability at each intensity, such as failure
     /// (Cornell and Krawinkler 2000).
     pub fn rate_of(&self, probability: impl Fn(f64) -> f64) -> Rate {
         self.expected(1.0, probability)
     }
 
-    /// Expected consequence a year, where shaking of an intensity has an expected `consequence`,
-    /// such as barrels lost, that never exceeds `worst`.
+    /// Returns the expected annual consequence, where `consequence` is the expected value at an intensity,
+    /// such as barrels lost, and never exceeds `worst`.
     pub fn expected(&self, worst: f64, consequence: impl Fn(f64) -> f64) -> Rate {
         let [(first, _), (last, beyond)] = self.ends();
         let within = self.integral(first, last, &consequence);
@@ -200,8 +199,8 @@ impl Hazard {
         }
     }
 
-    /// Where the rate comes from: its parts between the given intensities, those outside of the
-    /// table left out.
+    /// Deaggregates the rate: its parts between the given intensities, without those outside of the
+    /// table.
     pub fn contributions(
         &self,
         edges: &[f64],
@@ -216,8 +215,8 @@ impl Hazard {
     }
 }
 
-/// The chance of at least one event within some years at an annual rate, for events that do not
-/// know of each other (Poisson).
+/// Returns the probability of at least one event within a number of years at an annual rate, for
+/// independent events (Poisson).
 pub fn chance_within(years: f64, annual_rate: f64) -> f64 {
     -libm::expm1(-annual_rate * years)
 }

@@ -1,4 +1,4 @@
-//! Curves of incremental dynamic analysis: demand against intensity, one a record.
+//! Curves of incremental dynamic analysis: demand against intensity, one per record.
 
 use crate::math::quantile;
 
@@ -10,8 +10,8 @@ pub struct Ida {
 }
 
 impl Ida {
-    /// A curve through runs in any order; points whose intensity is not positive and finite, or
-    /// whose demand is not a number, are left out.
+    /// Creates a curve through runs in any order; points whose intensity is not positive and finite, or
+    /// whose demand is NaN, are omitted.
     pub fn new(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let sound = |(x, d): &(f64, f64)| x.is_finite() && *x > 0.0 && !d.is_nan();
         let mut points: Vec<(f64, f64)> = points.into_iter().filter(sound).collect();
@@ -26,17 +26,17 @@ impl Ida {
         Self { points }
     }
 
-    /// The runs, ascending.
+    /// Returns the runs, in ascending order of intensity.
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
 
-    /// The demand at an intensity.
+    /// Returns the demand at an intensity.
     ///
     /// Linear between runs, and from rest (zero at zero) to the first. Between a run that stood
-    /// and one that collapsed, in either order, the change is taken at their geometric middle, and
-    /// the demand on the standing side held. Above the last run it is infinite if that collapsed,
-    /// since analyses end there, and `None`, unknown, if it stood.
+    /// and one that collapsed, in either order, collapse begins at their geometric mean, and
+    /// the demand of the standing run holds up to it. Above the last run the demand is infinite if that
+    /// collapsed, since analyses end there, and `None`, unknown, if it stood.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);
         let before = after.checked_sub(1).map_or((0.0, 0.0), |i| self.points[i]);
@@ -60,9 +60,9 @@ impl Ida {
         })
     }
 
-    /// The demand that a share of records stays below at an intensity, infinite where too many have
-    /// collapsed; `None` where some record says nothing, so that no record drops out of a curve in
-    /// silence. A record that came back counts as standing where it stands.
+    /// Returns the demand that a fraction of the records stays below at an intensity, infinite if too many have
+    /// collapsed; `None` if the demand of any record is unknown, so that no record is silently excluded.
+    /// A record that resurrects counts as standing where it stands.
     pub fn fractile(all: &[Self], intensity: f64, share: f64) -> Option<f64> {
         let mut demands =
             all.iter().map(|ida| ida.demand(intensity)).collect::<Option<Vec<_>>>()?;

@@ -1,42 +1,42 @@
-//! Variance-based sensitivity: which input moves a result, alone and together with others.
+//! Variance-based sensitivity indices: influence of each input, alone and in interaction.
 
 use crate::math::{exp, student_quantile};
 use crate::proportion::{Interval, unobserved};
 
-/// Fewest blocks from which an interval is made.
+/// Smallest number of blocks that gives an interval.
 pub const FEWEST_BLOCKS: usize = 16;
 
-/// What one input does to the variance of a result, with intervals.
+/// Sensitivity indices of one input, with intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Index {
-    /// The share of the variance that goes when the input is known (Sobol' 1993), cut to 0 and 1.
+    /// First-order index: the fraction of the variance removed if the input is known (Sobol' 1993), clamped to 0 to 1.
     pub first: f64,
-    /// Its interval; 0 to 1 where the blocks are too few to say more.
+    /// Its interval; 0 to 1 with fewer than [`FEWEST_BLOCKS`] blocks.
     pub first_interval: Interval,
-    /// The share that stays when everything but the input is known: what it does alone and in company, cut to 0 and 1.
+    /// Total index: the fraction of the variance left if all other inputs are known, including interactions; clamped to
+    /// 0 to 1.
     pub total: f64,
-    /// Its interval; 0 to 1 where the blocks are too few to say more.
+    /// Its interval; 0 to 1 with fewer than [`FEWEST_BLOCKS`] blocks.
     pub total_interval: Interval,
 }
 
-/// First and total indices of every input from blocks `[f(A), f(B), f(A with input 1 of B), …]`.
+/// Computes first and total indices of every input from blocks `[f(A), f(B), f(A with input 1 of B), …]`.
 ///
 /// ```text
 /// first  = mean(f(B) (f(AᵢB) − f(A))) / V        Saltelli et al. 2010, table 2 (b)
 /// total  = mean((f(A) − f(AᵢB))²) / 2V           Jansen 1999
 /// ```
 ///
-/// `V` is the variance over all `f(A)` and `f(B)`, and results are taken about their mean.
-/// Intervals are the delete-one jackknife of the blocks with Student's t of one degree of freedom less than there are
-/// blocks, for the total on whichever of the linear and the logarithmic scale reaches further.
-/// Where an input changes the result in half of the blocks at most, its changes are rare events, and the interval also
-/// holds what the index would be if the changes that blocks like these may have missed were as large as any two results
-/// differ.
-/// No end lies outside 0 to 1.
-/// Simulated coverage is in `tests/indices.rs`: 89 % and more for results of two values, counts and continuous ones,
+/// `V` is the variance over all `f(A)` and `f(B)`, and results are centered on their mean.
+/// Intervals are the delete-one jackknife of the blocks with Student's t, with one degree of freedom fewer than blocks;
+/// for the total index on the linear or the logarithmic scale, whichever is wider.
+/// If an input changes the result in at most half of the blocks, its changes are rare events, and the interval also
+/// covers the index that would follow if unobserved blocks changed it by the full range of the results.
+/// Bounds are clamped to 0 to 1.
+/// Simulated coverage is in `tests/claims.rs`: 89 % and more for results of two values, counts and continuous ones,
 /// from 16 to 256 blocks.
 ///
-/// `None` for fewer than two blocks, blocks of different length, and results that do not vary.
+/// `None` for fewer than two blocks, blocks of different length, and constant results.
 pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
     let inputs = blocks.first()?.len().checked_sub(2).filter(|inputs| *inputs > 0)?;
     if blocks.len() < 2 || blocks.iter().any(|block| block.len() != inputs + 2) {
@@ -49,7 +49,7 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         sums.add(block, middle, 1.0);
     }
     let (variance, indices) = (sums.variance(middle)?, sums.indices(middle)?);
-    // How the indices change without one of the blocks, squared and added up; none where the others do not vary.
+    // Sum of squared changes of the indices without one block; `None` if the remaining results are constant.
     let mut squares = Some(vec![[0.0; 2]; inputs]);
     for block in blocks {
         let mut others = sums.clone();
@@ -79,12 +79,12 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         let half = reach * error;
         let (mut low, mut high) = (here - half, here + half);
         if which == TOTAL && here > 0.0 {
-            // A mean of squares that few blocks make up is skewed.
+            // A mean of squares over few blocks is skewed.
             high = high.max(here * exp((half / here).min(50.0)));
         }
         let unchanged = blocks.iter().filter(|block| block[0] == block[2 + input]).count();
         if 2 * unchanged >= count {
-            // Most by which one block can move the index: all of the range squared for the total; half of it for the
+            // Largest change of the index by one block: the square of the range for the total; half of it for the
             // first, whose other factor is a distance from the mean.
             let most = range * range / (2.0 * variance);
             let (below, above) = if which == TOTAL { (0.0, most) } else { (-most, most) };
@@ -102,29 +102,29 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
     Some((0..inputs).map(index).collect())
 }
 
-/// Places of the two indices of an input.
+/// Positions of the two indices of an input.
 const FIRST: usize = 0;
 const TOTAL: usize = 1;
 
-/// Sums over blocks, of results about the mean of all, from which a block can be taken again.
+/// Sums over blocks of centered results, from which a block can be removed again.
 #[derive(Clone)]
 struct Sums {
     count: f64,
-    /// Of `f(A)` and `f(B)`.
+    /// Sum of `f(A)` and `f(B)`.
     results: f64,
-    /// Of their squares.
+    /// Sum of their squares.
     squares: f64,
-    /// Of every input: of `f(AᵢB) − f(A)`, of its product with `f(B)`, and of its square.
+    /// For every input, sums of `f(AᵢB) − f(A)`, of its product with `f(B)`, and of its square.
     inputs: Vec<[f64; 3]>,
 }
 
 impl Sums {
-    /// Of no blocks.
+    /// Creates the sums of no blocks.
     fn empty(inputs: usize) -> Self {
         Self { count: 0.0, results: 0.0, squares: 0.0, inputs: vec![[0.0; 3]; inputs] }
     }
 
-    /// Adds a block `sign` times, whose results are taken about a middle.
+    /// Adds a block `sign` times, its results centered on `middle`.
     fn add(&mut self, block: &[f64], middle: f64, sign: f64) {
         let (a, b) = (block[0] - middle, block[1] - middle);
         self.count += sign;
@@ -138,7 +138,7 @@ impl Sums {
         }
     }
 
-    /// The variance of the results; none where rounding alone explains it.
+    /// Returns the variance of the results; `None` if rounding alone explains it.
     fn variance(&self, middle: f64) -> Option<f64> {
         let mean = self.results / (2.0 * self.count);
         let variance = (self.squares - mean * self.results) / (2.0 * self.count - 1.0);
@@ -146,7 +146,7 @@ impl Sums {
         (variance > rounding && variance > 0.0).then_some(variance)
     }
 
-    /// First and total index of every input; none where the results do not vary.
+    /// Returns first and total index of every input; `None` for constant results.
     fn indices(&self, middle: f64) -> Option<Vec<[f64; 2]>> {
         let (variance, n) = (self.variance(middle)?, self.count);
         let mean = self.results / (2.0 * n);

@@ -1,8 +1,8 @@
 //! Statistics of failure against intensity.
 //!
-//! The crate knows nothing of what fails or why. It is told where capacities lie, fits
-//! lognormal fragility curves to that, says how sure they are, shows where data contradict the
-//! fit, and folds curves with the hazard of a site.
+//! The crate is independent of the kind of structure and failure. From observed capacities it fits
+//! lognormal fragility curves, quantifies their uncertainty, tests the fit against the data, and
+//! integrates curves with the hazard of a site.
 //!
 //! # From counts to a rate
 //!
@@ -23,25 +23,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What counts as evidence
+//! # Evidence
 //!
-//! All fits maximize one likelihood. Every observation says where a capacity lies: *at* an
-//! intensity, *below* it (failed there), *above* it (stood there) or *between* two. Counts at
+//! All fits maximize one likelihood. Every observation locates a capacity: *at* an
+//! intensity, *below* it (failed there), *above* it (stood there) or *between* two. This covers counts at
 //! fixed intensities, capacities from incremental dynamic analysis, bracketed capacities and
-//! records that never fail below the largest intensity are the same thing to it.
+//! records that never fail below the largest intensity.
 //!
-//! # Refusals
+//! # Data without a curve
 //!
-//! Data that do not determine a curve get a [`FitError`] that says why: nothing failed, all failed,
+//! Data that do not determine a curve give a [`FitError`] with the reason: nothing failed, all failed,
 //! failures and survivals do not overlap, or failure does not become likelier with intensity.
 //! There is no penalty, no prior and no clipping that would turn them into a plausible number.
 //!
-//! # Chance
+//! # Random numbers
 //!
-//! Resampling takes its uniform numbers from the caller (`FnMut() -> f64`), so that the generator,
-//! the seed and the bits are the caller's.
+//! Resampling takes uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator
+//! and the seed.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod bootstrap;

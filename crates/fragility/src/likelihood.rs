@@ -1,8 +1,8 @@
-//! The likelihood of evidence, its slopes, and the way to its top.
+//! The likelihood of evidence, its derivatives, and its maximization.
 //!
 //! With `z = offset + row · p` linear in the parameters, every kind of evidence has a likelihood
 //! whose logarithm is concave in `p` (Olsen 1978 for exact and censored values; probit for failures
-//! and survivals), so that Newton's method with shortened steps finds the only top there is.
+//! and survivals), so that damped Newton steps find the only maximum.
 
 use crate::math::{LN_ROOT_TAU, ln, ln_normal, mills, normal_between, normal_density};
 
@@ -19,7 +19,7 @@ impl<const N: usize> Score<N> {
     }
 }
 
-/// One kind of knowledge of a standard normal variable `Z`.
+/// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Known<const N: usize> {
     /// `Z = z`, with the logarithm of `∂z/∂x` in the density: `ln slope − ln x`.
@@ -32,11 +32,11 @@ pub(crate) enum Known<const N: usize> {
     Between(Score<N>, Score<N>),
 }
 
-/// A weighted sum of logarithms.
+/// A weighted sum of log-likelihoods.
 #[derive(Clone, Debug)]
 pub(crate) struct Likelihood<const N: usize> {
     pub terms: Vec<(Known<N>, f64)>,
-    /// Which parameter is the slope `1/β`, if any is.
+    /// Index of the parameter that is the slope `1/β`, if any.
     pub slope: Option<usize>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Shape<const N: usize> {
 impl<const N: usize> Shape<N> {
     const ZERO: Self = Self { value: 0.0, gradient: [0.0; N], curvature: [[0.0; N]; N] };
 
-    /// Adds what depends on one `z`: first and second derivative with respect to it.
+    /// Adds the derivatives of a term that depends on one `z`, from its first and second derivative.
     fn push(&mut self, score: &Score<N>, first: f64, second: f64) {
         for i in 0..N {
             self.gradient[i] += first * score.row[i];
@@ -62,21 +62,21 @@ impl<const N: usize> Shape<N> {
     }
 }
 
-/// Where a likelihood is highest.
+/// The maximum of a likelihood.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Top<const N: usize> {
     pub parameters: [f64; N],
     pub shape: Shape<N>,
 }
 
-/// Gradients smaller than this, measured in standard errors, are none.
+/// Gradients below this, in standard errors, count as zero.
 const FLAT: f64 = 1e-9;
 
-/// Newton steps; five to ten are needed.
+/// Largest number of Newton steps; five to ten suffice.
 const STEPS: usize = 200;
 
 impl<const N: usize> Likelihood<N> {
-    /// One term with its derivatives.
+    /// Returns one term with its derivatives.
     pub(crate) fn term(&self, known: &Known<N>, weight: f64, p: &[f64; N]) -> Shape<N> {
         let mut shape = Shape::ZERO;
         match known {
@@ -128,7 +128,7 @@ impl<const N: usize> Likelihood<N> {
         shape
     }
 
-    /// The sum of all terms.
+    /// Returns the sum of all terms with its derivatives.
     pub(crate) fn shape(&self, p: &[f64; N]) -> Shape<N> {
         let mut sum = Shape::ZERO;
         for (known, weight) in &self.terms {
@@ -144,7 +144,7 @@ impl<const N: usize> Likelihood<N> {
         sum
     }
 
-    /// The top, from a start of finite likelihood; `None` when there is none to be found.
+    /// Maximizes from a start of finite likelihood; `None` if there is no maximum.
     pub(crate) fn top(&self, start: [f64; N]) -> Option<Top<N>> {
         let mut parameters = start;
         let mut shape = self.shape(&parameters);
@@ -164,7 +164,7 @@ impl<const N: usize> Likelihood<N> {
                     tried[i] += length * step[i];
                 }
                 let there = self.shape(&tried);
-                // Near the top the rise is lost in rounding, and the whole step is right.
+                // Near the maximum the increase is lost in rounding, and the full step is accepted.
                 let enough = 1e-4 * length * rise - 1e-13 * shape.value.abs();
                 if there.value.is_finite() && there.value - shape.value >= enough {
                     parameters = tried;
@@ -221,7 +221,7 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Op
     Some(b)
 }
 
-/// The inverse of minus a matrix of second derivatives: the covariance of the parameters.
+/// Returns the inverse of the negative Hessian: the covariance of the parameters.
 pub(crate) fn covariance<const N: usize>(curvature: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let information = negated(curvature);
     let mut inverse = [[0.0; N]; N];

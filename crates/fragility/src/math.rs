@@ -15,7 +15,7 @@ pub(crate) fn exp(x: f64) -> f64 {
 /// `ln √(2π)`.
 pub(crate) const LN_ROOT_TAU: f64 = 0.918_938_533_204_672_7;
 
-/// Below this, `Φ` is taken from its asymptotic series, since `erfc` underflows at −37.5.
+/// Below this, `Φ` is evaluated by its asymptotic series, since `erfc` underflows at −37.5.
 const DEEP: f64 = -30.0;
 
 /// `1 − 1/z² + 3/z⁴ − …`, the series of `−z Φ(z)/φ(z)` for `z` far below zero (Abramowitz and
@@ -25,17 +25,17 @@ fn deep_series(z: f64) -> f64 {
     1.0 - t * (1.0 - t * (3.0 - t * (15.0 - t * (105.0 - t * 945.0))))
 }
 
-/// Standard normal density `φ(z)`.
+/// Returns the standard normal density `φ(z)`.
 pub fn normal_density(z: f64) -> f64 {
     exp(-0.5 * z * z - LN_ROOT_TAU)
 }
 
-/// Standard normal distribution `Φ(z)`, accurate in the lower tail.
+/// Returns the standard normal distribution `Φ(z)`, accurate in the lower tail.
 pub fn normal(z: f64) -> f64 {
     0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
 }
 
-/// `ln Φ(z)` for any `z`.
+/// Returns `ln Φ(z)` for any `z`.
 pub(crate) fn ln_normal(z: f64) -> f64 {
     if z < DEEP {
         -0.5 * z * z - LN_ROOT_TAU - ln(-z) + ln(deep_series(z))
@@ -46,17 +46,17 @@ pub(crate) fn ln_normal(z: f64) -> f64 {
     }
 }
 
-/// `φ(z)/Φ(z)`, the slope of `ln Φ`.
+/// Returns `φ(z)/Φ(z)`, the derivative of `ln Φ`.
 pub(crate) fn mills(z: f64) -> f64 {
     if z < DEEP { -z / deep_series(z) } else { normal_density(z) / normal(z) }
 }
 
-/// `Φ(high) − Φ(low)` without loss of digits in either tail.
+/// Returns `Φ(high) − Φ(low)` without loss of digits in either tail.
 pub(crate) fn normal_between(low: f64, high: f64) -> f64 {
     if low > 0.0 { normal(-low) - normal(-high) } else { normal(high) - normal(low) }
 }
 
-/// The `z` at which `Φ(z)` is a probability; infinite at 0 and 1, NaN outside.
+/// Returns the `z` at which `Φ(z)` equals a probability; infinite at 0 and 1, NaN outside.
 ///
 /// A rough start (Abramowitz and Stegun 1964, 26.2.23) is refined by Halley's method on `ln Φ` of
 /// the smaller tail, which keeps all digits down to the smallest probability.
@@ -85,7 +85,7 @@ pub fn normal_quantile(probability: f64) -> f64 {
     z
 }
 
-/// The chance that χ² with some degrees of freedom is at least `value`; 1 without freedom.
+/// Returns the probability that χ² with `freedom` degrees of freedom is at least `value`; 1 without any.
 pub fn chi_square_above(value: f64, freedom: usize) -> f64 {
     if freedom == 0 || value <= 0.0 {
         return 1.0;
@@ -96,13 +96,13 @@ pub fn chi_square_above(value: f64, freedom: usize) -> f64 {
     1.0 - (0.5 * value).inc_gamma(0.5 * freedom as f64)
 }
 
-/// The value that χ² with one degree of freedom stays below with a probability.
+/// Returns the quantile of χ² with one degree of freedom.
 pub(crate) fn chi_square_quantile_one(probability: f64) -> f64 {
     let z = normal_quantile(0.5 * (1.0 - probability));
     z * z
 }
 
-/// The chance that Student's `|T|` with some degrees of freedom is at least `|t|`.
+/// Returns the probability that Student's `|T|` with `freedom` degrees of freedom is at least `|t|`.
 pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     if freedom == 0 || t.is_nan() {
         return 1.0;
@@ -112,7 +112,7 @@ pub fn student_beyond(t: f64, freedom: usize) -> f64 {
     x.inc_beta(p, q, p.ln_beta(q))
 }
 
-/// The `t` within which (`−t` to `t`) Student's `T` lies with a probability; infinite without freedom.
+/// Returns the `t` such that Student's `T` lies within `−t` to `t` with a probability; infinite without freedom.
 ///
 /// From the incomplete beta function; above 1000 degrees of freedom, where that is slow and loses
 /// digits, the asymptotic series (Abramowitz and Stegun 1964, 26.7.5).
@@ -135,22 +135,22 @@ pub fn student_quantile(probability: f64, freedom: usize) -> f64 {
     (nu * (1.0 / x - 1.0)).sqrt()
 }
 
-/// The `x` at which the regularized incomplete beta function `I(p, q)` is a probability.
+/// Returns the `x` at which the regularized incomplete beta function `I(p, q)` equals a probability.
 pub(crate) fn beta_quantile(probability: f64, p: f64, q: f64) -> f64 {
     probability.inv_inc_beta(p, q, p.ln_beta(q))
 }
 
-/// `ln C(n, k)`.
+/// Returns `ln C(n, k)`.
 pub(crate) fn ln_choose(n: u32, k: u32) -> f64 {
     let ln_factorial = |n: u32| libm::lgamma(f64::from(n) + 1.0);
     ln_factorial(n) - ln_factorial(k) - ln_factorial(n - k)
 }
 
-/// The value below which a share of ascending values lies, by linear interpolation between order
-/// statistics (Hyndman and Fan 1996, type 7); infinite values are allowed.
+/// Returns the quantile of sorted values by linear interpolation between order statistics (Hyndman and
+/// Fan 1996, type 7); infinite values are allowed.
 ///
 /// # Panics
-/// When there are no values.
+/// Without values.
 pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let last = ascending.len() - 1;
     let place = share.clamp(0.0, 1.0) * last as f64;

@@ -1,29 +1,28 @@
-//! How well an intensity measure tells failure: its efficiency, and whether anything is left that
-//! another measure would tell.
+//! Efficiency and sufficiency of an intensity measure.
 
 use crate::Evidence;
 use crate::fit::{Dispersion, Fit, FitError, fit};
 use crate::likelihood::{Known, Likelihood, Score, solve};
 use crate::math::{chi_square_above, ln, student_beyond};
 
-/// Failure against one measure.
+/// Failure against one intensity measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// The curve over this measure. A small dispersion is an efficient measure.
+    /// The curve over this measure. An efficient measure has a small dispersion.
     pub fit: Fit,
-    /// The chance that a case which failed was shaken harder, by this measure, than one which
-    /// stood: 0.5 tells nothing, 1 everything (the area under the receiver's operating curve).
+    /// The probability that a failed case had a higher intensity than a standing one: 0.5 for no
+    /// discrimination, 1 for a perfect one (area under the ROC curve).
     pub concordance: f64,
-    /// The chance of so much improvement by a second measure if it told nothing more: small where
-    /// the measure alone is not sufficient. `None` where the second follows from the first.
+    /// The probability of an improvement by a second measure at least as large if it held no further
+    /// information: small if the first measure is not sufficient. `None` if the second follows from the first.
     pub sufficiency: Option<f64>,
 }
 
-/// Failures against a measure, and against it and a second one.
+/// Fits failures against a measure, alone and together with a second one.
 ///
-/// `cases` are `(intensity, failed)`, and `second` the other quantity of each case, such as another
+/// `cases` are `(intensity, failed)`, and `second` is another quantity of each case, such as another
 /// measure or the duration. Sufficiency is the likelihood-ratio test of the second in a probit
-/// regression on the logarithms of both, independent cases taken for granted.
+/// regression on the logarithms of both, which assumes independent cases.
 ///
 /// # Errors
 /// As [`fit`].
@@ -54,15 +53,15 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .collect();
     let b = 1.0 / alone.curve.dispersion;
     let both = Likelihood { terms, slope: Some(1) };
-    // Without a top the two together separate failures from survivals, which is all there is to
-    // gain: the likelihood then tends to one.
+    // Without a maximum the two measures separate failures from survivals completely: the likelihood then
+    // tends to one.
     let highest =
         both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
 }
 
-/// What is left of `y` after its straight line over `x`, over its standard deviation; `None` when
-/// nothing is.
+/// Returns the standardized residuals of the linear regression of `y` on `x`; `None` if
+/// they vanish.
 fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     let line = Line::through(x, y)?;
     let rest: Vec<f64> = x.iter().zip(y).map(|(x, y)| y - line.at(*x)).collect();
@@ -70,7 +69,7 @@ fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     (scale > 1e-9).then(|| rest.iter().map(|r| r / scale).collect())
 }
 
-/// The share of pairs, one failed and one standing, in which the failed has the higher intensity.
+/// Returns the fraction of pairs of a failed and a standing case in which the failed one has the higher intensity.
 fn concordance(cases: &[(f64, bool)]) -> f64 {
     let mut sorted = cases.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -94,20 +93,20 @@ fn concordance(cases: &[(f64, bool)]) -> f64 {
 pub struct Demanded {
     /// `b`.
     pub slope: f64,
-    /// Standard deviation of `ε`: a small one is an efficient measure (Luco and Cornell 2007).
+    /// Standard deviation of `ε`: small for an efficient measure (Luco and Cornell 2007).
     pub dispersion: f64,
-    /// `dispersion/b`, the scatter in terms of intensity, which also punishes measures that move
-    /// the demand little (Padgett et al. 2008).
+    /// `dispersion/b`, the scatter in terms of intensity, which also penalizes measures on which the
+    /// demand depends weakly (Padgett et al. 2008).
     pub proficiency: f64,
-    /// The chance of so large a dependence of `ε` on a second quantity if there were none.
+    /// The probability of a dependence of `ε` on a second quantity at least as large if there were none.
     pub sufficiency: Option<f64>,
-    /// Cases.
+    /// Number of cases.
     pub cases: usize,
 }
 
-/// Demands of cases that stood, each `(intensity, demand)`, both positive, against a measure, and
-/// what is left against a second quantity. `None` for fewer than three cases, for intensities all
-/// alike and for numbers that are not positive.
+/// Regresses demands of standing cases, each `(intensity, demand)`, both positive, on a measure, and the
+/// residuals on a second quantity. `None` for fewer than three cases, for equal intensities and for numbers
+/// that are not positive.
 pub fn demand_against(cases: &[(f64, f64)], second: Option<&[f64]>) -> Option<Demanded> {
     let sound = |x: f64| x.is_finite() && x > 0.0;
     if cases.len() < 3 || !cases.iter().all(|(x, d)| sound(*x) && sound(*d)) {
@@ -150,7 +149,7 @@ impl Line {
         }
         let n = x.len() as f64;
         let center = x.iter().sum::<f64>() / n;
-        // About the center the two equations do not mix, and digits are kept.
+        // Centering decouples the two equations and keeps digits.
         let (mut sxx, mut sxy, mut sy) = (0.0, 0.0, 0.0);
         for (x, y) in x.iter().zip(y) {
             sxx += (x - center) * (x - center);

@@ -1,18 +1,18 @@
-//! Competing modes of failure: who fails in one mode can fail in no other.
+//! Competing modes of failure: a failure in one mode precludes the others.
 
 use crate::likelihood::{Known, Likelihood, Score};
 use crate::math::{ln, normal};
 
-/// How failures divide among modes, over the intensity.
+/// Division of failures among modes, as a function of intensity.
 ///
 /// ```text
 /// s₁(x) = Φ(a₁ + b₁ ln x)                      of all failures
 /// s₂(x) = (1 − s₁(x)) Φ(a₂ + b₂ ln x)          of those that are left, and so on
 /// ```
 ///
-/// The last mode takes the rest, so that shares add up to one; times the chance of failure they are the
-/// cumulative incidence of each mode (Kalbfleisch and Prentice 2002, chapter 8), which may fall where
-/// another mode takes over, and never adds up to more than failure itself.
+/// The last mode takes the rest, so that shares add up to one; multiplied by the probability of failure they are
+/// the cumulative incidence of each mode (Kalbfleisch and Prentice 2002, chapter 8), which may decrease where
+/// another mode takes over, and never adds up to more than the probability of failure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shares {
     /// `a` and `b` of every mode but the last.
@@ -20,8 +20,8 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// The likeliest shares of failures, each `(intensity, mode)`, of modes numbered from 0; `None` where
-    /// they do not determine any, such as where an intensity divides two modes without overlap.
+    /// Fits the maximum-likelihood shares of failures, each `(intensity, mode)`, of modes numbered from 0; `None`
+    /// if they determine none, such as if an intensity separates two modes completely.
     pub fn fit(failures: &[(f64, usize)], modes: usize) -> Option<Self> {
         let mut splits = Vec::new();
         for mode in 0..modes.checked_sub(1)? {
@@ -45,7 +45,7 @@ impl Shares {
         Some(Self { splits })
     }
 
-    /// The share of every mode at an intensity.
+    /// Returns the share of every mode at an intensity.
     pub fn at(&self, intensity: f64) -> Vec<f64> {
         let mut left = 1.0;
         let mut shares: Vec<f64> = self
@@ -66,7 +66,7 @@ impl Shares {
 mod tests {
     use super::*;
 
-    /// Failures at quantiles of a known division into three modes.
+    /// Returns failures at quantiles of a known division into three modes.
     fn divided(truth: &Shares) -> Vec<(f64, usize)> {
         let mut failures = vec![];
         for i in 0..40 {

@@ -1,4 +1,4 @@
-//! Whether failure becomes likelier with intensity, as every fragility curve takes for granted.
+//! Tests whether failure becomes likelier with intensity, as every fragility curve assumes.
 
 use std::collections::BTreeMap;
 
@@ -6,41 +6,41 @@ use crate::bootstrap::drawn;
 use crate::evidence::Stripe;
 use crate::goodness::deviance;
 
-/// A stretch of intensities over which the raw fraction of failures falls.
+/// A range of intensities over which the raw fraction of failures falls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fall {
-    /// The stripe of the high fraction, at the lower intensity.
+    /// The stripe with the high fraction, at the lower intensity.
     pub from: Stripe,
-    /// The stripe of the low fraction, at the higher intensity.
+    /// The stripe with the low fraction, at the higher intensity.
     pub to: Stripe,
-    /// The chance of so clear a fall if failure never becomes less likely; independent cases taken
-    /// for granted.
+    /// The probability of a fall at least as clear if failure never becomes less likely, for independent
+    /// cases.
     pub p: f64,
 }
 
-/// Raw fractions against the nearest ones that never fall.
+/// Raw fractions compared with the nearest nondecreasing ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Monotony {
     /// The counts, in ascending order of intensity.
     pub stripes: Vec<Stripe>,
-    /// The likeliest chances that never fall with intensity (Ayer et al. 1955), one a stripe.
+    /// The maximum-likelihood nondecreasing probabilities (Ayer et al. 1955), one per stripe.
     pub isotonic: Vec<f64>,
     /// Twice the logarithm of the likelihood ratio of the raw fractions to these.
     pub deviance: f64,
-    /// The chance of so large a `deviance` if failure never becomes less likely.
+    /// The probability of a `deviance` at least as large if failure never becomes less likely.
     pub p: f64,
-    /// Where fractions fall, one for each pool of the isotonic chances, clear or not.
+    /// All falls of the fractions, one per pool of the isotonic probabilities, significant or not.
     pub falls: Vec<Fall>,
 }
 
 impl Monotony {
-    /// The falls that chance does not explain at a level of significance, such as 0.05.
+    /// Returns the falls that are significant at a level, such as 0.05.
     pub fn significant(&self, level: f64) -> impl Iterator<Item = &Fall> {
         self.falls.iter().filter(move |fall| fall.p < level)
     }
 }
 
-/// A pool of neighboring stripes of one chance.
+/// Adjacent stripes of one probability.
 struct Pool {
     first: usize,
     last: usize,
@@ -74,7 +74,7 @@ fn pools(stripes: &[Stripe]) -> Vec<Pool> {
     pools
 }
 
-/// The isotonic chances and the deviance of each pool, zero for single stripes.
+/// Returns the pools, the isotonic probabilities and the deviance of each pool, zero for single stripes.
 fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
     let pools = pools(stripes);
     let mut chances = Vec::with_capacity(stripes.len());
@@ -82,7 +82,7 @@ fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
     for pool in &pools {
         let chance = pool.chance();
         chances.extend((pool.first..=pool.last).map(|_| chance));
-        // A pool of one is met exactly; rounding must not make it a misfit.
+        // A single stripe fits exactly; rounding must not give it a deviance.
         let alone = pool.first == pool.last;
         let misfit = || deviance(&stripes[pool.first..=pool.last], |_| chance).max(0.0);
         misfits.push(if alone { 0.0 } else { misfit() });
@@ -91,11 +91,11 @@ fn isotonic(stripes: &[Stripe]) -> (Vec<Pool>, Vec<f64>, Vec<f64>) {
 }
 
 /// Tests whether fractions fall with intensity, by the likelihood ratio of the raw fractions to the
-/// isotonic ones, whose distribution is drawn from these; stripes without cases are left out.
+/// isotonic ones, whose distribution is simulated from the latter; stripes without cases are ignored.
 ///
-/// A pool of the isotonic chances is a stretch in which fractions fall. Its own `p` compares its
-/// part of the deviance with the largest part of any pool in each draw, so that looking at many
-/// stretches is paid for.
+/// A pool of the isotonic probabilities is a range in which fractions fall. Its `p` compares its
+/// part of the deviance with the largest part of any pool in each sample, which corrects for
+/// multiple comparisons.
 pub fn monotony(
     stripes: &[Stripe],
     replicates: usize,
@@ -132,8 +132,8 @@ pub fn monotony(
     Monotony { stripes: sorted, isotonic: chances, deviance: observed, p, falls }
 }
 
-/// The pair of stripes, the first of the lower intensity, whose fractions fall most; of several, the
-/// one nearest to each other.
+/// Returns the pair of stripes, the first of the lower intensity, with the largest fall; of several, the
+/// closest pair.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {
@@ -150,19 +150,19 @@ fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     found.map(|(_, from, to)| (from, to))
 }
 
-/// A group that failed at one intensity and stood at a higher.
+/// A group that failed at one intensity and stood at a higher one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Returned {
     /// The group.
     pub group: usize,
     /// The lowest intensity at which it failed.
     pub failed: f64,
-    /// The highest at which it stood nevertheless.
+    /// The highest intensity at which it stood.
     pub stood: f64,
 }
 
-/// Groups, such as records, that failed at one intensity and stood at a higher one: a fact about
-/// each, whatever the statistics say. Cases are `(group, intensity, failed)`.
+/// Returns groups, such as records, that failed at one intensity and stood at a higher one, independent of
+/// any statistics. Cases are `(group, intensity, failed)`.
 pub fn returns(cases: impl IntoIterator<Item = (usize, f64, bool)>) -> Vec<Returned> {
     let mut bounds: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for (group, intensity, failed) in cases {

@@ -1,8 +1,8 @@
-//! Confidence from the likelihood itself: what values of a quantity the data do not refuse.
+//! Profile-likelihood confidence intervals.
 //!
-//! The interval of a quantity holds the values at which the likelihood, maximized over everything
-//! else, falls short of its top by no more than half the quantile of χ² with one degree of freedom
-//! (Wilks 1938). It needs no normality of the estimates and does not leave 0 to 1.
+//! The interval of a quantity holds the values at which the likelihood, maximized over all other
+//! parameters, falls below its maximum by no more than half the quantile of χ² with one degree of freedom
+//! (Wilks 1938). It needs no normality of the estimates and stays within 0 to 1.
 
 use crate::evidence::Evidence;
 use crate::fit::{Dispersion, FitError, fit, likelihood};
@@ -10,10 +10,10 @@ use crate::likelihood::{Likelihood, Score};
 use crate::math::{chi_square_quantile_one, exp, ln, normal};
 use crate::proportion::Interval;
 
-/// Scores beyond these are certain: `Φ(−38)` is the smallest number there is.
+/// Scores beyond these are certain: `Φ(−38)` is near the smallest representable number.
 const CERTAIN: f64 = 38.0;
 
-/// The likelihood of evidence under the condition that the score at `ln x = place` is `score`.
+/// The likelihood of evidence constrained to a score at `ln x = place`.
 struct Profile<'a> {
     evidence: &'a [Evidence],
     dispersion: Dispersion,
@@ -42,7 +42,7 @@ impl<'a> Profile<'a> {
         Ok((profile, found))
     }
 
-    /// How far a score at a place lies outside of the interval: negative inside.
+    /// Returns how far a score at a place lies outside of the interval, in log-likelihood; negative inside.
     fn excess(&self, place: f64, score: f64) -> f64 {
         let highest = match self.dispersion {
             Dispersion::Free => {
@@ -64,17 +64,17 @@ impl<'a> Profile<'a> {
     }
 }
 
-/// The top over slopes that are not negative.
+/// Returns the maximum over nonnegative slopes.
 fn highest(of: &Likelihood<1>, start: f64) -> f64 {
     match of.top([start]) {
         Some(top) if top.parameters[0] >= 0.0 => top.shape.value,
-        // The likelihood is concave, so that its top over b ≥ 0 is at 0 where it is not inside.
+        // The likelihood is concave, so without an interior maximum over b ≥ 0 it is highest at 0.
         _ => of.shape(&[0.0]).value,
     }
 }
 
-/// Where `excess` passes zero, going from a place where it is negative by steps that double; `limit`
-/// where it does not.
+/// Finds the zero of `excess`, searching from a point where it is negative with doubling steps; `limit`
+/// if there is none.
 fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     let beyond = |x: f64| if step > 0.0 { x >= limit } else { x <= limit };
     let (mut inside, mut stride) = (from, step);
@@ -105,7 +105,7 @@ fn edge(excess: impl Fn(f64) -> f64, from: f64, step: f64, limit: f64) -> f64 {
     0.5 * (inside + outside)
 }
 
-/// The interval of the chance of failure at each intensity.
+/// Returns the interval of the probability of failure at each intensity.
 ///
 /// # Errors
 /// As [`fit`], or for a level outside 0 to 1.
@@ -135,7 +135,7 @@ pub fn profile_band(
     Ok(band)
 }
 
-/// The interval of the median; a bound is 0 or infinite where the data allow any.
+/// Returns the interval of the median; a bound is 0 or infinite if the data do not bound it.
 ///
 /// # Errors
 /// As [`fit`], or for a level outside 0 to 1.
@@ -148,7 +148,7 @@ pub fn profile_median(
     let place = ln(found.curve.median);
     let step = found.median_error.max(1e-6);
     let excess = |place: f64| profile.excess(place, 0.0);
-    // A median further than e⁵⁰ from the fitted one is any.
+    // A bound further than e⁵⁰ from the fitted median counts as unbounded.
     let (low, high) = (place - 50.0, place + 50.0);
     let bounds = [edge(excess, place, -step, low), edge(excess, place, step, high)];
     Ok(Interval {

@@ -1,8 +1,8 @@
-//! Intervals of a proportion from counts.
+//! Confidence intervals of a proportion from counts.
 
 use crate::math::{beta_quantile, exp, ln, normal_quantile};
 
-/// Two bounds.
+/// An interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower bound.
@@ -12,14 +12,14 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Whether a value lies within, bounds included.
+    /// `true` if a value lies within, bounds included.
     pub fn holds(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }
 }
 
-/// Wilson's score interval of a proportion (Wilson 1927): short, with a coverage near the level on
-/// average. The whole of 0 to 1 without cases.
+/// Returns Wilson's score interval of a proportion (Wilson 1927): short, with a coverage near the level on
+/// average. 0 to 1 without cases.
 pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
     if cases == 0 {
         return Interval { low: 0.0, high: 1.0 };
@@ -36,8 +36,8 @@ pub fn wilson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// The exact interval of a proportion (Clopper and Pearson 1934): its coverage is never below the
-/// level. The whole of 0 to 1 without cases.
+/// Returns the exact interval of a proportion (Clopper and Pearson 1934): its coverage is never below the
+/// level. 0 to 1 without cases.
 pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     let tail = 0.5 * (1.0 - level);
     let (k, n) = (f64::from(failures), f64::from(cases));
@@ -47,14 +47,14 @@ pub fn clopper_pearson(failures: u32, cases: u32, level: f64) -> Interval {
     }
 }
 
-/// The largest share of a population of which a sample may show nothing: what holds for that share is in none of so many
-/// observations with the chance that one tail of an interval of a level leaves.
+/// Returns the largest proportion of a population that a sample may miss entirely: with that proportion, `count`
+/// observations contain no instance with the probability of one tail of an interval of a level.
 pub fn unobserved(count: usize, level: f64) -> f64 {
     if count == 0 { 1.0 } else { 1.0 - exp(ln(0.5 * (1.0 - level)) / count as f64) }
 }
 
-/// The bound below which a proportion lies with a probability (Clopper and Pearson 1934, one-sided): its coverage is
-/// never below that. 1 without cases.
+/// Returns the upper confidence bound of a proportion (Clopper and Pearson 1934, one-sided): its coverage is
+/// never below `probability`. 1 without cases.
 pub fn at_most(failures: u32, cases: u32, probability: f64) -> f64 {
     if failures >= cases {
         return 1.0;
@@ -72,7 +72,7 @@ mod tests {
     fn one_sided_bounds_have_their_textbook_values() {
         // None of n: 1 − 0.05^(1/n), the rule of three.
         assert!((at_most(0, 24, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-12);
-        // With a chance at the bound one or none of 34 fails in 5 of 100 tries.
+        // With a probability at the bound, one or none of 34 fails in 5 of 100 samples.
         let p = at_most(1, 34, 0.95);
         let tail = (1.0 - p).powi(34) + 34.0 * p * (1.0 - p).powi(33);
         assert!((tail - 0.05).abs() < 1e-9, "{p}: {tail}");
@@ -89,7 +89,7 @@ mod tests {
         assert_eq!(wilson(0, 0, 0.95), Interval { low: 0.0, high: 1.0 });
     }
 
-    /// The chance of at least `k` failures of `n`.
+    /// Returns the probability of at least `k` failures of `n`.
     fn at_least(k: u32, n: u32, p: f64) -> f64 {
         (k..=n)
             .map(|j| {

@@ -1,4 +1,4 @@
-//! Confidence over records: how a curve changes when one record is left out.
+//! Confidence over records, by leaving out one record at a time.
 
 use std::collections::BTreeSet;
 
@@ -8,14 +8,14 @@ use crate::fit::{Dispersion, FitError, fit};
 use crate::math::{exp, ln, normal, normal_quantile, student_quantile};
 use crate::proportion::{Interval, unobserved};
 
-/// A curve, and those with each group of evidence, such as all cases of one record, left out.
+/// A curve, and the curves without each group of evidence, such as all cases of one record.
 ///
 /// Intervals are the delete-one jackknife of groups about the curve itself (the correction for few groups
-/// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t of one degree
-/// of freedom less than there are groups, of the logarithms of median and dispersion, and to first order of what
-/// follows from them.
-/// They take nothing for granted of how the cases of one record depend on each other.
-/// Where tried, they hold the truth in 93 to 97.3 of 100 campaigns with 8 to 40 records at ten levels, at one
+/// that Bell and `McCaffrey` 2002 compare as the jackknife, and others call CR3) with Student's t, with one degree
+/// of freedom fewer than groups, of the logarithms of median and dispersion, and to first order of functions
+/// of them.
+/// They assume nothing about the dependence between the cases of one record.
+/// In simulations they cover the truth in 93 to 97.3 of 100 campaigns with 8 to 40 records at ten levels, at one
 /// tenth, one half and nine tenths (`tests/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeaveOneOut {
@@ -23,11 +23,11 @@ pub struct LeaveOneOut {
     others: Vec<Lognormal>,
 }
 
-/// Fits evidence and what is left of it without each of its groups.
+/// Fits evidence, and again without each of its groups.
 ///
 /// # Errors
-/// As [`fit`]; [`FitError::Unstable`] for fewer than three groups, and where the evidence determines no curve
-/// without one of them: one record then decides everything, and nothing can be said of how sure the curve is.
+/// As [`fit`]; [`FitError::Unstable`] for fewer than three groups, and if the evidence determines no curve
+/// without one of them: one record then decides everything, and the uncertainty cannot be estimated.
 pub fn leave_one_out(all: &[Evidence], dispersion: Dispersion) -> Result<LeaveOneOut, FitError> {
     let fitted = fit(all, dispersion)?.curve;
     let groups: BTreeSet<usize> = all.iter().map(|item| item.group).collect();
@@ -43,17 +43,17 @@ pub fn leave_one_out(all: &[Evidence], dispersion: Dispersion) -> Result<LeaveOn
 }
 
 impl LeaveOneOut {
-    /// Groups.
+    /// Returns the number of groups.
     pub fn groups(&self) -> usize {
         self.others.len()
     }
 
-    /// Student's t of a level.
+    /// Returns Student's t of a level.
     fn reach(&self, level: f64) -> f64 {
         student_quantile(level, self.others.len() - 1)
     }
 
-    /// The sum over the groups of the products of two changes, over what makes it a covariance.
+    /// Returns the jackknife covariance of two functions of the curve.
     fn spread(&self, one: impl Fn(&Lognormal) -> f64, two: impl Fn(&Lognormal) -> f64) -> f64 {
         let n = self.others.len() as f64;
         let change =
@@ -61,17 +61,17 @@ impl LeaveOneOut {
         (n - 1.0) / n * self.others.iter().map(change).sum::<f64>()
     }
 
-    /// Standard error of the logarithm of the median, cases of one record going together.
+    /// Returns the standard error of the logarithm of the median, with dependent cases within a record.
     pub fn median_error(&self) -> f64 {
         self.spread(|curve| ln(curve.median), |curve| ln(curve.median)).sqrt()
     }
 
-    /// Standard error of the logarithm of the dispersion, cases of one record going together.
+    /// Returns the standard error of the logarithm of the dispersion, with dependent cases within a record.
     pub fn dispersion_error(&self) -> f64 {
         self.spread(|curve| ln(curve.dispersion), |curve| ln(curve.dispersion)).sqrt()
     }
 
-    /// The interval of anything computed from a curve whose errors are about as large to either side, such
+    /// Returns the interval of a function of the curve with nearly symmetric errors, such
     /// as the logarithm of a rate.
     pub fn interval(&self, level: f64, of: impl Fn(&Lognormal) -> f64) -> Interval {
         let here = of(&self.fitted);
@@ -79,10 +79,10 @@ impl LeaveOneOut {
         Interval { low: here - half, high: here + half }
     }
 
-    /// The interval of the chance of failure at each intensity.
+    /// Returns the interval of the probability of failure at each intensity.
     pub fn band(&self, level: f64, intensities: &[f64]) -> Vec<Interval> {
         let chance = |x: &f64| {
-            // The score does not run into 0 and 1.
+            // The score is not bounded by 0 and 1.
             let score = ln(x / self.fitted.median) / self.fitted.dispersion;
             let half = self.reach(level) * self.score_error(score);
             Interval { low: normal(score - half), high: normal(score + half) }
@@ -90,8 +90,8 @@ impl LeaveOneOut {
         intensities.iter().map(chance).collect()
     }
 
-    /// Standard error of the score `(ln x − ln m) / β` where it has a value, to first order in the errors of
-    /// `ln m` and `ln β`: curves with a record left out may be so steep that their own scores run away.
+    /// Returns the standard error of a value of the score `(ln x − ln m) / β`, to first order in the errors of
+    /// `ln m` and `ln β`: curves without a record may be so steep that their own scores diverge.
     fn score_error(&self, score: f64) -> f64 {
         let (place, width) = (|c: &Lognormal| ln(c.median), |c: &Lognormal| ln(c.dispersion));
         let beta = self.fitted.dispersion;
@@ -101,7 +101,7 @@ impl LeaveOneOut {
         variance.max(0.0).sqrt()
     }
 
-    /// The interval of the intensity at which failure has a chance.
+    /// Returns the interval of the intensity at which failure has the given probability.
     pub fn intensity(&self, level: f64, probability: f64) -> Interval {
         let Lognormal { median, dispersion } = self.fitted;
         let score = normal_quantile(probability);
@@ -110,25 +110,25 @@ impl LeaveOneOut {
         Interval { low: at(score - half), high: at(score + half) }
     }
 
-    /// The interval of the dispersion.
+    /// Returns the interval of the dispersion.
     pub fn dispersion(&self, level: f64) -> Interval {
         let logs = self.interval(level, |curve| ln(curve.dispersion));
         Interval { low: exp(logs.low), high: exp(logs.high) }
     }
 
-    /// The interval of the median.
+    /// Returns the interval of the median.
     pub fn median(&self, level: f64) -> Interval {
         self.intensity(level, 0.5)
     }
 }
 
-/// The interval of the mean of a quantity between 0 and 1 over cases that go together in groups, each
+/// Returns the interval of the mean of a quantity between 0 and 1 over cases that are dependent in groups, each
 /// `(sum, cases)`.
 ///
-/// Wilson's interval with Student's t for the normal quantile, of as many independent cases as would scatter
-/// like the groups do; as many as there are groups, where these do not scatter at all.
-/// Few groups that happen to be nearly alike scatter little by chance, so the interval also holds what the mean would be
-/// if the groups of which so many show nothing ([`unobserved`]) all had 0 or all had 1.
+/// Wilson's interval with Student's t in place of the normal quantile, for as many independent cases as would
+/// scatter like the groups do; for as many as there are groups if these do not scatter at all.
+/// A few groups may agree by chance, so the interval also covers the mean that would follow if the fraction of groups
+/// that a sample may miss ([`unobserved`]) were all 0 or all 1.
 pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     let count = groups.len() as f64;
     let cases: f64 = groups.iter().map(|(_, cases)| cases).sum();
@@ -151,11 +151,12 @@ pub fn grouped_mean(groups: &[(f64, f64)], level: f64) -> Interval {
     }
 }
 
-/// The interval of the mean of paired differences, one a group, each between `-most` and `most`; none for fewer than two.
+/// Returns the interval of the mean of paired differences, one per group, each between `-most` and `most`; `None` for
+/// fewer than two.
 ///
-/// Student's, and where few differences happen to be nearly alike as wide as by the guard of [`grouped_mean`] at 95 %.
-/// `tries` is how many such intervals are looked at to pick one: then each has the confidence with which all of them hold
-/// together at the level (Bonferroni), so that the best of many tries is not taken for more than it is.
+/// Student's interval, widened like that of [`grouped_mean`] at 95 % if a few differences agree by chance.
+/// If one of `tries` such intervals is selected, the level applies to all of them together (Bonferroni), so that the
+/// best of many is not overrated.
 pub fn mean_difference(
     differences: &[f64],
     most: f64,

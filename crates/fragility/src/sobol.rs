@@ -1,13 +1,13 @@
-//! Points of Sobol' in up to 21 dimensions, with the direction numbers of Joe and Kuo (2008); and in any
-//! number, padded.
+//! Sobol' points in up to 21 dimensions, with the direction numbers of Joe and Kuo (2008), and in any
+//! number of dimensions by padding.
 
-/// Most dimensions.
+/// Largest number of dimensions without padding.
 pub const DIMENSIONS: usize = 21;
 
-/// How many cells every coordinate has.
+/// Number of cells of every coordinate.
 const CELLS: f64 = 4_294_967_296.0;
 
-/// Degree and coefficients of a primitive polynomial, and the first direction numbers, of the second dimension on:
+/// Degree and coefficients of a primitive polynomial, and the initial direction numbers, from the second dimension on:
 /// the first lines of `new-joe-kuo-6.21201`.
 const TABLE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [
     (1, 0, &[1]),
@@ -32,7 +32,7 @@ const TABLE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
-/// The 32 direction numbers of a dimension, from 0.
+/// Returns the 32 direction numbers of a dimension, from 0.
 fn directions(dimension: usize) -> [u32; 32] {
     let mut v = [0_u32; 32];
     let Some(row) = dimension.checked_sub(1) else {
@@ -66,7 +66,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A dimension, from 0, with a digital shift that keeps its nets nets (Owen 1995).
+    /// Creates a dimension, from 0, with a digital shift that preserves the nets (Owen 1995).
     pub fn new(dimension: usize, shift: u32) -> Self {
         Self { directions: directions(dimension), shift }
     }
@@ -78,18 +78,18 @@ impl Axis {
             .fold(self.shift, |digits, bit| digits ^ self.directions[bit])
     }
 
-    /// The coordinate of a point, from 0, in the order of Antonov and Saleev; the middle of its cell of 2⁻³².
+    /// Returns the coordinate of a point, from 0, in the order of Antonov and Saleev; the middle of its cell of 2⁻³².
     pub fn at(&self, point: u32) -> f64 {
         (f64::from(self.digits(point)) + 0.5) / CELLS
     }
 }
 
-/// The coordinate of a point, from 0, in one of any number of dimensions.
+/// Returns the coordinate of a point, from 0, in any dimension.
 ///
-/// Dimensions come in groups of as many as the sequence has; every group takes its points in an order of
+/// Dimensions form groups of as many as the sequence has; every group takes its points in an order of
 /// its own and every dimension scrambles its digits (Owen 1995, by the hash of Burley 2020), so that each
-/// group is a net of Sobol' and groups know nothing of each other.
-/// The first 2ᵐ points have one in each of 2ᵐ equal shares of every dimension.
+/// group is a Sobol' net and groups are independent of each other.
+/// Of the first 2ᵐ points, one lies in each of 2ᵐ equal parts of every dimension.
 pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     let group = (dimension / DIMENSIONS) as u64;
     let order = mixed(seed ^ mixed(2 * group + 1).rotate_left(32));
@@ -99,7 +99,7 @@ pub fn padded(dimension: usize, point: u32, seed: u64) -> f64 {
     (f64::from(nested(axis.digits(nested(point, order)), digits)) + 0.5) / CELLS
 }
 
-/// Bits that look like any others (`SplitMix64` of Steele, Lea and Flood 2014).
+/// Mixes bits (`SplitMix64` of Steele, Lea and Flood 2014).
 fn mixed(seed: u64) -> u64 {
     let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -107,9 +107,9 @@ fn mixed(seed: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Flips every digit or not, as the digits before it and a seed say.
+/// Scrambles digits: each is flipped or not depending on the digits before it and a seed.
 fn nested(digits: u32, seed: u32) -> u32 {
-    // In the reversed word a digit hangs on those below it, as in sums and products.
+    // In the reversed word a digit depends on those below it, as in sums and products.
     let mut x = digits.reverse_bits().wrapping_add(seed);
     for factor in [0x6c50_b47c_u32, 0xb82f_1e52, 0xc7af_e638, 0x8d22_f6e6] {
         x ^= x.wrapping_mul(factor);
@@ -139,12 +139,12 @@ mod tests {
             .flat_map(|a| (0..a).map(move |b| (a, b)))
             .map(|(a, b)| product(&points[a], &points[b]).abs())
             .fold(0.0, f64::max);
-        // Measured 0.58; of as many pairs of 64 random numbers the worst has some 0.45, the same numbers have 1.
+        // Measured 0.58; for as many pairs of 64 random numbers the largest is some 0.45, for equal numbers 1.
         assert!(worst < 0.7, "{worst}");
         assert_ne!(padded(3, 5, 7), padded(3, 5, 8));
     }
 
-    /// Coordinates as cells of 2⁻³², without the half that stands for the middle of the cell.
+    /// Returns the coordinate as a cell index, without the half cell of the midpoint.
     fn cell(dimension: usize, point: u32) -> f64 {
         Axis::new(dimension, 0).at(point) - 0.5 / 4_294_967_296.0
     }
@@ -225,7 +225,7 @@ mod tests {
             .collect();
         let found = crate::sobol_indices(&blocks, 0.95);
         for (index, (first, total)) in found.unwrap().iter().zip(exact) {
-            // Shares of what they are, and of the whole variance where they are nothing.
+            // Relative error, and for indices of zero an error relative to the variance.
             let off = [(index.first, first), (index.total, total)]
                 .map(|(found, exact)| (found - exact) / if exact > 0.0 { exact } else { 1.0 });
             // Measured: 7e-4.

@@ -1,5 +1,5 @@
-//! How often intervals hold the truth and how often claims are false where nothing is to be claimed: simulated, with the
-//! rules that were in force before beside them.
+//! Coverage of intervals and rate of false claims without an effect: simulated, side by side with the previous
+//! rules.
 //!
 //! `cargo test --release -p barrelstack-fragility --test claims -- --nocapture` prints the tables of
 //! `validation/statistics.md`.
@@ -23,8 +23,8 @@ fn normal(random: &mut Random) -> f64 {
     (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
 }
 
-/// Barrels that fall under a motion at three levels of shaking, in the mean: a stack collapses where the motion is
-/// harder on it than it can bear, which chance decides anew for every stack, and then two to eight barrels fall.
+/// Mean number of barrels that fall under a motion at three levels of shaking: a stack collapses if the motion is
+/// more severe than its capacity, which is random for every stack, and then two to eight barrels fall.
 fn fallen(severity: f64, help: f64, random: &mut Random) -> f64 {
     let level = |level: f64, random: &mut Random| {
         let collapses = level + severity - help + 0.5 * normal(random) > 0.0;
@@ -33,7 +33,7 @@ fn fallen(severity: f64, help: f64, random: &mut Random) -> f64 {
     [-0.8, 0.0, 0.8].map(|at| level(at, random)).iter().sum::<f64>() / 3.0
 }
 
-/// Student's interval, as it was made before.
+/// Returns Student's interval, the previous rule.
 fn student(differences: &[f64]) -> Interval {
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
@@ -42,8 +42,8 @@ fn student(differences: &[f64]) -> Interval {
     Interval { low: mean - half, high: mean + half }
 }
 
-/// Shares of searches that claim something, and barrels that are claimed, before and after: of so many protections
-/// `help` is what the first one does, and the others do nothing.
+/// Fractions of searches with a claim, and barrels claimed, by the previous and the present rule: of several
+/// protections the first has the effect `help`, the others none.
 struct Claims {
     before: f64,
     after: f64,
@@ -56,7 +56,7 @@ fn claims(motions: usize, tries: usize, help: f64, alike: f64, searches: u32) ->
     let mut counts = [0_u32; 3];
     let mut barrels = 0.0;
     for _ in 0..searches {
-        // Records may be near-equal: their severities differ by little.
+        // Records may be nearly alike: their severities differ little.
         let severities: Vec<f64> = (0..motions).map(|_| alike * normal(&mut random)).collect();
         let base: Vec<f64> = severities.iter().map(|s| fallen(*s, 0.0, &mut random)).collect();
         let (mut before, mut after, mut most) = (false, false, 0.0_f64);
@@ -125,7 +125,7 @@ fn a_search_in_which_nothing_helps_rarely_claims_that_something_does() {
     }
 }
 
-/// Shares of trials whose interval of a mean difference holds it, before and after.
+/// Fractions of trials whose interval covers the mean difference, by the previous and the present rule.
 fn held(motions: usize, draw: &dyn Fn(&mut Random) -> f64, truth: f64) -> [f64; 2] {
     let mut random = Random::new(7);
     let mut held = [0_u32; 2];
@@ -164,10 +164,10 @@ fn intervals_of_paired_differences_hold_them_where_few_are_not_alike() {
     }
 }
 
-/// Weights of the inputs of the results below; the first two also act together.
+/// Weights of the inputs of the results below; the first two also interact.
 const WEIGHTS: [f64; 5] = [1.0, 0.5, 0.2, 0.05, 0.0];
 
-/// A block of results `[f(A), f(B), f(A with input 1 of B), …]`.
+/// Returns a block of results `[f(A), f(B), f(A with input 1 of B), …]`.
 fn block(of: fn(f64) -> f64, random: &mut Random) -> Vec<f64> {
     let mut draw = || WEIGHTS.map(|_| normal(random));
     let (a, b) = (draw(), draw());
@@ -183,7 +183,7 @@ fn block(of: fn(f64) -> f64, random: &mut Random) -> Vec<f64> {
     [result(a), result(b)].into_iter().chain(exchanged).collect()
 }
 
-/// Percentiles of resamples of the blocks, as intervals of the total indices were made before.
+/// Returns percentiles of resampled blocks, the previous intervals of the total indices.
 fn resampled(blocks: &[Vec<f64>], random: &mut Random) -> Vec<Interval> {
     let mut drawn: Vec<Vec<f64>> = vec![Vec::new(); WEIGHTS.len()];
     for _ in 0..100 {
@@ -301,13 +301,13 @@ fn fewer_than_sixteen_blocks_say_nothing_and_no_interval_has_width_zero() {
     }
     few.push(block(of, &mut random));
     let found = sobol_indices(&few, LEVEL).unwrap();
-    // The last input changes nothing at all, of which sixteen blocks are not enough to be sure.
+    // The last input has no effect, which sixteen blocks do not suffice to show.
     let nothing = found.last().unwrap();
     assert_eq!((nothing.first, nothing.total), (0.0, 0.0));
     assert!(nothing.total_interval.high > 0.3, "{nothing:?}");
 }
 
-/// The chance of at most `k` failures of `n`.
+/// Returns the probability of at most `k` failures of `n`.
 fn up_to(k: u32, n: u32, p: f64) -> f64 {
     let mut term = (1.0 - p).powi(i32::try_from(n).unwrap());
     let mut sum = term;
@@ -318,7 +318,7 @@ fn up_to(k: u32, n: u32, p: f64) -> f64 {
     sum
 }
 
-/// Of heights: a height is called low when few enough fall and the bound is low enough.
+/// Rule for heights: a height counts as low if few enough fall and the bound is low enough.
 #[test]
 fn a_height_above_the_limit_is_rarely_called_low_however_many_motions_there_are() {
     let low = |k: u32, n: u32| f64::from(k) / f64::from(n) <= 0.05 && at_most(k, n, LEVEL) <= 0.12;
@@ -343,9 +343,9 @@ fn a_height_above_the_limit_is_rarely_called_low_however_many_motions_there_are(
     for n in 1..400 {
         let wrong = passes(&low, n, 0.12);
         assert!(wrong <= 0.05 + 1e-9, "{n} motions: {wrong}");
-        // What passes with none falling does so with any more motions of which none falls.
+        // A height that passes without failures passes with any more motions without failures.
         assert!(!low(0, n) || low(0, n + 1), "{n}");
     }
-    // The old rule passed a chance of 12 % more often with 34 motions than with 24.
+    // The previous rule passed a probability of 12 % more often with 34 motions than with 24.
     assert!(passes(&before, 34, 0.12) > passes(&before, 24, 0.12));
 }

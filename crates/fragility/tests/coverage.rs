@@ -1,4 +1,4 @@
-//! How often 95 % bands hold the truth, over a thousand synthetic campaigns.
+//! Coverage of 95 % bands over a thousand synthetic campaigns.
 
 mod drawing;
 
@@ -16,7 +16,7 @@ fn plan() -> Vec<(f64, u32)> {
     [0.15, 0.25, 0.35, 0.45, 0.6, 0.8, 1.0].map(|x| (x, 30)).to_vec()
 }
 
-/// The shares of campaigns whose band holds the truth, by intensity.
+/// Returns the fraction of campaigns whose band covers the truth, by intensity.
 fn coverage(mut band: impl FnMut(&mut Random) -> Vec<barrelstack_fragility::Interval>) -> [f64; 5] {
     let mut random = Random::new(2026);
     let mut held = [0_u32; 5];
@@ -28,7 +28,7 @@ fn coverage(mut band: impl FnMut(&mut Random) -> Vec<barrelstack_fragility::Inte
     held.map(|held| f64::from(held) / CAMPAIGNS as f64)
 }
 
-/// The mean within 93 to 97 %, and at each intensity within `each`, which allows for the scatter of
+/// Requires a mean of 93 to 97 %, and `each` at every intensity, which allows for the scatter of
 /// a thousand campaigns (0.7 % of standard deviation).
 #[expect(clippy::print_stdout, reason = "the measured coverage, shown with --nocapture")]
 fn assert_nominal(shares: [f64; 5], each: std::ops::RangeInclusive<f64>, what: &str) {
@@ -58,7 +58,7 @@ fn parametric_bootstrap_bands_of_stripes_hold_the_truth_at_their_level() {
     assert_nominal(shares, 0.93..=0.97, "parametric bootstrap, stripes");
 }
 
-/// Cases of some records at ten levels, whose capacities in one record are correlated.
+/// Returns cases of a number of records at ten levels, with correlated capacities within a record.
 fn campaign(records: usize, correlation: f64, random: &mut Random) -> Vec<Evidence> {
     let mut all = Vec::new();
     for group in 0..records {

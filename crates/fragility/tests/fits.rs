@@ -1,4 +1,4 @@
-//! Fits against independent answers, invariances, and refusals.
+//! Fits against independent answers, invariances, and errors.
 
 mod common;
 
@@ -116,7 +116,7 @@ fn data_that_determine_no_curve_are_refused_by_name() {
     assert_eq!(of(&[(0.2, 5, 0), (0.4, 5, 0)]), FitError::NothingFailed { largest: 0.4 });
     assert_eq!(of(&[(0.2, 5, 5), (0.4, 5, 5)]), FitError::EverythingFailed { smallest: 0.2 });
     assert_eq!(of(&[(0.2, 5, 0), (0.4, 5, 5)]), FitError::Separated { above: 0.2, below: 0.4 });
-    // All at one level, partly failed: the level is the whole capacity of both kinds.
+    // A single level with some failures: the level is the whole capacity of both kinds.
     assert_eq!(of(&[(0.4, 5, 2)]), FitError::Separated { above: 0.4, below: 0.4 });
     // Only one level is mixed: any steep enough curve through it explains all.
     let one_mixed = of(&[(0.2, 5, 0), (0.3, 5, 2), (0.4, 5, 5)]);

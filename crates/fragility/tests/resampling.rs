@@ -1,4 +1,4 @@
-//! Resampling, tests of fit and of order, with seeded chance.
+//! Resampling and tests of fit and order, with seeded random numbers.
 
 mod common;
 mod drawing;
@@ -42,7 +42,7 @@ fn replicates_of_counts_scatter_by_the_standard_errors() {
     assert!(drawn.band(0.95, &[0.4])[0].holds(found.curve.probability(0.4)));
 }
 
-/// Twenty records at six levels, each with a capacity of its own: the cases of a record agree.
+/// Twenty records at six levels, each with its own capacity: the cases of a record agree.
 fn dependent(random: &mut Random) -> Vec<Evidence> {
     (0..20)
         .flat_map(|group| {
@@ -88,7 +88,7 @@ fn counts_from_a_curve_fit_it_and_counts_from_a_mixture_do_not() {
     let p = goodness_by_simulation(&good, Dispersion::Free, 200, || random.uniform()).unwrap();
     assert!(p > 0.5, "{p}"); // measured 0.97
 
-    // Half of the cases fail early, the rest late: a plateau that no lognormal has.
+    // Half of the cases fail early, the rest late: a plateau that no lognormal curve has.
     let bad = counts(&[(0.1, 40, 0), (0.2, 40, 20), (0.4, 40, 20), (0.8, 40, 20), (1.6, 40, 40)]);
     let found = fit(&evidence(&bad), Dispersion::Free).unwrap();
     assert!(goodness(&bad, &found).p < 1e-3);
@@ -178,7 +178,7 @@ fn records_that_stand_again_are_listed_whatever_the_statistics() {
     assert_eq!(returns(cases), [Returned { group: 0, failed: 0.4, stood: 0.8 }]);
 }
 
-/// Failure that depends on one quantity alone, and another that goes along with it.
+/// Failure that depends on one quantity alone, and a correlated second one.
 fn two_measures(random: &mut Random) -> (Vec<f64>, Vec<f64>, Vec<bool>) {
     let (mut cause, mut companion, mut failed) = (vec![], vec![], vec![]);
     for _ in 0..400 {
@@ -203,7 +203,7 @@ fn the_measure_that_causes_failure_is_efficient_and_sufficient_and_its_companion
     assert!(by_cause.sufficiency.unwrap() > 0.05); // measured 0.6
     assert!(by_companion.sufficiency.unwrap() < 1e-6);
     assert!(by_cause.concordance > by_companion.concordance && by_companion.concordance > 0.5);
-    // A measure says nothing more than itself in other units.
+    // A measure in other units holds no further information.
     let same: Vec<f64> = cause.iter().map(|x| 100.0 * x).collect();
     assert_eq!(failure_against(&pair(&cause), Some(&same)).unwrap().sufficiency, None);
 }

@@ -1,9 +1,9 @@
-//! Campaigns drawn from a known curve.
+//! Synthetic campaigns sampled from a known curve.
 
 use barrelstack_fragility::{Lognormal, Stripe};
 use barrelstack_motion::Random;
 
-/// Counts drawn from a curve.
+/// Samples counts from a curve.
 pub(crate) fn draw(stripes: &[(f64, u32)], curve: &Lognormal, random: &mut Random) -> Vec<Stripe> {
     stripes
         .iter()
