@@ -1,4 +1,4 @@
-//! Is a scenario sound, and does its stack stand before it is shaken?
+//! Checks a scenario without shaking it: is it sound, and does its stack stand?
 
 use barrelstack_dynamics::Settled;
 use barrelstack_dynamics::settle::Locked;
@@ -62,7 +62,7 @@ described! {
 }
 
 impl AtRest {
-    /// Of how equilibrium was found, and the deepest sinking (m) of a body there.
+    /// Creates the summary of a settled stack with the largest settlement (m) of a body.
     pub fn of(Settled { steps, unbalanced, locked }: Settled, deepest_sinking: f64) -> Self {
         let Locked { friction: locked_friction, holding, slipping } = locked;
         Self { steps, deepest_sinking, unbalanced, locked_friction, holding, slipping }
@@ -70,7 +70,7 @@ impl AtRest {
 }
 
 impl Checked {
-    /// What was found, a line each, for people.
+    /// Returns the findings as lines for people.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.title.clone()];
         let counts =
@@ -120,7 +120,7 @@ impl Checked {
     }
 }
 
-/// Does everything that comes before the shaking.
+/// Runs everything that precedes the shaking.
 ///
 /// # Errors
 /// As [`Scenario::run`].

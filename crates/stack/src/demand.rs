@@ -1,4 +1,4 @@
-//! Demands on a stack: each declared once, with where it comes from, what it is called, and its unit in print.
+//! Demands on a stack: each declared once, with its source, its name, and its unit in print.
 
 use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
@@ -6,10 +6,10 @@ use serde::Serialize;
 use crate::assemble::{Assembly, PartKind};
 use crate::watch::{Fate, Fates, Joints, PeakMotion, StressEnvelope, Stresses};
 
-/// The part of a run of which demands and largest forces are taken.
+/// Part of a run over which demands and largest forces are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// Until the first body leaves its seat; all of the run where none does.
+    /// Until the first body leaves its seat; the whole run where none does.
     UntilLoss,
     /// The whole run, with all that falls.
     WholeRun,
@@ -20,30 +20,30 @@ pub enum Span {
 pub struct Demand {
     /// Key in files.
     pub name: &'static str,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub meaning: &'static str,
-    /// What it is, in print.
+    /// Label in print.
     pub label: &'static str,
     /// Unit in files, which is SI; `1` for a ratio.
     pub unit: &'static str,
     /// Unit in print.
     pub shown_unit: &'static str,
-    /// What a value in files is multiplied by in print.
+    /// Factor from the value in files to that in print.
     pub factor: f64,
-    /// Most decimals in print: what is finer than these means nothing.
+    /// Number of decimals in print: finer digits mean nothing.
     pub decimals: usize,
-    /// Its value in files; none where it does not apply.
+    /// Returns the value in files; `None` where it does not apply.
     pub get: fn(&Demands) -> Option<f64>,
 }
 
 impl Demand {
-    /// Its value in print; none where it does not apply.
+    /// Returns the value in print; `None` where it does not apply.
     pub fn shown(&self, demands: &Demands) -> Option<f64> {
         (self.get)(demands).map(|value| value * self.factor)
     }
 }
 
-/// Each line: the doc comment, the key, unit, label, factor, unit and decimals in print, and where the value comes from.
+/// Each line: doc comment, key, unit, label, factor, unit and decimals in print, and source of the value.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+
@@ -68,7 +68,7 @@ macro_rules! demands {
         }),*];
 
         impl Demands {
-            /// The demands on a stack of a run that did not break down.
+            /// Returns the demands on a stack of a run that did not break down.
             pub fn of(
                 assembly: &Assembly,
                 fates: &Fates,
@@ -146,7 +146,7 @@ impl Described for Demands {
     }
 }
 
-/// What demands are taken from.
+/// Sources of demands.
 struct Seen<'a> {
     assembly: &'a Assembly,
     fates: &'a Fates,
@@ -156,20 +156,20 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// The largest value in size, with its sign, of all bodies that have one.
+    /// Returns the value that is largest in size, with its sign, over all bodies that have one.
     fn most(&self, of: fn(&Self, usize) -> Option<f64>) -> Option<f64> {
         let larger = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         (0..self.assembly.parts.len()).filter_map(|body| of(self, body)).reduce(larger)
     }
 
-    /// The fate of a body of a kind on a level; none for any other.
+    /// Returns the fate of a body of a kind on a level; `None` for any other body.
     fn fate(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<Fate> {
         let part = &self.assembly.parts[body];
         let wanted = part.kind == kind && level.is_none_or(|level| part.level == Some(level));
         wanted.then(|| self.fates.fate(body))
     }
 
-    /// The largest motions of a body of a kind on a level; none for any other.
+    /// Returns the largest motions of a body of a kind on a level; `None` for any other body.
     fn motion(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<PeakMotion> {
         let fate = self.fate(body, kind, level)?;
         Some(match self.span {
@@ -178,7 +178,7 @@ impl Seen<'_> {
         })
     }
 
-    /// The stress around a barrel of the bottom level.
+    /// Returns the stress around a barrel of the bottom level.
     fn stress(&self, body: usize) -> Option<&StressEnvelope> {
         self.fate(body, PartKind::Barrel, Some(1))?;
         self.stresses.of(body)

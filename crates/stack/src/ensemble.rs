@@ -1,9 +1,8 @@
-//! Many cases at once: what became of each, and nothing else of it.
+//! Ensembles: many cases at once, of which only the results are kept.
 //!
-//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has
-//! ended takes the next one.
-//! Every case comes to the same bits as it would alone, whatever runs beside it and however wide the
-//! lanes are.
+//! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has ended takes the
+//! next one.
+//! Every case gives the same bits as alone, whatever runs beside it and however wide the lanes are.
 
 mod batch;
 mod case;
@@ -31,22 +30,22 @@ pub use columns::{CASE_COLUMNS, CaseColumn, Get, table};
 pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
 
-/// Version of what an ensemble computes: raised whenever the same case may give other bits, so that
-/// results of two versions are never put together.
+/// Version of the results of an ensemble: raised whenever the same case may give other bits, so that results of two
+/// versions are never combined.
 pub const VERSION: u32 = 13;
 
-/// Cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
+/// Number of cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
 const BATCH: usize = 32;
 
-/// Who hears of the cases of an ensemble, and may stop it.
+/// Progress callback and cancellation of an ensemble.
 pub struct Audience<'a> {
-    /// Hears of each case that is done, in any order.
+    /// Called for each finished case, in any order.
     pub tell: &'a mut dyn FnMut(&CaseResult),
-    /// Is asked now and then whether to stop.
+    /// Polled; returns `true` to stop.
     pub stop: &'a dyn Fn() -> bool,
 }
 
-/// Cases that are run together, on all cores.
+/// Cases to run together, on all cores.
 ///
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared};
@@ -63,21 +62,21 @@ pub struct Audience<'a> {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Ensemble {
-    /// The cases; those of one stack or one motion share it.
+    /// The cases; those with the same stack or motion share it.
     pub cases: Vec<Prepared>,
-    /// The vector unit in which they run; the widest of the machine without. Results do not depend on it.
+    /// Vector unit to run in; by default the widest of the machine. Results do not depend on it.
     pub lanes: Option<Width>,
 }
 
 impl Ensemble {
-    /// Runs all cases; what became of each, in their order.
+    /// Runs all cases; returns their results in order.
     pub fn run(&self) -> Vec<CaseResult> {
-        // Nobody stops it, so every case has its result.
+        // It is never stopped, so every case has its result.
         self.run_watched(&|_| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// As [`Ensemble::run`], before an observer, who hears of every case that is done, in any order and
-    /// from several threads, and may stop them all; then there are no results.
+    /// Runs as [`Ensemble::run`] with an observer, which is called for every finished case, in any order and from
+    /// several threads, and may stop the ensemble; then there are no results.
     pub fn run_watched(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -85,7 +84,7 @@ impl Ensemble {
         self.run_until(observer, &|| false)
     }
 
-    /// As [`Ensemble::run_watched`], and asks many times a second whether to stop.
+    /// Runs as [`Ensemble::run_watched`], and polls many times a second whether to stop.
     pub fn run_until(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -94,9 +93,9 @@ impl Ensemble {
         self.run_as_far(observer, asked_to_stop).into_iter().collect()
     }
 
-    /// As [`Ensemble::run_until`], and keeps what was done until it was stopped: none for each case that was not.
+    /// Runs as [`Ensemble::run_until`], and returns `None` for each case that was not finished when it was stopped.
     ///
-    /// Those that collapse end first, so what is done by then is no sample of all.
+    /// Collapses end first, so the finished cases are no unbiased sample.
     pub fn run_as_far(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -118,14 +117,14 @@ impl Ensemble {
     }
 }
 
-/// Runs cases on one core and gives what became of each, in their order; none when asked to stop.
+/// Runs cases on one core and returns their results in order; `None` when stopped.
 ///
-/// Which cases stand together changes nothing about any of them.
+/// The grouping of cases changes nothing about any of them.
 pub fn simulate(cases: &[Prepared], audience: &mut Audience<'_>) -> Option<Vec<CaseResult>> {
     simulate_in(Width::widest(), cases, audience)
 }
 
-/// As [`simulate`], in lanes of a width; a machine that does not have it takes one case after the other.
+/// Runs as [`simulate`], in lanes of a width; a machine without it runs one case after the other.
 pub fn simulate_in(
     width: Width,
     cases: &[Prepared],
@@ -134,7 +133,7 @@ pub fn simulate_in(
     simulate_as_far(width, cases, audience).into_iter().collect()
 }
 
-/// As [`simulate_in`]: none for each case that was not done when it was asked to stop.
+/// Runs as [`simulate_in`]; returns `None` for each case that was not finished when it was stopped.
 fn simulate_as_far(
     width: Width,
     cases: &[Prepared],
@@ -181,13 +180,13 @@ fn simulate_as_far(
 }
 
 impl Stack<'_> {
-    /// The stack, or in words why there is none.
+    /// Returns the standing stack, or the reason why there is none.
     fn found(&self) -> Result<&Standing, String> {
         self.standing.as_ref().map_err(ToString::to_string)
     }
 
-    /// What becomes of every case on a stack that is not there to be shaken: it collapses where it falls under its own
-    /// weight, and has no verdict where it cannot be built or does not come to rest.
+    /// Returns the result of every case on a stack that cannot be shaken: a collapse if it falls under its own
+    /// weight, no verdict if it cannot be built or does not come to rest.
     fn refusal(&self) -> Option<CaseResult> {
         let failure = self.standing.as_ref().err()?;
         Some(
@@ -198,7 +197,7 @@ impl Stack<'_> {
     fn fallen_at_rest(&self, failure: &RunFailure) -> Option<CaseResult> {
         let RunFailure::Settle(restless) = failure else { return None };
         let levels = self.scenario.stack().filter(|_| restless.falls())?.levels;
-        // As it was built, before it fell.
+        // As built, before it fell.
         let assembly = assemble(self.scenario).ok()?;
         let level = |part: &Part| part.level.unwrap_or(1);
         let first = assembly.parts.iter().find(|part| part.name == restless.error.body);
@@ -222,22 +221,22 @@ impl Stack<'_> {
 #[derive(Clone, Copy)]
 struct Run<'a> {
     case: &'a Prepared,
-    /// Which of the cases it is.
+    /// Index of the case.
     index: usize,
-    /// Which of the stacks it has.
+    /// Index of its stack.
     stack: usize,
-    /// When it ends (s).
+    /// Latest end (s).
     end_time: f64,
 }
 
 impl Run<'_> {
-    /// What ends it before its time is over.
+    /// Returns the criteria that may end it earlier.
     fn end(&self, standing: &Standing) -> End {
         End::new(&self.case.scenario, &standing.assembly, &self.case.ground)
     }
 }
 
-/// Finds or builds the stack of a case, or says why it cannot.
+/// Finds or builds the stack of a case.
 fn prepare<'a>(
     case: &'a Prepared,
     index: usize,
@@ -251,7 +250,7 @@ fn prepare<'a>(
     let stack = known.unwrap_or(stacks.len());
     if known.is_none() {
         let built = Stack::built(scenario, end_time);
-        // The fault of this motion: under a shorter one the stack may be run.
+        // An error of this motion: under a shorter one the stack may run.
         if let Err(failure @ RunFailure::Duration(_)) = &built.standing {
             return Err(failure.to_string());
         }
@@ -262,7 +261,7 @@ fn prepare<'a>(
     Ok(Run { case, index, stack, end_time })
 }
 
-/// The runs that may run together, in the order of their cases.
+/// Groups the runs that can run together, in the order of their cases.
 fn groups<'a>(runs: &[Run<'a>], stacks: &[Stack<'_>]) -> Vec<(Method, Vec<Run<'a>>)> {
     let topology = |stack: &Stack<'_>| Some(Topology::of(&stack.found().ok()?.assembly.model));
     let topologies: Vec<_> = stacks.iter().map(topology).collect();

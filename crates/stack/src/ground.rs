@@ -32,18 +32,18 @@ described! {
 }
 
 impl Scenario {
-    /// Reads or makes its motion, scaled as it says.
+    /// Reads or generates the motion of the scenario, scaled.
     ///
     /// # Errors
-    /// When a record cannot be read, lacks the component asked for, or cannot be scaled.
+    /// If a record cannot be read, lacks the requested component, or cannot be scaled.
     pub fn ground(&self) -> Result<Ground, GroundError> {
         of_spec(&self.motion, self.run.similitude)
     }
 
-    /// The ground under a record at hand, in place of its own motion.
+    /// Returns the ground under a record in memory, in place of the scenario's own motion.
     ///
-    /// Components, processing and scale are those that the scenario states; where its own motion is no
-    /// record, the first horizontal component with the default processing.
+    /// Components, processing and scale are those of the scenario; if its own motion is no record, the first
+    /// horizontal component with the default processing.
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -57,17 +57,17 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// When the record lacks a component asked for, or cannot be scaled.
+    /// If the record lacks a requested component, or cannot be scaled.
     pub fn ground_of(&self, record: &Record) -> Result<Ground, GroundError> {
         let spec = self.recorded(RecordSource::Bundled(record.file.clone()));
         of_record(record, &spec, &self.motion, self.run.similitude)
     }
 
-    /// The scenario with the records of its motion at hand, which `fetch` has given by their paths, so that
-    /// whatever is made of it opens no file; what is at hand already is not fetched.
+    /// Returns the scenario with the records of its motion in memory, fetched by their paths, so that nothing made
+    /// from it opens a file; records already in memory are not fetched.
     ///
-    /// [`from_disk`] is how a run fetches by itself.
-    /// What `fetch` says where it has nothing is what the system would say, such as "there is no such file".
+    /// A run fetches with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as
+    /// "there is no such file".
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -81,7 +81,7 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// When `fetch` has none.
+    /// If `fetch` fails.
     pub fn with_records(
         &self,
         fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
@@ -91,16 +91,17 @@ impl Scenario {
         Ok(held)
     }
 
-    /// The scenario shaken by a record at hand, in place of its own motion; components, processing and scale
-    /// are those that it states.
+    /// Returns the scenario with a record in memory in place of its own motion; components, processing and scale stay
+    /// those that it states.
     ///
     /// # Errors
-    /// When the record has no channel, or channels of different steps.
+    /// If the record has no channel, or channels of different steps.
     pub fn with_record(&self, record: &Record) -> Result<Self, MotionError> {
         Ok(self.with_record_file(&held(record)?))
     }
 
-    /// As [`Scenario::with_record`], by a file that is at hand ([`held`]), so that many scenarios share one.
+    /// Replaces the motion as [`Scenario::with_record`] does, by a file in memory ([`held`]), so that many scenarios
+    /// share one.
     #[must_use]
     pub fn with_record_file(&self, file: &FileRef) -> Self {
         let mut scenario = self.clone();
@@ -110,8 +111,8 @@ impl Scenario {
         scenario
     }
 
-    /// What it states of its record, of another one; where it has none, the first horizontal component with the
-    /// default processing.
+    /// Applies the record settings of the scenario to another record; without any, uses the first horizontal
+    /// component with the default processing.
     fn recorded(&self, source: RecordSource) -> RecordMotion {
         match &self.motion.source {
             MotionSource::Record(own) => RecordMotion { source, ..own.clone() },

@@ -1,4 +1,4 @@
-//! Stacks of barrels and free scenes: what is stated, what is built, what becomes of it.
+//! Stacks of barrels and free scenes: scenarios, assembly, runs and outcomes.
 //!
 //! ```text
 //! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! One run comes from [`Scenario::run`], many from an [`Ensemble`].
-//! What is judged, said and drawn of them is in `barrelstack`, which has all of this under the same names.
+//! Verdicts, reports and pictures are in `barrelstack`, which reexports all of this under the same names.
 
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -1,20 +1,19 @@
-//! What happened to the stack, in one word and with its reasons.
+//! Outcome of a run.
 
 use crate::assemble::{Assembly, PartKind};
 use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
-/// How a stack collapses; the modes of the shaking-table tests behind the paper.
+/// Collapse modes: those of the shaking-table tests behind the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollapseMode {
     /// Barrels of the top level are thrown out of their cradles, or off the stack with their rack.
     Ejection,
     /// Two or more upper levels, or a level below the top, rock off together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; only a longitudinal view
-    /// can show it.
+    /// A rack walks along the barrels below until its rail passes their ends; only a longitudinal view can show it.
     RackSliding,
-    /// The whole stack turns over about its foot.
+    /// The whole stack overturns about its foot.
     Overturning,
     /// The stack falls under its own weight, before it is shaken.
     Gravity,
@@ -25,13 +24,13 @@ impl CollapseMode {
     pub const SHAKEN: [Self; 4] =
         [Self::Ejection, Self::Rocking, Self::RackSliding, Self::Overturning];
 
-    /// The mode with a name as [`CollapseMode::name`] gives it.
+    /// Returns the mode with a name as in [`CollapseMode::name`].
     pub fn named(name: &str) -> Option<Self> {
         let all = Self::SHAKEN.into_iter().chain([Self::Gravity]);
         all.into_iter().find(|mode| mode.name() == name)
     }
 
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ejection => "ejection",
@@ -43,42 +42,42 @@ impl CollapseMode {
     }
 }
 
-/// What happened to the stack.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// Everything kept its seat.
     Stable,
     /// A body left its seat.
     Collapse {
-        /// How.
+        /// Collapse mode.
         mode: CollapseMode,
-        /// When (s) the first body left its seat.
+        /// Time (s) at which the first body left its seat.
         time: f64,
-        /// Which body that was.
+        /// Name of that body.
         first: String,
-        /// The lowest level whose seat or support gave way.
+        /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// The highest level that went.
+        /// Highest level that collapsed.
         to_level: u32,
     },
     /// A free scene has no seats to lose.
     NotJudged,
-    /// The caller stopped the run before its end: whatever had happened until then, nothing is known of the rest.
+    /// The caller stopped the run before its end; what would have followed is unknown.
     Interrupted,
     /// The numbers broke down.
     Invalid {
-        /// Why, with time and body.
+        /// Reason, with time and body.
         reason: String,
     },
 }
 
 impl Outcome {
-    /// Whether it collapsed under its own weight, before it was shaken.
+    /// Returns `true` if it collapsed under its own weight, before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         matches!(self, Self::Collapse { mode: CollapseMode::Gravity, .. })
     }
 
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Stable => "stable",
@@ -90,16 +89,16 @@ impl Outcome {
     }
 }
 
-/// Judges a run by the first body that left its seat; what follows, follows from it.
+/// Judges a run by the first body that left its seat; later losses follow from it.
 ///
-/// - The bottom rack: overturning of the whole.
+/// - The bottom rack: overturning of the whole stack.
 /// - A rack that passed the ends of the barrels below before it tilted, in a longitudinal view: rack
 ///   sliding.
 /// - A rack of the top level, or a barrel from a rack that keeps its own seat: ejection.
 /// - Any other rack: rocking of its level and all above.
 ///
-/// These are the paper's words: it calls the loss of the two upper of three levels rocking, and that
-/// of the top level of four, barrels and rack, the ejection of the top barrels.
+/// This follows the paper, which calls the loss of the two upper of three levels rocking, and that of the top level
+/// of four, barrels and rack, the ejection of the top barrels.
 pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     if assembly.levels == 0 {
         return Outcome::NotJudged;
@@ -118,8 +117,8 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     )
 }
 
-/// The collapse that begins at a time (s) with a body, by its name, kind and level, in a stack of so many levels; `slid`
-/// tells whether a rack has slid off along the barrels.
+/// Returns the collapse that begins at a time (s) with a body, given by name, kind and level, in a stack with a
+/// number of levels; `slid` is `true` if a rack has slid off along the barrels.
 pub fn collapse(
     time: f64,
     (first, kind, from_level): (&str, PartKind, u32),

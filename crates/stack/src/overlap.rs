@@ -1,18 +1,17 @@
-//! How deep bodies stand in each other, by their drawn boundaries: a measure that knows nothing of
-//! contact elements and laws.
+//! Overlap depths of bodies, from their drawn boundaries alone: independent of contact elements and laws.
 
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{Body, BodyId, Linear as _, Planar, Pose, Shape, State, Vec2};
 
 use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 
-/// Deepest overlap (m) of two bodies at the start that sinking under weight can explain.
+/// Largest initial overlap (m) of two bodies that settling under weight can explain.
 pub const ALLOWED: f64 = 2e-3;
 
-/// Corners (1) of the polygon that stands for a circle; it lies at most `r (1 − cos π/n)` inside.
+/// Number of corners of the polygon that represents a circle; it lies at most `r (1 − cos π/n)` inside.
 const AROUND: usize = 256;
 
-/// Refuses bodies that stand in each other before anything has moved.
+/// Rejects bodies that overlap before anything has moved.
 ///
 /// # Errors
 /// Names the two that overlap most.
@@ -30,12 +29,12 @@ pub(crate) fn check_overlap(
     }
 }
 
-/// Two bodies that stand in each other.
+/// Two overlapping bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// The bodies, the lower id first.
+    /// The bodies, the lower ID first.
     pub bodies: [BodyId; 2],
-    /// The shortest way (m) that parts the two deepest of their convex parts.
+    /// Shortest displacement (m) that separates their two deepest convex parts.
     pub depth: f64,
 }
 
@@ -44,14 +43,14 @@ pub struct Boundaries {
     bodies: Vec<Vec<(Outline, Depth)>>,
 }
 
-/// Where a part is, out of the plane that shows it.
+/// Position of a part out of the plane of the drawing.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Depth {
     /// In a barrel.
     Barrel,
-    /// Beside the barrels, so that it meets none.
+    /// Beside the barrels, so that it touches none.
     Beside,
-    /// Wherever anything is.
+    /// At any depth.
     Any,
 }
 
@@ -64,7 +63,7 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// The boundaries of the bodies of a model as they are drawn.
+    /// Creates the boundaries of the bodies of a model as they are drawn.
     pub fn new(assembly: &Assembly) -> Self {
         let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
         let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
@@ -79,7 +78,7 @@ impl Boundaries {
                         |turn: &Rotation2| place(turn.apply(Vec2::new(circle.radius, 0.0)));
                     Some(Outline::Polygon(around.iter().map(corner).collect()))
                 }
-                // A trough is no solid: nothing is inside of it.
+                // A trough is not a solid: it has no inside.
                 Shape::Cradle(_) => None,
                 shape @ (Shape::Polygon(_) | Shape::BarrelProfile(_)) => {
                     Some(Outline::Polygon(shape.outline().0.into_iter().map(place).collect()))
@@ -98,12 +97,12 @@ impl Boundaries {
         Self { bodies: assembly.parts.iter().zip(assembly.model.bodies()).map(placed).collect() }
     }
 
-    /// The deepest overlap of any two bodies at these poses; none where no two overlap.
+    /// Returns the deepest overlap of any two bodies at these poses; `None` where no two overlap.
     pub fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
         self.overlaps(poses).into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// All bodies that overlap at these poses.
+    /// Returns all pairs of bodies that overlap at these poses.
     pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
         let at = |pose: &Pose<Planar>, (outline, depth): &(Outline, Depth)| {
             let (outline, around) = outline.at(pose);
@@ -112,7 +111,7 @@ impl Boundaries {
         let bodies = self.bodies.iter().zip(poses);
         let placed: Vec<Vec<Solid>> =
             bodies.map(|(solids, pose)| solids.iter().map(|s| at(pose, s)).collect()).collect();
-        // A sweep along x, so that a row of bodies costs by its length and not by its square.
+        // Sweep along x, so that the cost of a row of bodies is not quadratic.
         let mut extents: Vec<(f64, f64, BodyId)> = Vec::new();
         for (body, outlines) in placed.iter().enumerate() {
             let least =
@@ -140,7 +139,7 @@ impl Boundaries {
 }
 
 impl Outline {
-    /// The outline at a pose, and the box that holds it: least `x`, `z`, greatest `x`, `z` (m).
+    /// Returns the outline at a pose, and its bounding box: least `x`, `z`, greatest `x`, `z` (m).
     fn at(&self, pose: &Pose<Planar>) -> (Self, [f64; 4]) {
         let rotation = Rotation2::new(pose.orientation);
         let place = |point: &Vec2| pose.position + rotation.apply(*point);
@@ -166,10 +165,10 @@ impl Outline {
     }
 }
 
-/// A part at a pose, the box that holds it, and where it is out of the plane.
+/// A part at a pose, its bounding box, and its position out of the plane.
 type Solid = (Outline, [f64; 4], Depth);
 
-/// The deepest overlap (m) of the parts of two bodies, each in its box; zero where there is none.
+/// Returns the deepest overlap (m) of the parts of two bodies, each with its box; zero where there is none.
 fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
     let mut depth = 0.0_f64;
     for (a, box_a, of_a) in first {
@@ -187,9 +186,9 @@ fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
     depth
 }
 
-/// The shortest way (m) that parts two convex outlines; zero or less where they are apart.
+/// Returns the shortest displacement (m) that separates two convex outlines; zero or less where they are apart.
 ///
-/// Of all ways to part two convex polygons the shortest is along a normal of a side of one of them.
+/// For two convex polygons it is along a normal of a side of one of them.
 fn parting(a: &Outline, b: &Outline) -> f64 {
     match (a, b) {
         (Outline::Polygon(a), Outline::Polygon(b)) => least_along(a, b).min(least_along(b, a)),
@@ -201,7 +200,7 @@ fn parting(a: &Outline, b: &Outline) -> f64 {
     }
 }
 
-/// The least depth (m) of one polygon below the sides of another.
+/// Returns the least depth (m) of one polygon below the sides of another.
 fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
     let mut least = f64::INFINITY;
     for (i, from) in sides.iter().enumerate() {
@@ -210,7 +209,7 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
         let mut lowest = f64::INFINITY;
         for corner in corners {
             lowest = lowest.min((*corner - *from).dot(outward));
-            // Another side parts them sooner.
+            // Another side separates them sooner.
             if -lowest >= least {
                 break;
             }

@@ -1,14 +1,13 @@
-//! Work on all cores, with results in the order of the tasks.
+//! Parallel map on all cores.
 
 use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Does all tasks, each on whichever thread is free; results come in the order of the tasks.
+/// Runs all tasks, each on whichever thread is free; returns results in the order of the tasks.
 ///
-/// Threads take the tasks in their order, so the long ones belong first.
-/// Which thread does a task changes nothing about its result.
-/// `done` hears how many tasks are done.
+/// Threads take the tasks in order, so put the long ones first. The assignment to threads does not affect results.
+/// `done` is called with the number of finished tasks.
 pub fn map<T: Sync, R: Send>(
     tasks: &[T],
     work: impl Fn(&T) -> R + Sync,
@@ -34,7 +33,7 @@ pub fn map<T: Sync, R: Send>(
         }
         worker();
     });
-    // Every slot was filled: a thread that panics takes the scope, and so this call, with it.
+    // Every slot is filled: a thread that panics takes the scope, and so this call, with it.
     slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
 }
 

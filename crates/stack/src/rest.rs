@@ -1,18 +1,18 @@
-//! Why a stack does not come to rest, with what would help.
+//! Reasons why a stack does not come to rest, with remedies.
 
 use barrelstack_dynamics::{Lack, SettleError};
 
-/// A stack that does not stand by itself, and what to do.
+/// A stack that does not stand by itself, and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}; {}", remedy(&error.lack))]
 pub struct Restless {
-    /// Which body goes, and why.
+    /// The body that fails, and the reason.
     pub error: SettleError,
 }
 
 impl Restless {
-    /// Whether the stack falls under its own weight. Where its forces merely do not balance in time, or a regularized
-    /// friction law lets it creep, nothing is known of that.
+    /// Returns `true` if the stack falls under its own weight. Where forces merely do not balance in time, or a
+    /// regularized friction law lets it creep, this is unknown.
     pub fn falls(&self) -> bool {
         match self.error.lack {
             Lack::Support
@@ -25,7 +25,7 @@ impl Restless {
     }
 }
 
-/// The next move of who wants a stack that stands.
+/// Returns the next move for the user.
 fn remedy(lack: &Lack) -> String {
     match lack {
         Lack::Support => {

@@ -1,4 +1,4 @@
-//! One run: scenario in, everything that was seen out.
+//! One run of a scenario, and its result.
 
 mod failure;
 mod verdict;
@@ -26,7 +26,7 @@ use failure::MOST_KEPT;
 pub use failure::RunFailure;
 pub use verdict::{Ended, Verdict};
 
-/// Everything that was seen of a run.
+/// Result of a run.
 ///
 /// ```
 /// use barrelstack_stack::Scenario;
@@ -38,72 +38,72 @@ pub use verdict::{Ended, Verdict};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What was run.
+    /// The scenario of the run.
     pub scenario: Scenario,
-    /// What was asked for, of which a variant may have been run.
+    /// The scenario as given; `scenario` may be a variant of it.
     pub stated: Box<Scenario>,
-    /// What stood there.
+    /// The assembled stack.
     pub assembly: Assembly,
-    /// What shook it.
+    /// The ground motion.
     pub ground: Ground,
-    /// What happened.
+    /// The outcome.
     pub outcome: Outcome,
-    /// What became of every body.
+    /// Fates of all bodies.
     pub fates: Fates,
-    /// What became of every force element, in the order of the model.
+    /// Fates of all force elements, in the order of the model.
     pub elements: Vec<ElementFate>,
     /// Stress along every boundary.
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
-    /// The energy books at the end; none where numbers were lost.
+    /// Energy balance at the end; `None` if numbers were lost.
     pub energy: Option<EnergySummary>,
-    /// How equilibrium was found; none where the scenario starts without.
+    /// Result of settling; `None` where the scenario starts without.
     pub settled: Option<Settled>,
-    /// How it was integrated.
+    /// Integration settings.
     pub simulation: Simulation,
-    /// What was done.
+    /// Work counters.
     pub work: Work,
     /// Time (s) that the run reached.
     pub end_time: f64,
-    /// Why it ended.
+    /// Reason for its end.
     pub ending: Ending,
-    /// Whether the caller stopped it early.
+    /// `true` if the caller stopped it early.
     pub interrupted: bool,
-    /// What the reader of the result should know, one sentence each.
+    /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// How much was computed.
+/// Amount of computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// Evaluations of all forces.
+    /// Number of force evaluations.
     pub evaluations: u64,
-    /// Contact elements tested.
+    /// Number of contact elements tested.
     pub contact_evaluations: u64,
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Simulated time (s) that it has reached.
+    /// Simulated time (s) reached.
     pub time: f64,
     /// Simulated time (s) at which it ends, unless rest or a collapse ends it earlier.
     pub end_time: f64,
 }
 
-/// Time (s) of a motion that is left at the end of a run which counts as cut short.
+/// Remaining time (s) of a motion above which a run counts as cut short.
 pub const CUT: f64 = 0.01;
 
-/// Most steps of a run; a stack takes some 10⁵ steps a second.
+/// Maximum number of steps of a run; a stack takes some 10⁵ steps a second.
 const MOST_STEPS: f64 = 1e9;
 
 impl Scenario {
-    /// Runs it.
+    /// Runs the scenario.
     ///
-    /// A breakdown of the numbers, or of the energy books, is not an error but an outcome:
+    /// A numerical breakdown, or an energy balance that does not close, is not an error but an outcome:
     /// [`Outcome::Invalid`].
     ///
     /// ```
@@ -116,13 +116,13 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// When the motion cannot be read, the stack cannot be built, or it does not stand.
+    /// If the motion cannot be read, the stack cannot be built, or it does not stand.
     pub fn run(&self) -> Result<Run, RunFailure> {
         self.run_watched(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// Runs it before an observer, who is told how far the run is every 0.05 s of simulated time and may
-    /// stop it; what was seen until then is returned.
+    /// Runs the scenario with an observer, which receives the progress every 0.05 s of simulated time and may stop
+    /// it; the results until then are returned.
     ///
     /// # Errors
     /// As [`Scenario::run`].
@@ -134,8 +134,8 @@ impl Scenario {
         held.run_on(held.ground()?, observer)
     }
 
-    /// Runs it on a given ground before an observer; the motion of the scenario is not looked at, though it
-    /// counts in the fingerprint of the run: [`Scenario::with_record`] makes a scenario of another record.
+    /// Runs the scenario on a given ground with an observer; its own motion is ignored, but counts in the fingerprint
+    /// of the run. [`Scenario::with_record`] makes a scenario of another record.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -153,7 +153,7 @@ impl Scenario {
     /// ```
     ///
     /// # Errors
-    /// When the stack cannot be built, or does not stand.
+    /// If the stack cannot be built, or does not stand.
     pub fn run_on(
         &self,
         ground: Ground,
@@ -164,8 +164,8 @@ impl Scenario {
         self.run_before(ground, Pace::Time, &mut eye)
     }
 
-    /// Runs it on a given ground before an eye, which looks at its pace and may stop it: a law of one's own for the end
-    /// of a run, a quantity that no history has.
+    /// Runs the scenario on a given ground with a callback, which is called at a pace and may stop it: for a stop
+    /// criterion of one's own, or a quantity that no history has.
     ///
     /// ```
     /// use std::num::NonZero;
@@ -223,7 +223,7 @@ impl Scenario {
         let Verdict { outcome, energy, steps, mut warnings, ending } =
             conclude(&assembly, &ground, &fates, ended, state.time, ending);
         if outcome == Outcome::Stable {
-            // What fell has no slip to be wrong about.
+            // A fallen stack has no slip that could be wrong.
             let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
             let most = slips.fold(0.0, f64::max);
             warnings.extend(
@@ -259,7 +259,7 @@ impl Scenario {
     }
 }
 
-/// Judges a run in a plane that ended at a time (s), and says what its end leaves open.
+/// Judges a run in a plane that ended at a time (s), with warnings about its end.
 pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
@@ -275,13 +275,12 @@ pub(crate) fn conclude(
     verdict
 }
 
-/// The step (s) that a scenario asks for, or the one its stiffest contact suggests.
+/// Returns the step (s) that a scenario sets, or the one its stiffest contact suggests.
 ///
 /// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
 ///
 /// # Errors
-/// When the step asked for is above the critical one, with which no explicit method of a fixed step
-/// says anything.
+/// If the step set is above the critical one, at which every explicit fixed-step method is unstable.
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
@@ -299,12 +298,12 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     })
 }
 
-/// A step (s) in milliseconds, to be printed.
+/// Converts a step (s) to milliseconds, for print.
 fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
 }
 
-/// How a scenario is integrated.
+/// Returns the integration method of a scenario.
 pub fn method(scenario: &Scenario) -> Method {
     match scenario.run.method {
         scenario::Method::SemiImplicitEuler => Method::SemiImplicitEuler,
@@ -314,11 +313,11 @@ pub fn method(scenario: &Scenario) -> Method {
     }
 }
 
-/// When a body of a scenario has left its seat, and when it has fallen.
+/// Returns the thresholds beyond which a body of a scenario has left its seat, and has fallen.
 pub fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
-        // A free scene is not judged: nothing in it has a seat.
+        // A free scene is not judged: none of its bodies has a seat.
         Scene::Free(_) | Scene::Spatial(_) => Thresholds {
             seat_loss_ratio: f64::INFINITY,
             fall_drop: f64::INFINITY,
@@ -329,11 +328,11 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-/// When (s) a run ends at the latest, by what its scenario asks for and by the end of its motion (s), where one moves
-/// the ground; `time_scale` is that of similitude.
+/// Returns the latest end (s) of a run, from its scenario and from the end of its motion (s), if it has one;
+/// `time_scale` is that of similitude.
 ///
 /// # Errors
-/// When neither says.
+/// If neither defines an end.
 pub fn end_time(
     scenario: &Scenario,
     motion_end: Option<f64>,
@@ -354,10 +353,10 @@ pub fn end_time(
     }
 }
 
-/// Refuses a run that would not end in a day; both times in s.
+/// Rejects a run that would not end in a day; both times in s.
 ///
 /// # Errors
-/// When it takes more than a thousand million steps.
+/// If it takes more than 10⁹ steps.
 pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     let steps = end_time / step;
     if steps <= MOST_STEPS {
@@ -370,7 +369,7 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     )))
 }
 
-/// Refuses a recording that would not fit into memory, before any of it is made; `rates` are those of frames and
+/// Rejects a recording that would not fit into memory, before any of it is allocated; `rates` are those of frames and
 /// histories (Hz).
 pub(crate) fn check_memory(
     assembly: &Assembly,
@@ -383,10 +382,10 @@ pub(crate) fn check_memory(
     check_kept(frame, (end_time * history_rate + 1.0, channels))
 }
 
-/// The same for so many frames of so many bodies, each with some numbers, and so many samples of channels.
+/// Checks the memory for a number of frames of bodies, with some numbers each, and for samples of channels.
 ///
 /// # Errors
-/// When they take more than 2 GB.
+/// If they take more than 2 GB.
 pub fn check_kept(
     (frames, bodies, numbers): (f64, usize, usize),
     (samples, channels): (f64, usize),
@@ -399,7 +398,7 @@ pub fn check_kept(
     Err(RunFailure::Memory { samples, channels, frames, bodies, gigabytes: kept / 1e9 })
 }
 
-/// Laws that cannot hold a body at rest say how fast it creeps.
+/// Returns a warning for each law that cannot hold a body at rest, with its creep rate.
 fn creep_warning(assembly: &Assembly) -> Vec<String> {
     assembly
         .model
@@ -418,8 +417,8 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// What the constants of the seats of a stack, or of all interfaces of a free scene, are stated for, such as "seat";
-    /// "mixed" when they differ.
+    /// Returns the basis of the constants of the seats of a stack, or of all interfaces of a free scene, such as
+    /// "seat"; "mixed" when they differ.
     pub fn stiffness_basis(&self) -> &'static str {
         let model = &self.assembly.model;
         let seats = |interface: &&Interface<Planar>| {

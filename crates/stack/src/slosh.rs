@@ -1,38 +1,39 @@
-//! First wave of the wine in a part-filled barrel: its period, and how much of the wine goes with it.
+//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves.
 
 use std::f64::consts::PI;
 
 use barrelstack_dynamics::math::{acos, cos, exp, sin, sin_cos};
 
-/// The first wave of a tank as a pendulum.
+/// The first sloshing wave of a tank as an equivalent pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
-    /// Share of the mass of the liquid that goes with it.
+    /// Share of the mass of the liquid that moves.
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// How far (m) its mass hangs below the middle of the tank where it stands for a mass on a spring.
+    /// Depth (m) of its mass below the middle of the tank, where it is modeled as a mass on a spring.
     pub depth: f64,
 }
 
-/// Functions over the free surface.
+/// Number of basis functions on the free surface.
 const TERMS: usize = 60;
 
-/// Half of the strip that the surface becomes (1); beyond it the wall is as near as a rounding error.
+/// Half length of the strip to which the surface is mapped (1); beyond it the wall is within rounding error.
 const HALF_STRIP: f64 = 16.0;
 
-/// Points of the quadrature.
+/// Number of quadrature points.
 const POINTS: usize = 400;
 
-/// The first wave across a horizontal circular cylinder of a radius (m) that is filled to a share of its volume.
+/// Returns the first wave across a horizontal circular cylinder of a radius (m) that is filled to a share of its
+/// volume.
 ///
-/// In the potential theory of small waves the segment of the circle becomes a strip under
-/// `x + i z = b tanh(w/2)`, with half the width `b` of the surface; there a function `sin k ξ` on the surface
-/// has the normal derivative `k tanh k β` times itself, where `β` is the angle between surface and wall.
-/// What is left is an eigenvalue problem on the surface, in functions that decay fast.
-/// Half full it gives `ω² R/g = 1.35573`, as McIver (1989) and Budiansky (1960) have it; nearly empty 1, and
+/// In the potential theory of small waves the segment of the circle is mapped to a strip by `x + i z = b tanh(w/2)`,
+/// with half the width `b` of the surface; there a function `sin k ξ` on the surface has the normal derivative `k
+/// tanh k β` times itself, where `β` is the angle between surface and wall. The remaining eigenvalue problem on the
+/// surface has a rapidly converging basis.
+/// Half full it gives `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960); nearly empty 1, and
 /// nearly full the ice-fishing problem `ω² b/g = 2.0061` (Fox and Kuttler 1983).
-/// The mass follows from how a push sidewise excites the wave (Ibrahim 2005, section 5).
+/// The mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005, section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let b = sin(angle);
@@ -50,7 +51,7 @@ pub fn across(radius: f64, filled: f64) -> Wave {
         let sum = |i: usize| amplitudes.iter().zip(&functions).map(|(a, f)| a * f[i]).sum();
         (0..POINTS).map(sum).collect()
     };
-    // The largest 1/κ, by repeated multiplication; the next one is less than half as large.
+    // The largest 1/κ, by power iteration; the next one is less than half as large.
     let mut amplitudes = vec![0.0; TERMS];
     amplitudes[0] = 1.0;
     let mut inverse = 0.0;
@@ -76,9 +77,9 @@ pub fn across(radius: f64, filled: f64) -> Wave {
     Wave { share: push * push / (norm * inverse * area), length, depth: length }
 }
 
-/// The first wave along a barrel as that of a rectangular tank as long (m), filled to the mean depth of the
-/// wine under its surface: `ω² = π g/L tanh(π h/L)` with the mass `8 tanh(π h/L)/(π³ h/L)` of the wine (Ibrahim
-/// 2005, section 5). For a barrel, whose bottom is round, an approximation.
+/// Returns the first wave along a barrel as that of a rectangular tank of its length (m), filled to the mean depth of
+/// the wine under its surface: `ω² = π g/L tanh(π h/L)` with the mass `8 tanh(π h/L)/(π³ h/L)` of the wine (Ibrahim
+/// 2005, section 5). An approximation, since the bottom of a barrel is round.
 pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let (b, area) = (sin(angle), angle - sin(angle) * cos(angle));
@@ -86,12 +87,12 @@ pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let ratio = depth / room_length;
     let swing = tanh(PI * ratio);
     let share = 8.0 * swing / (PI * PI * PI * ratio);
-    // So deep that the wine keeps its center of mass while the rest is in the middle of the barrel.
+    // Keeps the center of mass of the wine while the rest is in the middle of the barrel.
     let center = radius * 2.0 * b * b * b / (3.0 * area);
     Wave { share, length: room_length / (PI * swing), depth: center / share }
 }
 
-/// Half of the angle (rad) that a segment spans in its circle, of which it fills a share.
+/// Returns half of the angle (rad) of a circular segment that has a share of the area of its circle.
 fn wetted(filled: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI);
     for _ in 0..60 {
@@ -102,7 +103,7 @@ fn wetted(filled: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Share of the volume of a horizontal cylinder that is filled to a depth over its radius.
+/// Returns the filled share of the volume of a horizontal cylinder for a depth over its radius.
 pub fn filled_to(depth: f64) -> f64 {
     let angle = acos(1.0 - depth);
     let (sin, cos) = sin_cos(angle);

@@ -1,4 +1,4 @@
-//! From scenarios to stacks that stand at rest, ready to be shaken: one, or many side by side.
+//! Builds and settles the stacks of scenarios, one alone or many side by side.
 
 use barrelstack_dynamics::lanes::{Task, Topology, Width};
 use barrelstack_dynamics::real::Real;
@@ -11,14 +11,14 @@ use crate::rest::Restless;
 use crate::run::{RunFailure, check_length, time_step};
 use crate::scenario::{Scenario, Scene};
 
-/// Largest share of gravity that may be left unbalanced at rest.
+/// Largest residual force at rest, over gravity.
 pub const UNBALANCED: f64 = 1e-10;
 
-/// Fewer stacks or cases than this of one topology go one after the other: a bundle costs as much as some
-/// three single runs, however few of its lanes are used.
+/// Minimum number of stacks or cases of one topology to run in lanes: a bundle costs as much as some three single
+/// runs, however few of its lanes are used.
 pub(crate) const FEWEST: usize = 3;
 
-/// A stack that stands at rest, ready to be shaken.
+/// A stack at rest, ready to be shaken.
 #[derive(Clone, Debug)]
 pub(crate) struct Standing {
     pub(crate) assembly: Assembly,
@@ -29,7 +29,7 @@ pub(crate) struct Standing {
     pub(crate) step: f64,
 }
 
-/// The stack of a scenario, as built or at rest, or why it is not.
+/// The stack of a scenario, as built or at rest, or the error.
 #[derive(Debug)]
 pub(crate) struct Stack<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -37,7 +37,7 @@ pub(crate) struct Stack<'a> {
 }
 
 impl<'a> Stack<'a> {
-    /// Builds a stack for a run until a time (s); it does not rest yet.
+    /// Builds a stack for a run until a time (s), without settling it.
     pub(crate) fn built(scenario: &'a Scenario, end_time: f64) -> Self {
         let build = || {
             let assembly = assemble(scenario)?;
@@ -51,8 +51,7 @@ impl<'a> Stack<'a> {
         Self { scenario, standing: build() }
     }
 
-    /// Whether the stack of another scenario is the same: the two differ in nothing but their motions, their
-    /// ends, and what is seen of them.
+    /// Returns `true` if another scenario has the same stack: equal except for motion, end time and recording.
     pub(crate) fn is_of(&self, other: &Scenario) -> bool {
         let own = self.scenario;
         let stands = |scenario: &Scenario| {
@@ -67,21 +66,21 @@ impl<'a> Stack<'a> {
     }
 }
 
-/// Builds a stack for a run until a time (s) and lets it come to rest.
+/// Builds a stack for a run until a time (s) and settles it.
 ///
 /// # Errors
-/// When it cannot be built, or does not stand.
+/// If it cannot be built, or does not stand.
 pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
     let mut one = [Stack::built(scenario, end_time)];
-    // Nobody stops it.
+    // It is never stopped.
     let _ = stand_all(Width::Scalar, &mut one, &|| false);
     let [Stack { standing, .. }] = one;
     standing
 }
 
-/// Lets stacks that were built come to rest and puts their devices on; none when asked to stop.
+/// Settles built stacks and installs their devices; returns `None` when stopped.
 ///
-/// Those of one topology do so side by side, each to the bits that it comes to alone.
+/// Stacks of one topology settle side by side, each to the bits of settling alone.
 pub(crate) fn stand_all(
     width: Width,
     stacks: &mut [Stack<'_>],
@@ -97,14 +96,14 @@ pub(crate) fn stand_all(
             *standing = Err(AssembleError::from(error).into());
         }
     }
-    // Elements that bear something from the start press the stack together.
+    // Prestressed elements press the stack together.
     rest(width, stacks, stop, |scenario, standing| {
         let strained = |element: &Element<Planar>| element.load(&standing.state).force != 0.0;
         scenario.run.settle && standing.assembly.model.elements().iter().any(strained)
     })?;
     for Stack { scenario, standing } in stacks {
         if let (Scene::Free(_), Ok(standing)) = (&scenario.scene, standing) {
-            // Equilibrium is that of the places; what the scenario sets in motion starts from there.
+            // Settling solves for positions only; initial velocities of the scenario apply from here.
             let bodies = standing.assembly.model.bodies();
             standing.state.twists = bodies.iter().map(|body| body.twist).collect();
         }
@@ -112,7 +111,7 @@ pub(crate) fn stand_all(
     Some(())
 }
 
-/// Lets some of the stacks come to rest; those that do not are refused. None when asked to stop.
+/// Settles some of the stacks and replaces failures by errors; returns `None` when stopped.
 fn rest(
     width: Width,
     stacks: &mut [Stack<'_>],
@@ -123,7 +122,7 @@ fn rest(
     for stack in stacks {
         let Ok(standing) = &stack.standing else { continue };
         if wanted(stack.scenario, standing) {
-            // One after the other, any will do.
+            // In scalar runs the topology does not matter.
             let together = width != Width::Scalar;
             let topology = together.then(|| Topology::of(&standing.assembly.model));
             match groups.iter_mut().find(|(known, _)| *known == topology) {
@@ -155,7 +154,7 @@ fn rest(
     Some(())
 }
 
-/// Stacks of one topology come to rest.
+/// Settles stacks of one topology.
 struct Settling<'a> {
     stacks: Vec<settle::Stack<'a>>,
     stop: &'a dyn Fn() -> bool,

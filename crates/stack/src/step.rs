@@ -1,4 +1,4 @@
-//! The time step when none is given: from the seats, divided by impacts.
+//! Default time step: set by the seats, divided during impacts.
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::{
@@ -8,55 +8,54 @@ use barrelstack_dynamics::{
 
 use crate::assemble::Assembly;
 
-/// Share of the critical time step of seats that is taken: accuracy asks for more than stability.
+/// Fraction of the critical time step of seats: accuracy requires more than stability.
 const SHARE: f64 = 0.3;
 
-/// Share of the time 1/γ in which dampers stop a body: beyond the whole of it, velocities predicted
-/// from the last step overshoot. With 0.7 some of a thousand random stacks that had come to rest
-/// (`tests/settling.rs`) moved on by millimeters.
+/// Fraction of the time 1/γ in which dampers stop a body: beyond all of it, velocities predicted from the last step
+/// overshoot. With 0.7 some of a thousand random stacks that had come to rest (`tests/settling.rs`) drifted by
+/// millimeters.
 const DAMPING_SHARE: f64 = 0.33;
 
-/// Penetration (m) of full scale at which laws that stiffen with penetration are measured.
+/// Penetration (m) at full scale at which nonlinear laws are linearized.
 const REFERENCE: f64 = 0.01;
 
-/// Share of the critical time step of impacts that is taken while they last, some milliseconds. With it the
-/// cases of the paper close their energy books to 3e-5, and half the step moves none of their falls by more
-/// than 0.3 ms (`tests/paper.rs`).
+/// Fraction of the critical time step of impacts, applied while they last, some milliseconds. With it the energy
+/// balance of the paper's cases closes to 3e-5, and halving the step moves none of their falls by more than 0.3 ms
+/// (`tests/paper.rs`).
 const IMPACT_SHARE: f64 = 0.4;
 
-/// Share of [`REFERENCE`] to which impacts are followed with whole steps: what lies still is pressed by less.
-/// With it the energy books of the demo along the barrels miss 1.1e-5, with four times as much 2.4e-4.
+/// Share of [`REFERENCE`] up to which impacts are followed with whole steps: resting contacts are below it. With it
+/// the energy residual of the demo along the barrels is 1.1e-5, with four times as much 2.4e-4.
 const WHOLE_STEP: f64 = 0.05;
 
-/// Share of the critical time step at that penetration, sticks included, that is taken at most: what lies
-/// still requires stability alone. At twice that penetration, to which a contact at rest is followed, it is
-/// 0.83 of the critical time step, since stiffness grows with the root of penetration.
+/// Maximum fraction of the critical time step at that penetration, sticks included: bodies at rest require stability
+/// alone. At twice that penetration, to which a contact at rest is followed, it is 0.83 of the critical time step,
+/// since stiffness grows with the root of penetration.
 const WHOLE_STEP_SHARE: f64 = 0.7;
 
-/// Weights of the heaviest body under which the lightest one may lie on contacts for impacts. What they damp
-/// grows with the load: more than [`LOADED_SHARE`] of the time in which they then stop that body, and heaps
-/// of racks under barrels do not come to rest.
+/// Weights of the heaviest body that may rest on the lightest one through impact contacts. Their damping grows with
+/// the load: beyond [`LOADED_SHARE`] of the time in which they then stop that body, heaps of racks under barrels do
+/// not come to rest.
 const LOAD: f64 = 3.0;
 const LOADED_SHARE: f64 = 1.4;
 
-/// Radius (m) from which on a round piece counts as nearly straight: for contacts whose constants are stated per seat, and
-/// for others. Levers of rounder ones are taken too long by up to four times; the paper's cases, whose staves are such,
-/// keep the steps that they had.
+/// Radius (m) above which a round piece counts as nearly straight: for contacts whose constants are stated per seat,
+/// and for others. Levers of rounder ones are overestimated by up to four times; the paper's cases, whose staves are
+/// such, keep their steps.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
-/// How a stack is stepped.
+/// Time stepping of a stack.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStepping {
-    /// The time step (s) while no impact is under way, rounded down to a number that is easily said at full
-    /// scale.
+    /// Time step (s) outside of impacts, rounded down to few digits at full scale.
     pub step: f64,
-    /// When it is divided, and by how much.
+    /// Subdivision during impacts.
     pub substepping: Substepping<f64>,
 }
 
 impl TimeStepping {
-    /// What the contacts of a model, and the force elements (also those that are `loose` yet), ask for;
-    /// `time_scale` is that of similitude.
+    /// Computes the steps for the contacts of a model and its force elements, including `loose` ones that are not
+    /// installed yet; `time_scale` is that of similitude.
     pub fn of<'a>(
         model: &'a Model<Planar>,
         loose: &(impl Iterator<Item = &'a Element<Planar>> + Clone),
@@ -77,7 +76,7 @@ impl TimeStepping {
         let full_scale = step / time_scale;
         let full_scale = if full_scale.is_finite() { round_down(full_scale) } else { 1e-3 };
         let step = full_scale * time_scale;
-        // Rounding may not divide a step that is as short as impacts ask for.
+        // Rounding must not divide a step that is as short as impacts require.
         let substeps = (step / impact * (1.0 - 1e-9)).ceil().max(1.0);
         let mut substepping = Substepping {
             substeps,
@@ -97,20 +96,20 @@ impl TimeStepping {
     }
 }
 
-/// Whether a pair meets in impacts and bears little between them.
+/// Returns `true` if a pair meets in impacts and carries little load between them.
 fn is_impact(model: &Model<Planar>, pair: &ContactPair) -> bool {
     let law = &model.interfaces()[pair.interface].normal;
     let nodes = &model.bodies()[pair.contactor].nodes[pair.nodes];
     matches!(law, NormalLaw::Rebound { .. }) && !matches!(nodes, Nodes::Fixed(_))
 }
 
-/// The rate (1/s) at which contacts for impacts stop the lightest body of a pair under [`LOAD`].
+/// Returns the rate (1/s) at which impact contacts stop the lightest body of a pair under [`LOAD`].
 fn loaded(model: &Model<Planar>) -> f64 {
     let bodies = model.bodies().iter().filter(|body| body.motion == Motion::Free);
     let heaviest = bodies.map(|body| body.mass).fold(0.0, f64::max);
     let load = LOAD * heaviest * model.gravity().length();
     fastest(model, |pair, body| match model.interfaces()[pair.interface].normal {
-        // Its force over the one at rest, by the rate (m/s).
+        // Derivative of the force with respect to the rate (m/s), linearized at rest.
         NormalLaw::Rebound { restitution, speed, .. } if is_impact(model, pair) => {
             let back = restitution * restitution;
             0.5 * load * (1.0 - back) / (1.0 + back) / speed / body.mass
@@ -123,11 +122,11 @@ fn loaded(model: &Model<Planar>) -> f64 {
     })
 }
 
-/// The critical time step (s) of what was built, its impacts divided; infinite when nothing can touch.
+/// Returns the critical time step (s) of an assembly, its impacts divided; infinite when nothing can touch.
 ///
-/// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of
-/// one of its boundaries that face one target, over its mass, and those of its force elements.
-/// Laws that stiffen count with a penetration of 1 cm at full scale; `time_scale` is that of similitude.
+/// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of one of its
+/// boundaries that face one target, over its mass, and those of its force elements. Nonlinear laws are linearized at
+/// a penetration of 1 cm at full scale; `time_scale` is that of similitude.
 pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let model = &assembly.model;
     let depth = REFERENCE * time_scale * time_scale;
@@ -138,7 +137,7 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     seats.min(model.substepping().substeps * impacts)
 }
 
-/// The same for some pairs at a penetration (m), with bodies that force elements hold at a rate (1/s²).
+/// Returns the critical time step of some pairs at a penetration (m); force elements add the rate `held` (1/s²).
 fn critical(
     model: &Model<Planar>,
     held: f64,
@@ -152,8 +151,8 @@ fn critical(
     2.0 / (rate + held).sqrt()
 }
 
-/// The largest rate that the force elements of any body give it: the sum of a constant of theirs over its mass,
-/// and over its inertia by the square of the arm.
+/// Returns the largest rate due to the force elements of any body: the sum of one of their constants over its mass,
+/// and over its inertia times the square of the arm.
 fn of_elements<'a>(
     model: &'a Model<Planar>,
     loose: impl Iterator<Item = &'a Element<Planar>>,
@@ -162,7 +161,7 @@ fn of_elements<'a>(
     let mut rates = vec![0.0; model.bodies().len()];
     let place = |id: BodyId| model.bodies()[id].pose.position;
     for element in loose.chain(model.elements()) {
-        // Some push both bodies where the point of the second one is, which may be far from the first.
+        // Some act on both bodies at the point of the second one, which may be far from the first.
         let [first, second] = element.link().bodies;
         let apart = place(second) - place(first);
         for (id, point) in element.ends() {
@@ -174,11 +173,11 @@ fn of_elements<'a>(
             rates[id] += constant(element) * (1.0 / body.mass + arm.dot(arm) / body.inertia);
         }
     }
-    // The body at its other end may swing against it, so each counts twice.
+    // The body at the other end may move against it, so each counts twice.
     2.0 * rates.into_iter().fold(0.0, f64::max)
 }
 
-/// The largest rate over all pairs and their free bodies. A body is held from below and above, so each
+/// Returns the largest rate over all pairs and their free bodies. A body may be held from below and above, so each
 /// counts twice.
 fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> f64) -> f64 {
     let mut most = 0.0_f64;
@@ -186,12 +185,12 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
     model.each_meeting(&mut |pair, contactors, targets| {
         let met = |contactor, target| ContactPair { contactor, target, ..*pair };
         let free = |id: &&BodyId| bodies[**id].motion == Motion::Free;
-        // What a pair does to its contactor is the same whichever target it meets.
+        // The rate of the contactor does not depend on the target.
         for id in contactors.iter().filter(free) {
             most = most.max(2.0 * rate(&met(*id, pair.target), &bodies[*id]));
         }
-        // What it does to a target grows with a figure of the contactor: of many, the two with the largest,
-        // since one may be the target itself.
+        // The rate of a target grows with a figure of the contactor: of many, keep the two with the largest, since
+        // one may be the target itself.
         let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
         let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
         for id in contactors {
@@ -213,20 +212,20 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
     most
 }
 
-/// The rate (1/s²) of a body by each N/m of its nodes that face a target at a time: all those of a straight
-/// face, a quarter of those around it.
+/// Returns the rate (1/s²) of a body per N/m of its nodes that face a target at once: all nodes of a straight face, a
+/// quarter of those around the body.
 fn per_stiffness(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
     facing(model, pair, |nodes| if is_straight(nodes) { 1.0 } else { 0.25 }) / body.mass
 }
 
-/// The stiffness (N/m) of a node, that of its stick if that is more; at a penetration (m).
+/// Returns the stiffness (N/m) of a node at a penetration (m), or that of its stick if larger.
 fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
     let interface = &model.interfaces()[pair.interface];
     interface.normal.tangent_stiffness(depth).max(interface.friction.stick_stiffness())
 }
 
-/// Σc/m, or Σc d²/I if more (1/s), of the nodes that face a target at a time: on a flat target half of
-/// those around a body, on a round one a quarter.
+/// Returns Σc/m, or Σc d²/I if larger (1/s), of the nodes that face a target at once: on a flat target half of those
+/// around a body, on a round one a quarter.
 fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
     let damping = model.interfaces()[pair.interface].normal.tangent_damping(depth);
     let flat = match &model.bodies()[pair.target].surfaces[pair.surface].surface {
@@ -243,7 +242,7 @@ fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, 
     facing(model, pair, |_| if flat { 0.5 } else { 0.25 }) * damping * turning.max(1.0 / body.mass)
 }
 
-/// How many nodes of a pair, or meters of boundary, push at a time: a share of all, two at least.
+/// Returns the number of nodes of a pair, or meters of boundary, in contact at once: a share of all, at least two.
 fn facing(
     model: &Model<Planar>,
     pair: &ContactPair,
@@ -252,14 +251,14 @@ fn facing(
     let basis = model.interfaces()[pair.interface].basis;
     let weight = |tributary: f64| basis.weight(tributary);
     match &model.bodies()[pair.contactor].nodes[pair.nodes] {
-        // However many there are, they bear as one.
+        // Nodes of a seat share one constant, whatever their number.
         Nodes::Fixed(_) if basis == Basis::Seat => 1.0,
         Nodes::Fixed(nodes) => {
             let total: f64 = nodes.iter().map(|n| weight(n.tributary_length)).sum();
             let two: f64 = nodes.iter().take(2).map(|n| weight(n.tributary_length)).sum();
             (share(nodes) * total).max(two)
         }
-        // Two round pieces of a convex boundary at most bear at a time.
+        // At most two round pieces of a convex boundary bear at once.
         Nodes::Rounds(rounds) => {
             rounds.iter().take(2).map(|round| weight(round.tributary_length)).sum()
         }
@@ -268,7 +267,7 @@ fn facing(
     }
 }
 
-/// Whether nodes lie in one line.
+/// Returns `true` if the nodes are collinear.
 fn is_straight(nodes: &[Node<Planar>]) -> bool {
     let [first, .., last] = nodes else { return true };
     let along = last.position - first.position;
@@ -276,8 +275,8 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
     nodes.iter().all(|node| aside(node) <= 1e-9 * along.dot(along))
 }
 
-/// Mean square lever (m²) of what presses on nodes about the center of mass. A rolling node turns a body by friction
-/// only, which the stick bounds.
+/// Returns the mean square lever (m²) of node forces about the center of mass. A rolling node turns a body by
+/// friction only, which the stick bounds.
 fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
@@ -291,10 +290,10 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// A bound of the lever (m) of what presses on a round piece: its normals pass through its center.
+/// Returns a bound of the lever (m) of the force on a round piece: its normals pass through its center.
 ///
-/// That of nearly straight staves lies hundreds of meters away, and they are pressed no farther out than at their
-/// ends: the limits there stand square to the outermost normals.
+/// The center of nearly straight staves is hundreds of meters away, but contact is limited to their ends: the limits
+/// there are perpendicular to the outermost normals.
 fn lever(basis: Basis, round: &Round<Planar>) -> f64 {
     let center = round.center;
     let is_bounded = round.limits.iter().all(|limit| limit.length() > 0.0);
@@ -313,7 +312,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
     arms.map(|arm| arm * arm).sum::<f64>() / count
 }
 
-/// The largest of these digits times a power of ten that is not above a number.
+/// Rounds down to one of these digits times a power of ten.
 pub fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());

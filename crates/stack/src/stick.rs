@@ -1,9 +1,8 @@
-//! What the elastic stick does to slip that goes to and fro.
+//! Error of the elastic stick under reversing slip.
 //!
-//! A stick turns its friction round over twice the stretch at which it yields, and not at once: every
-//! reversal of slip comes late by √(4 stretch / acceleration).
-//! For a block on swinging ground that made slip 0.3 to 2.7 √(stretch / amplitude) larger or smaller
-//! (`crates/dynamics/tests/reversal.rs`), so that root is what is told.
+//! A stick reverses its friction over twice its yield displacement, and not at once: every reversal of slip is
+//! delayed by √(4 yield / acceleration). For a block on oscillating ground this changed the slip by 0.3 to 2.7
+//! √(yield / amplitude) either way (`crates/dynamics/tests/reversal.rs`), so that root is reported.
 
 use std::fmt;
 
@@ -12,23 +11,23 @@ use barrelstack_motion::GroundMotion;
 
 use crate::assemble::Assembly;
 
-/// Share of slip above which its error is told.
+/// Share of slip above which the error is reported.
 const TOLD: f64 = 0.05;
 
-/// An interface whose stick is soft for the motion at hand.
+/// An interface whose stick is soft for the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
-    /// Stretch (m) at which the sticks of all its contacts at rest yield together.
+    /// Displacement (m) at which the sticks of all its contacts at rest yield together.
     yields: f64,
     /// Displacement of the ground (m).
     swing: f64,
-    /// Error of slip, as a share of it.
+    /// Relative error of slip.
     error: f64,
 }
 
 impl SoftStick {
-    /// Those of a stack at rest, for a motion of the ground.
+    /// Returns the soft sticks of a stack at rest, for a ground motion.
     pub(crate) fn of(
         assembly: &Assembly,
         rest: &Scratch<Planar>,
@@ -54,7 +53,7 @@ impl SoftStick {
         model.interfaces().iter().zip(sums).filter_map(soft).collect()
     }
 
-    /// Whether bodies that slipped by so much (m) did more than stretch it.
+    /// Returns `true` if a slip (m) exceeds the elastic range.
     pub(crate) fn shows_in(&self, slip: f64) -> bool {
         slip > 2.0 * self.yields
     }

@@ -1,4 +1,4 @@
-//! What is seen of a run while it goes on: frames, histories, envelopes, and the fate of every body.
+//! Run observers: frames, histories, stress envelopes, and body fates.
 
 mod elements;
 mod fate;
@@ -25,7 +25,7 @@ pub use rest::{Ending, Rest};
 pub(crate) use stress::StressWatch;
 pub use stress::{BoundaryPoint, StressEnvelope, Stresses, TotalForce};
 
-/// Everything that watches a run, together.
+/// Combined observer of a run.
 pub struct Watch<'a> {
     /// Frames and histories.
     pub recording: Recording,
@@ -33,54 +33,54 @@ pub struct Watch<'a> {
     pub(crate) stresses: StressWatch,
     /// Seats, falls, slips and tilts.
     pub fates: Fates,
-    /// What force elements bore.
+    /// Forces and failures of force elements.
     pub elements: ElementFates,
     ground: &'a Ground,
     assembly: &'a Assembly,
     end: End,
     eye: &'a mut Eye<'a>,
     pace: Pace,
-    /// When the eye looks next (s).
+    /// Time (s) of the next callback.
     next_look: f64,
-    /// Accepted states that were passed to it or over.
+    /// Number of accepted states so far.
     states: u64,
-    /// Why the run is over; none while it goes on, or to the end of its time.
+    /// Reason for the end; `None` while the run goes on, and if it reaches its end time.
     pub ending: Option<Ending>,
 }
 
-/// What an eye sees of a run while it goes on.
+/// State of a run passed to the callback.
 #[derive(Clone, Copy)]
 pub struct Glance<'a> {
     /// Simulated time (s).
     pub time: f64,
-    /// Accepted steps until then.
+    /// Number of accepted steps so far.
     pub steps: u64,
     /// Poses and twists of all bodies, in the order of the parts.
     pub state: &'a State<Planar>,
 }
 
-/// Who looks at a run while it goes on, and may stop it.
+/// Step callback of a run, which may stop it.
 pub type Eye<'a> = dyn FnMut(Glance<'_>) -> ControlFlow<()> + 'a;
 
-/// When an eye looks.
+/// Interval between callbacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// At the start and every 0.05 s of simulated time.
     Time,
-    /// At the start and after every so many accepted steps.
+    /// At the start and after every given number of accepted steps.
     Steps(NonZero<u64>),
 }
 
-/// What ends a run before its time is over.
+/// Stop criteria of a run.
 #[derive(Clone, Debug)]
 pub struct End<R: Real = f64> {
     rest: Rest<R>,
-    /// How long (s) it goes on after a collapse; infinite to go on.
+    /// Duration (s) of the run after a collapse; infinite for no limit.
     after_collapse: R,
 }
 
 impl End {
-    /// As a scenario says.
+    /// Creates the criteria of a scenario.
     pub fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let run = &scenario.run;
         let after = run.stop_after_collapse.map(|after| after * run.similitude.sqrt());
@@ -92,7 +92,7 @@ impl End {
 }
 
 impl<R: Real> End<R> {
-    /// Where a run is over at an accepted state: because of its collapse, and by rest.
+    /// Returns the lanes whose run is over at an accepted state: after a collapse, and by rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub(crate) fn observe(
@@ -108,7 +108,7 @@ impl<R: Real> End<R> {
 lanewise!(struct End<R> { rest, after_collapse });
 
 impl End {
-    /// Why a run is over at an accepted state; rest goes first, since nothing is left to see then.
+    /// Returns the reason for the end at an accepted state; rest takes precedence, since nothing moves any more.
     pub(crate) fn why(&mut self, state: &State<Planar>, fates: &Fates) -> Option<Ending> {
         match self.observe(state, fates) {
             (_, true) => Some(Ending::Rest),
@@ -119,7 +119,7 @@ impl End {
 }
 
 impl<'a> Watch<'a> {
-    /// Watches a run of an assembly from the state at rest in `state`.
+    /// Creates the observer of a run that starts from the state at rest in `state`.
     #[expect(clippy::too_many_arguments, reason = "the parts of a watch, named once")]
     pub fn new(
         assembly: &'a Assembly,
@@ -149,7 +149,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Simulated time (s) between two looks of an eye whose pace is time.
+/// Simulated time (s) between two callbacks at the time interval.
 pub const PROGRESS: f64 = 0.05;
 
 impl Observer<Planar> for Watch<'_> {
@@ -160,7 +160,7 @@ impl Observer<Planar> for Watch<'_> {
         scratch: &Scratch<Planar>,
         energy: &EnergyLedger<Planar>,
     ) -> ControlFlow<()> {
-        // Until the first loss of seat, the state in which it is found included.
+        // The state in which the first loss of seat is found still counts as standing.
         let standing = self.fates.stands();
         self.fates.observe(state, scratch);
         self.elements.observe(state, standing, scratch);
@@ -170,7 +170,7 @@ impl Observer<Planar> for Watch<'_> {
             Pace::Time => state.time >= self.next_look,
             Pace::Steps(every) => self.states.is_multiple_of(every.get()),
         };
-        // The first state is the start, which no step has made.
+        // The first state is the start, which is not the result of a step.
         let glance = Glance { time: state.time, steps: self.states, state };
         self.states += 1;
         if due {

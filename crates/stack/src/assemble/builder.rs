@@ -11,45 +11,45 @@ use super::{Part, PartKind, Similitude, outline_of};
 use crate::device::{Loose, Words};
 use crate::scenario::{self, StackBody, StackPair, StackSpec, View};
 
-/// A stack while it is built up.
+/// A stack under construction.
 pub(crate) struct Builder<'a> {
     pub(crate) spec: &'a StackSpec,
     pub(crate) scale: Similitude,
     pub(crate) bodies: Vec<Body<Planar>>,
     pub(crate) parts: Vec<Part>,
-    /// Moment of inertia (kg·m²) of a barrel of which nothing is changed.
+    /// Moment of inertia (kg·m²) of an unmodified barrel.
     inertia: f64,
-    /// How the surfaces of every body are touched, in their order.
+    /// Contact data of the surfaces of every body, in body order.
     pub(super) touches: Vec<Vec<Touch>>,
-    /// The law between barrels and their cradles.
+    /// Index of the law between barrels and their cradles.
     pub(crate) cradle_law: usize,
-    /// Laws of contact of devices, numbered after those of the stack.
+    /// Contact laws of devices, numbered after those of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
-    /// Boundaries of devices that meet by them.
+    /// Contact pairs of devices, which use these laws.
     pub(crate) pairs: Vec<ContactPair>,
-    /// Elements without which the stack does not stand, and whose they are.
+    /// Elements without which the stack does not stand, each with its device.
     pub(super) held: Vec<(Element<Planar>, &'static Words)>,
-    /// Elements that are put on once it stands.
+    /// Elements that are installed once the stack has settled.
     pub(crate) loose: Vec<Loose>,
-    /// How far (m) devices have lifted the stack.
+    /// Height (m) by which devices have raised the stack.
     pub(super) raised: f64,
 }
 
-/// What a view says of a body: full-scale numbers in a frame of its own.
+/// A body as a view describes it: full-scale numbers in a frame of its own.
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) kind: PartKind,
-    /// None for what belongs to no level.
+    /// `None` for a body that belongs to no level.
     pub(crate) level: Option<u32>,
     pub(crate) column: u32,
     /// Mass (kg).
     pub(crate) mass: f64,
-    /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass; none
-    /// for center and inertia of its solids, all of one density.
+    /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass; `None` to compute
+    /// center and inertia from the solids, all of one density.
     pub(crate) inertia: Option<f64>,
-    /// Where the frame is (m).
+    /// Position of the frame (m).
     pub(crate) position: Vec2,
-    /// A length that tells its size (m).
+    /// Characteristic size (m).
     pub(crate) size: f64,
     pub(crate) solids: Vec<Solid>,
     pub(crate) carrier: Option<BodyId>,
@@ -57,7 +57,7 @@ pub(crate) struct Draft {
 }
 
 impl<'a> Builder<'a> {
-    /// A stack of nothing but the ground.
+    /// Creates a stack that has only the ground.
     pub(super) fn new(spec: &'a StackSpec, scale: Similitude) -> Self {
         let (bodies, parts) = (vec![Body::ground(0.0)], vec![Part::ground()]);
         let inertia = spec.barrel.inertia(spec.view);
@@ -77,8 +77,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// How many barrels of a rack one body of the plane stands for: of what a rack has, the plane along the
-    /// barrels shows the share of one of those side by side.
+    /// Returns the number of barrels that one body of the plane represents: along the barrels, the plane shows one
+    /// slice of those side by side in a rack.
     pub(crate) fn side_by_side(&self) -> f64 {
         match self.spec.view {
             View::Transverse => 1.0,
@@ -86,12 +86,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a law of contact of a device; returns its number.
+    /// Adds a contact law of a device; returns its number.
     pub(crate) fn add_law(&mut self, name: &str, law: &scenario::Interface) -> usize {
         self.add_bundle(name, law, Bundle::ONE)
     }
 
-    /// Adds a law of barrels in their cradles; returns its number.
+    /// Adds a law for barrels in their cradles; returns its number.
     pub(crate) fn add_cradle(&mut self, name: &str, law: &scenario::Interface) -> usize {
         let shown = Shown::Plane(self.spec.view);
         self.add_bundle(name, law, Bundle::of_cradle(law, self.spec, shown))
@@ -107,7 +107,7 @@ impl<'a> Builder<'a> {
         self.held.push((element.into(), words));
     }
 
-    /// Lifts all that stands on the ground by a height (m).
+    /// Raises everything that stands on the ground by a height (m).
     pub(crate) fn raise(&mut self, height: f64) {
         for body in &mut self.bodies[1..] {
             body.pose.position.z += height;
@@ -115,7 +115,7 @@ impl<'a> Builder<'a> {
         self.raised = height;
     }
 
-    /// Adds a body, scaled; returns its id.
+    /// Adds a body, scaled; returns its ID.
     pub(crate) fn add(&mut self, draft: Draft) -> BodyId {
         let length = self.scale.length;
         let (center, inertia) = if let Some(inertia) = draft.inertia {
@@ -151,7 +151,7 @@ impl<'a> Builder<'a> {
         self.bodies.len() - 1
     }
 
-    /// Name, mass (kg) and offset (m) of a rack with what the scenario changes of it.
+    /// Returns name, mass (kg) and offset (m) of a rack after the scenario's overrides.
     pub(super) fn rack_at(&self, level: u32, column: u32) -> (String, f64, f64) {
         let mut mass = self.spec.rack.mass;
         let mut offset = 0.0;
@@ -167,8 +167,8 @@ impl<'a> Builder<'a> {
         (name, mass, offset)
     }
 
-    /// Adds the barrels of one shape and size (m) that the rack of a column carries at places along it (m),
-    /// counted from `origin` (m); returns their ids.
+    /// Adds the barrels of one shape and size (m) that the rack of a column carries at positions along it (m),
+    /// counted from `origin` (m); returns their IDs.
     pub(super) fn add_barrels(
         &mut self,
         carrier: BodyId,
@@ -206,12 +206,12 @@ impl<'a> Builder<'a> {
         barrels
     }
 
-    /// Turns the stack left to right: everything at `x` goes to `−x`.
+    /// Mirrors the stack left to right: everything at `x` moves to `−x`.
     pub(super) fn mirror(&mut self) {
         let flip = |v: &mut Vec2| v.x = -v.x;
         for body in &mut self.bodies {
             flip(&mut body.pose.position);
-            // As it is where it is zero, to the last bit.
+            // Zero stays +0, so that the bits do not change.
             if body.pose.orientation != 0.0 {
                 body.pose.orientation = -body.pose.orientation;
             }
@@ -221,7 +221,7 @@ impl<'a> Builder<'a> {
             }
             for placed in &mut body.surfaces {
                 flip(&mut placed.offset);
-                // Every shape of a stack is symmetric about its own frame, but for polygons.
+                // Every shape of a stack but a polygon is symmetric about its own frame.
                 if let Shape::Polygon(polygon) = &placed.surface {
                     placed.surface = Shape::Polygon(polygon.mirrored());
                 }

@@ -1,8 +1,8 @@
-//! How many seats of a rack one contact of the model stands for.
+//! Number of seats of a rack that one contact of the model represents.
 //!
-//! A plane shows in one place what stands one behind the other. Where constants are stated per seat, a contact there
-//! has those of all the seats that it stands for, so the same stack is as stiff, as damped and as rough in either plane
-//! and in space, whatever `stack.rack.contact` divides its seats into.
+//! A plane shows seats that stand one behind the other as one. Where constants are stated per seat, a contact has
+//! those of all the seats that it represents, so the same stack is equally stiff, damped and rough in either plane
+//! and in space, however `stack.rack.contact` divides its seats.
 //!
 //! | seat | across the barrels | along them | in space |
 //! |---|---|---|---|
@@ -17,10 +17,10 @@ use barrelstack_dynamics::math;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Rails of a rack, one behind the other across the barrels; as many as it has posts there.
+/// Number of rails of a rack, one behind the other across the barrels; also of posts there.
 const RAILS: f64 = 2.0;
 
-/// What shows a stack.
+/// Representation of a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
     /// One of its planes.
@@ -29,12 +29,12 @@ pub(super) enum Shown {
     Space,
 }
 
-/// Seats that one contact stands for, all pressed by one penetration.
+/// Seats that one contact represents, all with the same penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bundle {
-    /// How many.
+    /// Number of seats.
     pub(super) count: f64,
-    /// Cosine of the angle from the contact's normal at which they press.
+    /// Cosine of the angle between the contact normal and the direction in which the seats press.
     pub(super) cosine: f64,
 }
 
@@ -46,7 +46,7 @@ impl Bundle {
         Self { count, cosine: 1.0 }
     }
 
-    /// What a contact of a pair stands for; `law` is the one that the scenario states.
+    /// Returns the bundle that a contact of a pair represents; `law` is the one in the scenario.
     pub(super) fn at(pair: StackPair, law: &Interface, spec: &StackSpec, shown: Shown) -> Self {
         let Shown::Plane(view) = shown else { return Self::ONE };
         let rack = &spec.rack;
@@ -56,12 +56,12 @@ impl Bundle {
                 View::Longitudinal => 1.0,
             });
         }
-        // Along the barrels the plane shows the share of one of those side by side.
+        // The plane along the barrels shows one slice of those side by side.
         let behind = match view {
             View::Transverse => RAILS,
             View::Longitudinal => RAILS / f64::from(rack.barrels),
         };
-        // Two corners bear what is flat, unless a row of nodes does.
+        // A flat face bears on its two corners, unless it has a row of nodes.
         let flat = if rack.contact == SeatContact::Nodes { 1.0 } else { 0.5 };
         let on_posts = rack.kind == RackKind::OnRacks;
         Self::of(match (pair, view) {
@@ -76,7 +76,7 @@ impl Bundle {
         })
     }
 
-    /// What a contact of a barrel with its cradle stands for.
+    /// Returns the bundle that a contact of a barrel with its cradle represents.
     pub(super) fn of_cradle(law: &Interface, spec: &StackSpec, shown: Shown) -> Self {
         match (shown, spec.rack.cradle) {
             (Shown::Plane(View::Longitudinal), Cradle::Supports { angle })
@@ -88,13 +88,13 @@ impl Bundle {
         }
     }
 
-    /// Normal stiffness and damping of the bundle over those of a seat.
+    /// Returns the ratio of the normal stiffness and damping of the bundle to those of one seat.
     pub(super) fn elements(self) -> f64 {
         self.count * self.cosine * self.cosine
     }
 
-    /// The friction of the bundle: a barrel that lies in a wedge presses on it by more than its weight, and the sticks
-    /// of all seats act in full.
+    /// Returns the friction of the bundle: a barrel in a wedge presses on it with more than its weight, and the
+    /// sticks of all seats act in full.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

@@ -1,9 +1,9 @@
-//! What moves of the wine in part-filled barrels.
+//! Sloshing wine in partly filled barrels.
 //!
-//! Across the barrels a wall presses toward the axis of the barrel, so the first wave is a pendulum on that
-//! axis, whatever the barrel does about it; the rest of the wine goes with the axis.
-//! Along the barrels it is a mass on a spring in the barrel, as in a rectangular tank as long and as full, at
-//! the depth at which the wine keeps its center of mass: an approximation.
+//! Across the barrels a wall presses toward the axis of the barrel, so the first wave is a pendulum on that axis,
+//! whatever the motion of the barrel; the rest of the wine moves with the axis.
+//! Along the barrels it is a mass on a spring, as in a rectangular tank of the same length and fill, at the depth
+//! that keeps the center of mass of the wine: an approximation.
 
 use std::f64::consts::PI;
 
@@ -14,23 +14,22 @@ use crate::device::Words;
 use crate::scenario::{StackBody, View};
 use crate::slosh::Wave;
 
-/// What holds the wine never breaks, and no report tells of it.
+/// The elements that hold the wine never break and appear in no report.
 static WORDS: Words = Words::silent("wine");
 
-/// Damping of a wave over the critical one: an assumption; viscosity alone makes less of it in a smooth barrel,
-/// waves that break make more.
+/// Damping ratio of a wave: an assumption; viscosity alone gives less in a smooth barrel, breaking waves give more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Rate (rad/s), 15 Hz, of what holds the wave up: far above that of waves, and no stiffer than seats.
+/// Natural frequency (rad/s), 15 Hz, of the support of the wave: far above that of waves, and no stiffer than seats.
 const HOLDING: f64 = 30.0 * PI;
 
-/// Its damping over the critical one: an assumption; wine that strikes the wall does not spring back.
+/// Damping ratio of that support: an assumption; wine that strikes the wall does not spring back.
 const HOLDING_DAMPING: f64 = 0.2;
 
 /// Radius (m) of the bob that is drawn.
 const BOB: f64 = 0.03;
 
-/// Puts the moving part of the wine into all barrels that are filled in part.
+/// Adds the sloshing part of the wine to all partly filled barrels.
 pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     for body in 0..builder.bodies.len() {
         let part = &builder.parts[body];
@@ -48,7 +47,7 @@ pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     }
 }
 
-/// Takes the mass of a wave out of a barrel with some wine (kg), and hangs it up in it.
+/// Moves the mass of a wave out of a barrel with some wine (kg) and suspends it there.
 fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravity: f64) {
     let scale = builder.scale;
     let mass = wave.share * wine;
@@ -67,7 +66,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
         level: None,
         column: 1,
         mass,
-        // Every force goes through its center, so it never turns.
+        // Every force passes through its center, so it never turns.
         inertia: Some(0.5 * mass * BOB * BOB),
         position: place,
         size: BOB,
@@ -84,7 +83,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
     let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
     let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
     let hard = 2.0 * HOLDING_DAMPING * mass * HOLDING * scale.damping(false);
-    // By so much it gives under the wine.
+    // Static deflection of the support under the wine.
     let sag = gravity / (HOLDING * HOLDING);
     let link = |what: &str| Link {
         name: format!("{name} {what}"),

@@ -59,7 +59,7 @@ pub(super) fn assemble(
     })
 }
 
-/// A force element between two bodies, of its natural length where none is stated.
+/// Returns a force element between two bodies, of its natural length where none is stated.
 fn element(
     spec: &FreeElement,
     scene: &FreeScene,
@@ -68,7 +68,7 @@ fn element(
 ) -> Element<Planar> {
     let place = |name: &String, point: [f64; 2]| {
         let point = Vec2::new(point[0], point[1]) * scale.length;
-        // The ground comes before all bodies, and is about the origin.
+        // The ground precedes all bodies, and its frame is the origin.
         match scene.bodies.iter().position(|body| body.name == *name) {
             Some(at) => {
                 let [x, z] = scene.bodies[at].center_of_mass;
@@ -118,14 +118,14 @@ fn element(
     element
 }
 
-/// What of a body touches others.
+/// Outer boundaries of a body.
 struct Outer<'a> {
     group: Option<&'a str>,
     boundaries: Vec<Boundary<'a>>,
 }
 
-/// Surfaces and node sets of a body that are of one kind. Every part of it has its nodes and its surface at one
-/// place of both, but chosen nodes, which come alone.
+/// Surfaces and node sets of a body that are of one kind. The nodes and the surface of a part have the same place in
+/// both ranges; chosen nodes have no surface.
 struct Boundary<'a> {
     kind: &'a str,
     surfaces: Range<usize>,
@@ -133,19 +133,19 @@ struct Boundary<'a> {
 }
 
 impl Boundary<'_> {
-    /// The nodes of the part whose surface this is.
+    /// Returns the node set of the part that has this surface.
     fn nodes_of(&self, surface: usize) -> Option<usize> {
         let at = self.nodes.start + surface - self.surfaces.start;
         (self.nodes.len() == self.surfaces.len()).then_some(at)
     }
 
-    /// The surface of the part whose nodes these are.
+    /// Returns the surface of the part that has this node set.
     fn surface_of(&self, nodes: usize) -> usize {
         self.surfaces.start + nodes - self.nodes.start
     }
 }
 
-/// Numbers for bodies, the same where bodies meet others alike.
+/// Numbers bodies by kind: bodies of one kind have the same contact pairs with any other body.
 fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec<usize> {
     let grouped = scene.interfaces.iter().any(|interface| !interface.within_groups);
     let mut known = HashMap::new();
@@ -165,10 +165,10 @@ fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec
     bodies.iter().zip(outer).map(kind).collect()
 }
 
-/// The pairs of two bodies.
+/// Returns the contact pairs of two bodies.
 ///
-/// Between bodies of one kind both carry nodes, but for two that roll, where one says it all. Convex
-/// boundaries without nodes test each other both ways; against a round one, its rolling node says it all.
+/// Between bodies of one kind both carry nodes; of two that roll, one is enough. Convex boundaries without nodes are
+/// tested both ways; against a round boundary its rolling node is enough.
 fn pairs(
     scene: &FreeScene,
     between: [BodyId; 2],
@@ -333,7 +333,7 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     })
 }
 
-/// The nodes of one part by a rule, in the body frame; none where they are chosen for the whole body.
+/// Returns the nodes of one part by a rule, in the body frame; `None` where they are chosen for the whole body.
 fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option<Nodes<Planar>> {
     let shape = &placed.surface;
     let boundary = match (rule, shape) {
@@ -350,7 +350,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
             let around = std::f64::consts::TAU * circle.radius;
             shape.nodes(around / f64::from((*count).max(1)))
         }
-        // For curved shapes a count divides the whole boundary; without one, 64 parts are fine enough.
+        // For curved shapes the count divides the whole boundary; without a count, 64 parts are fine enough.
         (scenario::Nodes::Count(count), _) => {
             shape.nodes(boundary_length(shape) / f64::from((*count).max(1)))
         }
@@ -366,7 +366,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
     Some(Nodes::Fixed(boundary.into_iter().map(node).collect()))
 }
 
-/// The length (m) of a shape's boundary.
+/// Returns the length (m) of the boundary of a shape.
 fn boundary_length(shape: &Shape) -> f64 {
     shape.nodes(f64::INFINITY).iter().map(|node| node.tributary_length).sum()
 }

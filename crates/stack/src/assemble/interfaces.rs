@@ -1,4 +1,4 @@
-//! From the laws of a scenario to the laws of the model.
+//! Converts the contact laws of a scenario to those of the model.
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};
@@ -7,14 +7,14 @@ use super::Similitude;
 use super::bundle::Bundle;
 use crate::scenario;
 
-/// Penetration (m) at which the laws that stiffen with penetration lend their stiffness to the stick.
+/// Penetration (m) at which nonlinear laws provide the stiffness of the stick.
 const STICK_REFERENCE: f64 = 2e-4;
 
-/// The stick of a rebound is damped as this share of the critical damping of a mass (kg) on it.
+/// Damping ratio of the stick of a rebound law, for a mass (kg) on it.
 const STICK_DAMPING_RATIO: f64 = 0.1;
 const STICK_MASS: f64 = 50.0;
 
-/// An interface of the model, of which each contact stands for a bundle of those that the law is stated for.
+/// Returns an interface of the model; each of its contacts represents a bundle of those that the law is stated for.
 pub(super) fn interface<S: Space<Real = f64>>(
     name: &str,
     law: &scenario::Interface,
@@ -32,7 +32,7 @@ pub(super) fn interface<S: Space<Real = f64>>(
     Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
 }
 
-/// The law of several elements that share one penetration.
+/// Returns the law of several elements that share one penetration.
 fn together(law: NormalLaw, elements: f64) -> NormalLaw {
     match law {
         NormalLaw::SpeedGap { stiffness, damping } => {
@@ -58,7 +58,7 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
         let full = match *damping {
             scenario::Damping::Coefficient(c) => c,
             scenario::Damping::Restitution { restitution: e, reference: mass } => {
-                // A restitution of exactly 1 has no damping; the scenario admits only (0, 1].
+                // A restitution of exactly 1 has no damping; the scenario accepts only (0, 1].
                 let ratio = invert(e).unwrap_or(0.0);
                 restitution::damping(k, ratio, mass)
             }
@@ -115,7 +115,7 @@ fn friction_of(
             let reference = STICK_REFERENCE * scale.length;
             let stiffness = normal.tangent_stiffness(reference);
             let damping = match normal {
-                // Its damping is not one of a rate alone.
+                // Its damping does not depend on the rate alone.
                 NormalLaw::Rebound { .. } => {
                     let mass =
                         STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };

@@ -1,11 +1,10 @@
-//! A stack along its barrels: barrel profiles on the rails of racks that lie on the profiles below, or on the posts of
-//! the racks below.
+//! A stack along its barrels: barrel profiles on the rails of racks that stand on the profiles below or on the posts
+//! of the racks below.
 //!
-//! The model is a slice one barrel wide: a rack that carries several barrels side by side lends each
-//! of them its share of the mass.
-//! A rail is a tube whose upper side carries the barrel above and whose lower side lies on the barrel below
-//! or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
-//! Posts stand beside the barrels, at the corners of a rack: they meet racks and the ground, and no barrel.
+//! The model is a slice one barrel wide: a rack that carries several barrels side by side contributes its share of
+//! the mass to each. A rail is a tube whose upper side carries the barrel above and whose lower side lies on the
+//! barrel below or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
+//! Posts stand beside the barrels, at the corners of a rack: they touch racks and the ground, but no barrel.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
@@ -16,12 +15,12 @@ use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind, posts};
 use crate::scenario::{Posts, Rack, RackKind, SeatContact};
 
-/// Radius (m) of the round of a barrel's chime: an assumption.
+/// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the angle (73°) to a rail's seat up to which the nodes of the seat bear; what touches the rail
-/// more from the side, as the chime of a barrel that has slid off does, is tested exactly. Of cosines from 0 to 0.7
-/// tried on seven stacks, the worst among them, this one left the energy books best closed: open by 8.3e-5 at most.
+/// Cosine of the angle (73°) to a rail's seat up to which the nodes of the seat bear; contacts further to the side,
+/// such as the chime of a barrel that has slid off, are tested exactly. Of cosines from 0 to 0.7 tried on seven
+/// stacks, the worst among them, this one gave the smallest residual of the energy balance: 8.3e-5 at most.
 const WIDEST: f64 = 0.3;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
@@ -79,8 +78,8 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     })
 }
 
-/// Distance (m) of one rack from the next, for each barrel that it carries end to end: as long as a barrel, or as its
-/// frame where that is longer.
+/// Returns the spacing (m) of racks for each barrel that one carries end to end: the length of a barrel, or that of
+/// the frame where it is longer.
 fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     let pitch = barrel + gap;
     let deep = f64::from(rack.barrels_deep);
@@ -90,7 +89,7 @@ fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     })
 }
 
-/// One rack with its barrels end to end; returns its id and those of the barrels.
+/// Adds one rack with its barrels end to end; returns its ID and those of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     profile: &BarrelProfile,
@@ -115,12 +114,12 @@ fn add_rack(
         body: name.clone(),
         problem: problem.to_string(),
     };
-    // What the frame stands on, the rails meet once its seats are at the end of their stroke.
+    // The rails meet the support of the frame at the end of the stroke of its seats.
     let lift = rack.posts.map_or(0.0, |_| rack.seat_stroke.min(rack.beam_height));
     let on_barrels = rack.posts.is_none() && level > 1;
     let rail = |(barrel, place, side): (usize, f64, f64)| {
         let x = place + side * rack.rail_half_spacing;
-        // What lies on barrels lies on their slope, too; the floor and posts are level.
+        // Rails on barrels follow their slope; the floor and posts are level.
         let rise = side * seating.rise;
         let (bottom, top) = (if on_barrels { rise } else { lift }, rack.clearance + rise);
         let tube = Polygon::rectangle(rack.rail_width, top - bottom, corner_of(rack))?;
@@ -169,7 +168,7 @@ fn add_rack(
     Ok((rack_id, barrels))
 }
 
-/// What of a rack on posts stands beside its barrels: the tube from post to post, the posts, and the cups over
+/// Returns the parts of a rack on posts beside its barrels: the tube from post to post, the posts, and the cups over
 /// those below. `outer` is the distance (m) of the outer barrels from the middle of the rack.
 fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid>, PolygonError> {
     let spacing = outer + posts.half_spacing_along;
@@ -184,8 +183,8 @@ fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid
     Ok(solids.into_iter().map(|solid| Solid { out_of_plane: true, ..solid }).collect())
 }
 
-/// Nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and one
-/// amid the round of each end.
+/// Returns the nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and
+/// one in the middle of each rounded end.
 fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
     let corner = corner_of(rack);
     let half = 0.5 * rack.rail_width - corner;
@@ -194,7 +193,7 @@ fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
         let place = Vec2::new(x + side * (half + amid), z - outward * (corner - amid));
         (place, std::f64::consts::FRAC_PI_2 * corner)
     };
-    // The first node says where the face lies.
+    // The first node defines the position of the face.
     let mut nodes = row(rack.node_spacing, x, half, z);
     nodes.extend([-1.0, 1.0].map(end));
     nodes
@@ -205,25 +204,25 @@ fn corner_of(rack: &Rack) -> f64 {
     TUBE_CORNER.min(0.25 * rack.rail_width)
 }
 
-/// How a barrel lies on its rails, which may raise its right end.
+/// Position of a barrel on its rails, which may raise its right end.
 struct Seating {
-    /// Height (m) of the middle of the barrel above the mean of the tops of its rails.
+    /// Height (m) of the middle of the barrel above the mean top of its rails.
     seat: f64,
-    /// How much higher than that mean (m) the right rail is, and the left one lower.
+    /// Height (m) of the right rail above that mean; the left one is as far below it.
     ///
-    /// The upper side of a barrel is its underside seen upside down, so a rack that lies on inclined barrels has
-    /// the same rise below as above: its rails are as high as any, one a little further up than the other.
+    /// The upper side of a barrel is its underside turned over, so a rack on inclined barrels has the same rise below
+    /// as above: its rails keep their height, and one sits a little further up than the other.
     rise: f64,
 }
 
 impl Seating {
-    /// Staves slope, so a rail touches with the round of its inner corner.
+    /// Computes the seating; staves slope, so a rail touches with the rounding of its inner corner.
     fn of(profile: &BarrelProfile, rack: &Rack) -> Result<Self, AssembleError> {
         let corner = corner_of(rack);
         let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;
         let apart = profile.stave_radius + corner;
         let (sin, cos) = math::sin_cos(rack.incline);
-        // From the middle of the barrel to the center of the round of its staves.
+        // From the middle of the barrel to the center of curvature of its staves.
         let up = profile.stave_radius - profile.bilge_radius;
         if up * sin.abs() >= across {
             return Err(AssembleError::Stack(format!(

@@ -1,4 +1,4 @@
-//! From a scenario to bodies that can move: the model, and what each of its bodies means.
+//! Builds the model of a scenario, and records what each of its bodies represents.
 
 mod builder;
 mod bundle;
@@ -27,25 +27,25 @@ pub use similitude::Similitude;
 pub(crate) use solid::{Seat, Solid};
 pub use transverse::{BAR_RADIUS, TUBE_CORNER};
 
-/// What kind of thing a body is.
+/// Kind of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
-    /// The ground and what is fixed to it.
+    /// The ground and everything fixed to it.
     Ground,
     /// A barrel.
     Barrel,
     /// A rack.
     Rack,
-    /// What protects a stack.
+    /// A protective device.
     Device,
-    /// What moves of the wine in a barrel.
+    /// Sloshing wine in a barrel.
     Wine,
     /// A body of a free scene.
     Body,
 }
 
 impl PartKind {
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ground => "ground",
@@ -58,23 +58,23 @@ impl PartKind {
     }
 }
 
-/// A chain of points (m) in a body's frame, for drawing; whether it closes on itself.
+/// A chain of points (m) in the frame of a body, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     /// The points (m), from the center of mass.
     pub points: Vec<Vec2>,
-    /// Whether the last point joins the first.
+    /// `true` if the last point joins the first.
     pub closed: bool,
 }
 
-/// What a body of the model means.
+/// Description of a body of the model.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// The name in results, that of the body.
+    /// The name in results, equal to that of the body.
     pub name: String,
-    /// What it is.
+    /// Kind of the body.
     pub kind: PartKind,
-    /// Level, 1 at the bottom; none in a free scene.
+    /// Level, 1 at the bottom; `None` in a free scene.
     pub level: Option<u32>,
     /// Column, 1 at the left: of barrels, or of racks for a rack.
     pub column: Option<u32>,
@@ -82,20 +82,21 @@ pub struct Part {
     pub carrier: Option<BodyId>,
     /// For a rack above the first level, the bodies it stands on.
     pub supports: Vec<BodyId>,
-    /// A length (m) that tells the size of the body: the radius of a barrel.
+    /// Characteristic size (m) of the body: for a barrel its radius.
     pub size: f64,
-    /// Volume (m³) of the wine in a barrel as the scenario states it, whatever the length scale; 0 for all else.
+    /// Volume (m³) of the wine in a barrel as the scenario states it, at any length scale; 0 for all other bodies.
     pub wine: f64,
-    /// Height (m) of the center of mass over what a rack stands with.
+    /// Height (m) of the center of mass above the underside of a rack.
     pub foot: f64,
     /// Lines to draw, in the body frame.
     pub outlines: Vec<Outline>,
-    /// Which of its surfaces stand beside the barrels, out of the plane that shows them: such never meet barrels.
+    /// `true` for each surface that stands beside the barrels, out of the plane of the drawing: it never meets
+    /// barrels.
     pub out_of_plane: Vec<bool>,
 }
 
 impl Part {
-    /// What belongs to no stack.
+    /// Creates a part that belongs to no stack.
     fn alone(name: &str, kind: PartKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -120,64 +121,63 @@ impl Part {
     }
 }
 
-/// A model and the meaning of its bodies.
+/// A model and the description of its bodies.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// What moves.
+    /// The model.
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
-    /// Elements of devices that are put on once the stack stands.
+    /// Elements of devices that are installed once the stack stands.
     pub(crate) loose: Vec<Loose>,
-    /// The time step (s) that its contacts ask for; impacts divide it.
+    /// Time step (s) that its contacts require; impacts divide it.
     pub step: f64,
-    /// The device that every force element of the model belongs to.
+    /// The device of every force element of the model.
     pub devices: Vec<&'static Words>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
     /// Number of levels; zero for a free scene.
     pub levels: u32,
-    /// The plane of a stack; none for a free scene.
+    /// The plane of a stack; `None` for a free scene.
     pub view: Option<View>,
-    /// Force (N) between a barrel and a rack that its staves bear; infinite for a free scene.
+    /// Force (N) between a barrel and a rack that the staves bear; infinite for a free scene.
     pub stave_capacity: f64,
-    /// How far (m) a rack may move on the barrels below before nothing holds it there: across the
-    /// barrels until friction cannot hold its bearing on the round, along them until its rail passes
-    /// the end.
+    /// Displacement (m) of a rack on the barrels below beyond which it is no longer supported: across the barrels
+    /// until friction cannot hold its bearing on the round, along them until its rail passes the end.
     pub rack_reach: f64,
 }
 
 impl Assembly {
-    /// Bodies of a kind, in order.
+    /// Returns the bodies of a kind, in order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
     }
 
-    /// Its force elements, those of devices that are yet to be put on after the others.
+    /// Returns its force elements, followed by those of devices that are not installed yet.
     pub fn elements(&self) -> impl Iterator<Item = &Element<Planar>> {
         let loose = self.loose.iter().map(|loose| &loose.element);
         self.model.elements().iter().chain(loose)
     }
 
-    /// The body that the ground moves; every assembly has one.
+    /// The body driven by the ground motion; every assembly has one.
     pub const GROUND: BodyId = 0;
 }
 
-/// Why a scenario cannot be built.
+/// Reason why a scenario cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AssembleError {
     /// The bodies do not make a model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A polygon that is none.
+    /// A shape is invalid.
     #[error("body \"{body}\": {problem}")]
     Shape {
         /// The body.
         body: String,
-        /// What is wrong with its shape.
+        /// The problem.
         problem: String,
     },
-    /// Two bodies stand in each other.
+    /// Two bodies overlap.
     #[error(
         "\"{first}\" and \"{second}\" overlap by {depth:.3} m or more at the start: move them apart, or \
          let them touch without overlap"
@@ -187,26 +187,26 @@ pub enum AssembleError {
         first: String,
         /// The other.
         second: String,
-        /// How deep (m).
+        /// Depth of the overlap (m).
         depth: f64,
     },
-    /// A stack in space, asked for in a plane.
+    /// A stack in space was requested in a plane.
     #[error(
         "this works in a plane, and the scenario looks at its stack in space: set stack.view to \"transverse\", across \
          the barrels, to \"longitudinal\", along them, or to \"both\""
     )]
     Space,
-    /// A free scene in space, asked for in a plane.
+    /// A free scene in space was requested in a plane.
     #[error(
         "this works in a plane, and the bodies of the scenario are in space: state them in a plane, with kind = \"free\""
     )]
     FreeInSpace,
-    /// What is not known in space yet.
+    /// A feature that is not supported in space.
     #[error("{reason}")]
     NotInSpace {
         /// The field.
         field: &'static str,
-        /// What it says, what is known in space, and the next move.
+        /// Value of the field, supported values, and the next move.
         reason: String,
     },
     /// A stack that cannot stand as described.
@@ -214,7 +214,7 @@ pub enum AssembleError {
     Stack(String),
 }
 
-/// Largest step (s) of a free scene with force elements at full scale: a swing of 0.3 s loses 5e-5 by it.
+/// Largest step (s) of a free scene with force elements at full scale: a swing of 0.3 s loses 5e-5 with it.
 const SWINGING_STEP: f64 = 1e-3;
 
 /// Builds the model of a scenario.
@@ -233,30 +233,30 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     assembly.model.set_substepping(stepping.substepping);
     assembly.step = stepping.step;
     if matches!(scenario.scene, Scene::Free(_)) && !assembly.model.elements().is_empty() {
-        // Springs that are put between bodies are slow, and their swing is what is looked at.
+        // Springs between bodies are slow, and their oscillation is the result of interest.
         assembly.step = assembly.step.min(SWINGING_STEP * scale.time());
     }
     Ok(assembly)
 }
 
-/// The laws of contact of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL): those
-/// of the plane, of which every element is a contact of its own.
+/// Returns the contact laws of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL):
+/// those of the plane, where every element is a contact of its own.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
-/// A law of contact in space.
+/// Returns a contact law in space.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
     interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }
 
-/// The laws of contact of a free scene in space, in the order of its interfaces.
+/// Returns the contact laws of a free scene in space, in the order of its interfaces.
 pub fn laws_of_free(scene: &SpatialScene) -> Vec<Interface<Spatial>> {
     let law = |law: &FreeInterface| law_in_space(&law.between.join("-"), &law.law);
     scene.interfaces.iter().map(law).collect()
 }
 
-/// The outline of a shape that sits at an offset on a body.
+/// Returns the outline of a shape at an offset on a body.
 fn outline_of(placed: &Placed<Planar>) -> Outline {
     let (points, closed) = placed.surface.outline();
     let at = |point| placed.offset + placed.rotation.apply(point);

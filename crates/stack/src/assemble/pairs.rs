@@ -1,12 +1,11 @@
-//! Which boundaries may meet, and by which law: any two bodies, anywhere.
+//! Contact pairs: which boundaries may meet, and by which law.
 //!
-//! Two bodies that the stack joins meet at a seat: the supports of a cradle under its barrel, the
-//! underside of a rack on what it stands on.
-//! Everything else about them, and any other two bodies, meets in impacts only.
-//! A round barrel is tested against the solids of others with the one point that lies deepest; solids
-//! with corners are tested both ways, and every contact belongs to one round piece.
-//! A face with nodes is tested by its nodes while what it bears lies before it, and exactly when that has
-//! come beside it: so no contact is counted twice.
+//! Two bodies that the stack joins meet at a seat: the supports of a cradle under its barrel, the underside of a rack
+//! on its support. All their other boundaries, and any other two bodies, meet in impacts only.
+//! A round barrel is tested against the solids of others with its deepest point; solids with corners are tested both
+//! ways, and every contact belongs to one round piece.
+//! A face with nodes is tested by its nodes while the body that it bears lies before it, and exactly once that body
+//! has moved beside it: so no contact is counted twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -15,7 +14,7 @@ use super::solid::{NodedFace, Seat, Touch};
 use super::{Assembly, PartKind};
 use crate::scenario::{Basis, StackPair};
 
-/// All boundaries that can ever meet, each with its interface.
+/// Returns all boundary pairs that can meet, each with its interface.
 pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
     let mut pairs = Pairs { builder, list: Vec::new() };
     let count = builder.bodies.len();
@@ -63,7 +62,7 @@ impl Pairs<'_> {
         0..self.builder.touches[body].len()
     }
 
-    /// A node set of one body against a surface of another.
+    /// Adds a node set of one body against a surface of another.
     fn push(
         &mut self,
         (contactor, nodes): (BodyId, usize),
@@ -79,8 +78,8 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Two solids exactly: the one that is round against the other, or both ways, with where each of
-    /// the ways counts.
+    /// Adds two solids with exact tests: the round one against the other, or both ways; `counts` gives the active
+    /// side of each.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),
@@ -99,8 +98,8 @@ impl Pairs<'_> {
         }
     }
 
-    /// The nodes with which a solid stands on a floor. A tube from end to end of a rack has a seat at each end, and no
-    /// row where constants are stated for a seat.
+    /// Returns the nodes on which a solid stands on a floor. A tube from end to end of a rack has a seat at each end,
+    /// and no row of nodes where constants are stated per seat.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
         touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))
@@ -163,7 +162,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// All solids of one body against all of another.
+    /// Adds all solids of one body against all of another.
     fn solids_of(&mut self, a: BodyId, b: BodyId, pair: StackPair) {
         for of_a in self.solids(a) {
             for of_b in self.solids(b) {
@@ -172,7 +171,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// A rack stands on the platform of an isolator as on the ground.
+    /// Adds a rack and a device; a rack stands on the platform of an isolator as on the ground.
     fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
         let carried = self.builder.parts[rack].carrier == Some(device);
         for solid in self.solids(rack) {

@@ -1,4 +1,4 @@
-//! Posts on which the next rack stands, and the cups that keep it there.
+//! Posts that carry the next rack, and the cups that hold it in place.
 
 use barrelstack_dynamics::Shape;
 use barrelstack_dynamics::Vec2;
@@ -14,20 +14,20 @@ const SPIGOT_PLAY: f64 = 0.005;
 /// Half the thickness (m) of the lips of a cup: an assumption.
 const LIP_RADIUS: f64 = 0.004;
 
-/// How far (m) from the middle of a post the outside of the cup over it is.
+/// Returns the distance (m) from the middle of a post to the outside of the cup over it.
 pub(super) fn cup(rack: &Rack) -> f64 {
     0.5 * rack.rail_width + SPIGOT_PLAY + 2.0 * LIP_RADIUS
 }
 
-/// How far (m) the foot of a rack may move, in the frame of the rack below, on posts at `spacing` (m) from its middle
-/// before nothing holds it there.
+/// Returns the displacement (m) beyond which the foot of a rack is no longer supported, in the frame of the rack
+/// below, on posts at `spacing` (m) from its middle.
 pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
-    // A post stands on a post: once it has moved by its width it is off.
+    // A post stands on a post: displaced by its width, it is off.
     rack.rail_width.min(spacing)
 }
 
-/// The two posts at `spacing` (m) from the middle of a rack, and above the first level the cups over the posts
-/// below: lips beside them hold the rack in place until it is lifted off. On the floor there is nothing to hold.
+/// Returns the two posts at `spacing` (m) from the middle of a rack, and above the first level the cups over the
+/// posts below: lips that hold the rack in place until it is lifted off. On the floor there is nothing to hold.
 pub(super) fn posts_and_cups(
     rack: &Rack,
     posts: &Posts,

@@ -1,4 +1,4 @@
-//! The convex solids that a body is made of: what is drawn, what collides, what weighs.
+//! Convex solids of a body, for drawing, contact and mass.
 
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{
@@ -8,31 +8,29 @@ use barrelstack_dynamics::{
 /// A convex part of a body, full-scale, in the frame of its draft.
 pub(crate) struct Solid {
     pub(super) shape: Shape,
-    /// Where the frame of the shape is (m).
+    /// Position of the frame of the shape (m).
     pub(super) offset: Vec2,
     pub(super) seat: Seat,
-    /// Nodes along its flat underside: positions (m) and tributary lengths (m); none where contact is
-    /// exact all around.
+    /// Nodes along its flat underside: positions (m) and tributary lengths (m); empty for exact contact all around.
     pub(super) below: Vec<(Vec2, f64)>,
-    /// The same along its flat top.
+    /// Nodes along its flat top.
     pub(super) above: Vec<(Vec2, f64)>,
-    /// Cosine of the angle to its faces with nodes up to which a contact is one of the face: see
-    /// [`Face::widest`].
+    /// Cosine of the angle to its faces with nodes up to which a contact belongs to the face: see [`Face::widest`].
     pub(super) widest: f64,
-    /// Whether the mass of its body is spread over it, too.
+    /// `true` if it has a share of the mass of its body.
     pub(super) weighs: bool,
-    /// Whether it stands beside the barrels, out of the plane that shows them, and never meets one.
+    /// `true` if it stands beside the barrels, out of the plane of the drawing, and never meets one.
     pub(super) out_of_plane: bool,
 }
 
-/// What a solid is there to bear.
+/// Bearing function of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
-    /// Nothing: it meets only what has come loose.
+    /// None: it touches only loose bodies.
     None,
-    /// The rack stands with it on the ground, or on one of its supports.
+    /// The rack stands on it, on the ground or on one of its supports.
     OnSupport(usize),
-    /// The rack stands with it on the ground, or on any of its supports.
+    /// The rack stands on it, on the ground or on any of its supports.
     OnSupports,
     /// It carries one of the rack's barrels.
     Barrel(usize),
@@ -44,7 +42,7 @@ pub(crate) enum Seat {
 }
 
 impl Seat {
-    /// Whether the rack stands with it on what is below.
+    /// Returns `true` if the rack stands on it.
     pub(super) fn stands(self) -> bool {
         match self {
             Self::OnSupport(_) | Self::OnSupports | Self::Along(_) => true,
@@ -53,11 +51,11 @@ impl Seat {
     }
 }
 
-/// How a solid of a body is touched; its surface has the same number.
+/// Contact data of a solid; its surface has the same index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,
-    /// Whether it never meets a barrel.
+    /// `true` if it never meets a barrel.
     pub(super) out_of_plane: bool,
     /// The node set of its round pieces, which tests exactly; for a circle, of its rolling node.
     pub(super) exact: usize,
@@ -72,20 +70,20 @@ pub(super) struct Touch {
 pub(super) struct NodedFace {
     /// The node set.
     pub(super) nodes: usize,
-    /// The node set of the round pieces that are no ends of it.
+    /// The node set of the round pieces that are not ends of the face.
     pub(super) others: usize,
     /// The face.
     pub(super) face: usize,
 }
 
-/// Below any cosine: what a face bears is round, and where its center lies says all.
+/// Below any cosine: the face bears a round body, whose center alone decides.
 const ROUND: f64 = -2.0;
 
-/// How near (m) to a face a round piece lies that is an end of it.
+/// Distance (m) from a face within which a round piece counts as an end of it.
 const AT_END: f64 = 1e-9;
 
 impl Solid {
-    /// A solid that is tested exactly all around.
+    /// Creates a solid that is tested exactly all around.
     pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
         Self {
             shape,
@@ -99,7 +97,7 @@ impl Solid {
         }
     }
 
-    /// Adds itself to a body whose center of mass is at `center` (m) of the draft, scaled by `length`.
+    /// Adds the solid to a body whose center of mass is at `center` (m) of the draft, scaled by `length`.
     pub(super) fn add_to(self, body: &mut Body<Planar>, center: Vec2, length: f64) -> Touch {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;
@@ -134,8 +132,8 @@ impl Solid {
     }
 }
 
-/// A row of nodes along a face at height `z` (m), `half` (m) to either side of `middle` (m), no further
-/// apart than `spacing` (m).
+/// Returns a row of nodes along a face at height `z` (m), `half` (m) to either side of `middle` (m), at most
+/// `spacing` (m) apart.
 pub(super) fn row(spacing: f64, middle: f64, half: f64, z: f64) -> Vec<(Vec2, f64)> {
     let parts = (2.0 * half / spacing - 1e-9).ceil().max(1.0);
     let step = 2.0 * half / parts;
@@ -155,10 +153,10 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
     body.nodes.len() - 1
 }
 
-/// Length (m) of boundary that a contact without nodes stands for, at full scale.
+/// Length (m) of boundary that a contact without nodes represents, at full scale.
 pub(super) const TRIBUTARY: f64 = 0.01;
 
-/// What tests the boundary of a part exactly, scaled by `length`.
+/// Returns the node set that tests the boundary of a part exactly, scaled by `length`.
 pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     let Placed { surface, offset, rotation } = placed;
     let tributary_length = TRIBUTARY * length;
@@ -183,7 +181,7 @@ pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     }
 }
 
-/// Center of mass (m) and moment of inertia about it over the mass (m²) of solids of one density.
+/// Returns the center of mass (m) and the squared radius of gyration (m²) of solids of one density.
 pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     let sections = || {
         solids.iter().filter(|solid| solid.weighs).filter_map(|solid| {
@@ -202,7 +200,7 @@ pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     (center, sections().map(about).sum())
 }
 
-/// A shape at another size.
+/// Returns a shape scaled by a length.
 fn scaled(shape: Shape, length: f64) -> Shape {
     if length == 1.0 {
         return shape;

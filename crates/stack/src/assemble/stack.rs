@@ -10,8 +10,7 @@ use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
-/// Lever (m) of the resistance of barrels on hoops against rolling on floors, racks and each other: an
-/// assumption.
+/// Lever (m) of the rolling resistance of barrels on hoops, on floors, racks and each other: an assumption.
 const ROLLING_LEVER: f64 = 0.01;
 
 /// Spin (rad/s) at which most of that resistance is reached.
@@ -51,7 +50,7 @@ pub(super) fn assemble(
     let Builder { bodies, parts, laws: more, cradle_law, held, loose, raised, .. } = builder;
     let mut interfaces = laws(spec, Shown::Plane(spec.view), scale);
     interfaces.extend(more);
-    // Cradles, with pads and without, have as much stroke as other seats.
+    // Cradles with pads have the same stroke as other seats.
     interfaces[cradle_law].stop = interfaces[StackPair::BarrelRack as usize].stop;
     let mut model = Model::new(bodies, interfaces, pairs, Vec2::new(0.0, -gravity))?;
     let (held, devices) = held.into_iter().unzip();
@@ -70,14 +69,15 @@ pub(super) fn assemble(
     })
 }
 
-/// The laws of contact, each at the place of its pair; a contact of a seat stands for those that are shown in one place.
+/// Returns the contact laws, each at the index of its pair; a contact of a seat represents all seats shown in one
+/// place.
 pub(super) fn laws<S: Space<Real = f64>>(
     spec: &StackSpec,
     shown: Shown,
     scale: Similitude,
 ) -> Vec<Interface<S>> {
     let stroke = spec.rack.seat_stroke * scale.length;
-    // What an element of a seat is weighed by is its length where the seat's constants hold for a meter.
+    // Where the constants of the seat are per meter, the weight of an element is its length.
     let each = match spec.rack.contact {
         SeatContact::Nodes => spec.rack.node_spacing,
         SeatContact::Element | SeatContact::Rails => TRIBUTARY,
@@ -93,7 +93,7 @@ pub(super) fn laws<S: Space<Real = f64>>(
     };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {
-        // What a seat meets at the end of its stroke is what the same bodies meet elsewhere.
+        // At the end of its stroke a seat meets the impact law of the same bodies.
         let stop = match pair {
             StackPair::RackGround => &laws.fallen_rack_ground,
             StackPair::BarrelRack => &laws.fallen_barrel_rack,
@@ -104,7 +104,7 @@ pub(super) fn laws<S: Space<Real = f64>>(
             | StackPair::FallenRackGround
             | StackPair::FallenRackRack => {
                 return Interface {
-                    // What has fallen does not roll for ever.
+                    // Fallen bodies do not roll for ever.
                     rolling: Some(Rolling {
                         lever: ROLLING_LEVER * scale.length,
                         spin: ROLLING_SPIN / scale.time(),

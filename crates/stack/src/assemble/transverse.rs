@@ -10,7 +10,7 @@
 //!     ////////////////////     ground
 //! ```
 //!
-//! Every part of a rack is a convex solid that meets everything: beam, feet, bars and posts.
+//! Every part of a rack is a convex solid that can touch all other bodies: beam, feet, bars and posts.
 
 use barrelstack_dynamics::shape::{Circle, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
@@ -24,8 +24,8 @@ use crate::scenario::{Cradle, Friction, Rack, RackKind, SeatContact};
 /// Half the thickness (m) of the bars of a cradle, whose ends are round: an assumption.
 pub const BAR_RADIUS: f64 = 0.015;
 
-/// Radius (m) of the corners of tubes: an assumption. Two of them are more than the stroke of a seat, so
-/// that the cores of tubes never meet.
+/// Radius (m) of the corners of tubes: an assumption. Two of them exceed the stroke of a seat, so that the cores of
+/// tubes never meet.
 pub const TUBE_CORNER: f64 = 0.012;
 
 /// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
@@ -56,10 +56,9 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// How far a rack may move across the barrels below before nothing can hold it there without help: with
-/// feet until they stand beside the crowns and the beam has come down on them, without feet until the end
-/// of its beam has passed the crown and stands on the falling side of the round, where friction holds it up
-/// to a slope of arctan μ.
+/// Returns the displacement across the barrels below beyond which a rack is no longer supported: with feet, until
+/// they stand beside the crowns and the beam rests on the round; without feet, until the end of the beam has passed
+/// the crown and stands on the falling side of the round, where friction holds it up to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         return posts::reach(rack, posts.half_spacing);
@@ -79,7 +78,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     bearing + radius * sin
 }
 
-/// One rack with its barrels; returns their ids.
+/// Adds one rack with its barrels; returns their IDs.
 fn add_rack(
     builder: &mut Builder<'_>,
     level: u32,
@@ -135,7 +134,7 @@ fn add_rack(
     Ok((rack_id, barrels))
 }
 
-/// The solids of a rack, from the middle of its underside.
+/// Returns the solids of a rack, from the middle of its underside.
 fn rack_solids(
     rack: &Rack,
     places: &[f64],
@@ -182,7 +181,7 @@ fn rack_solids(
     Ok(solids)
 }
 
-/// What holds a barrel whose lowest point is `clearance` above the underside: two bars that stand on the
+/// Adds the cradle of a barrel whose lowest point is `clearance` above the underside: two bars that stand on the
 /// beam, or a trough of bars end to end.
 fn cradle(
     solids: &mut Vec<Solid>,
@@ -193,7 +192,7 @@ fn cradle(
     seat: Seat,
 ) -> Result<(), PolygonError> {
     let mut bar = |from: Vec2, to: Vec2| -> Result<(), PolygonError> {
-        // A support that lies on the beam is all end and no bar.
+        // A support that lies on the beam is reduced to its round end.
         let shape = if (to - from).z.abs() + (to - from).x.abs() < 1e-3 {
             Shape::Circle(Circle { radius: BAR_RADIUS })
         } else {
@@ -238,7 +237,7 @@ fn cradle(
     Ok(())
 }
 
-/// The chocks of a rack, on its beam: bars whose round ends keep their gap from the barrels.
+/// Returns the chocks of a rack, on its beam: bars whose round ends keep their gap from the barrels.
 fn chocks(
     rack: &Rack,
     chock: Chocks,
@@ -257,12 +256,12 @@ fn chocks(
             let middle = Vec2::new(end.x, 0.5 * (end.z + top));
             let bar = Polygon::bar(Vec2::new(end.x, top) - middle, end - middle, BAR_RADIUS)?;
             let horn = Solid::exact(Shape::Polygon(bar), middle, Seat::None);
-            // What a rack weighs, it weighs without them.
+            // The mass of a rack does not include them.
             solids.push(Solid { weighs: false, ..horn });
         }
     }
     Ok(solids)
 }
 
-/// Length (m) of the straight bars of which a trough is made.
+/// Length (m) of the straight bars that form a trough.
 const TROUGH_BAR: f64 = 0.04;

@@ -1,7 +1,7 @@
-//! Chocks beside the barrels: horns that are higher than the cradle, against rolling out.
+//! Chocks beside the barrels: horns higher than the cradle that prevent rolling out.
 //!
-//! A barrel that leans on a support at an angle φ from the vertical through its center rolls over it from a
-//! sidewise acceleration of g tan φ on, and over a hill of m g r (1 − cos φ).
+//! A barrel that leans on a support at an angle φ from the vertical through its center rolls over it above a lateral
+//! acceleration of g tan φ, and over an energy barrier of m g r (1 − cos φ).
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -54,17 +54,17 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Chocks, InputError
 }
 
 impl Chocks {
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has chocks.
     pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 
-    /// Whether a level of a number of them has chocks, which are solids of its racks.
+    /// Returns `true` if a level of a number of them has chocks, which are solids of its racks.
     pub fn at(&self, level: u32, levels: u32) -> bool {
         level + self.levels > levels
     }
 
-    /// Chocks come with the racks.
+    /// Does nothing: chocks come with the racks.
     #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as every device is put on")]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())

@@ -1,8 +1,8 @@
 //! Isolators under the bottom racks: a platform on rollers, balls or sheets, flat or in dishes.
 //!
-//! A platform bears on the ground at two points.
-//! In a dish of radius `R` a stack swings as a pendulum of that length, `T = 2π √(R/g)`, whatever it weighs; for
-//! balls between two dishes `R` is the sum of both radii less the diameter of the balls.
+//! A platform bears on the ground at two points. In a dish of radius `R` a stack swings as a pendulum of that length,
+//! `T = 2π √(R/g)`, whatever its mass; for balls between two dishes `R` is the sum of both radii less the diameter of
+//! the balls.
 //! The stroke ends at stops; a rack stands on its platform as on the ground.
 
 use barrelstack_dynamics::shape::{Cradle, Polygon};
@@ -44,7 +44,7 @@ pub(super) static WORDS: Words = Words {
         Setting { name: "seized rollers", overrides: &["stack.isolator.friction=0.6"] },
         Setting { name: "rusty rollers", overrides: &["stack.isolator.friction=0.1"] },
     ],
-    // A platform is a body more: only without it the bits are those of the stack.
+    // A platform is an additional body: only without it do the bits equal those of the stack.
     idle: &["stack.isolator.path=\"none\"", "stack.isolator.recentring=\"10 kN/m\""],
     cost: Cost {
         dollars: [800.0, 2500.0],
@@ -118,7 +118,7 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
 /// Sine of the steepest slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
-/// Half of the angle (rad) that a dish spans.
+/// Half of the angle (rad) that a dish spans, beyond its stops.
 const DISH: f64 = 1.2;
 
 /// Damping of bearings over their stiffness (s), on approach only: an assumption.
@@ -129,15 +129,15 @@ impl Isolators {
     pub const BEARING: f64 = 0.03;
     /// Thickness (m) of a platform: an assumption.
     pub const PLATE: f64 = 0.04;
-    /// How far (m) a platform reaches beyond the rack, an assumption; its bearings lie as far inside of its end.
+    /// Overhang (m) of a platform beyond the rack, an assumption; its bearings lie as far inside of its end.
     pub const MARGIN: f64 = 0.05;
 
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has isolators.
     pub fn is_on(&self) -> bool {
         self.path != Path::None
     }
 
-    /// The law of a bearing, one of those under an end of a platform or of a share of it.
+    /// Returns the law of a bearing, one of those under an end of a platform or of a share of it.
     pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
@@ -155,7 +155,7 @@ impl Isolators {
         }
     }
 
-    /// A share of the springs and stops of a platform, along an axis of the ground.
+    /// Returns a share of the springs and stops of a platform, along an axis of the ground.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -172,7 +172,7 @@ impl Isolators {
         }
     }
 
-    /// Lifts the stack and puts a platform under every bottom rack.
+    /// Raises the stack and puts a platform under every bottom rack.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if !self.is_on() {
             return Ok(());
@@ -224,7 +224,7 @@ impl Isolators {
         Ok(())
     }
 
-    /// A bearing of a platform at `x + end` (m) of the ground, `center` (m) below its center of mass.
+    /// Adds a bearing of a platform at `x + end` (m) of the ground, `center` (m) below its center of mass.
     fn bear(
         &self,
         builder: &mut Builder<'_>,
@@ -237,7 +237,7 @@ impl Isolators {
         let surface = match self.path {
             Path::None | Path::Flat => 0,
             Path::Dish => {
-                // Drawn up to the stops; it goes on beyond them, so that no blow leads out of it.
+                // Drawn up to the stops; the surface continues beyond them, so that no impact leads out of it.
                 let dish =
                     |half_angle| Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
                 let offset = Vec2::new(x + end, self.dish_radius) * length;

@@ -1,8 +1,8 @@
 //! Lids over the barrels of the highest levels: a cap rack or a bar that closes on them from above.
 //!
-//! A lid is fixed to the rack that carries the barrel, bears on the barrel without friction, and weighs nothing.
-//! A barrel that rolls out of its cradle has to rise first, which a lid does not let it; one that is out from under its
-//! lid is held by it no more.
+//! A lid is fixed to the rack that carries the barrel, bears on the barrel without friction, and has no mass. A
+//! barrel that rolls out of its cradle has to rise first, which a lid prevents; once the barrel is out from under its
+//! lid, the lid no longer holds it.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -54,7 +54,7 @@ section! {
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// How far a lid reaches to either side of its barrel, as a share of the barrel's radius: an assumption.
+/// Reach of a lid to either side of its barrel, as a share of the barrel's radius: an assumption.
 const HALF_WIDTH: f64 = 0.6;
 
 /// Reads lids.
@@ -66,13 +66,13 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Lids, InputError> 
 }
 
 impl Lids {
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has lids.
     pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 
-    /// The lid on a rack, the first body of the link, over its barrel, the second, of a radius (m); `up` is up in the
-    /// frame of the rack.
+    /// Returns the lid on a rack, the first body of the link, over its barrel, the second, of a radius (m); `up` is
+    /// up in the frame of the rack.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -90,13 +90,13 @@ impl Lids {
         }
     }
 
-    /// How far (m) a lid reaches to either side of the middle of its barrel, of a radius (m), and how far (m) it is
-    /// above the center of it.
+    /// Returns the reach (m) of a lid to either side of the middle of its barrel, of a radius (m), and its height (m)
+    /// above the center of the barrel.
     pub fn drawn(&self, radius: f64, scale: Similitude) -> [f64; 2] {
         [HALF_WIDTH * radius, radius + self.gap * scale.length]
     }
 
-    /// Puts a lid on every barrel of its levels.
+    /// Installs a lid over every barrel of its levels.
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);

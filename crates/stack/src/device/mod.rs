@@ -1,8 +1,8 @@
-//! Devices that protect a stack: each a file beside this one, and a line in the list below.
+//! Protective devices of a stack: one file each, and a line in the list below.
 //!
-//! A device is a table of `[stack]`, the force elements, bodies and laws of contact that it puts on a stack, and
-//! what is said of it: its words, settings worth trying, what becomes of it in use, and its price.
-//! What its elements bear, the energy in them, and how they are drawn is the same for all.
+//! A device is a table of `[stack]`, the force elements, bodies and contact laws that it adds to a stack, and its
+//! description: words, candidate settings, degraded states, and price.
+//! Forces, energy and drawing of the elements are the same for all.
 
 mod chock;
 mod isolator;
@@ -31,7 +31,7 @@ pub use tie::{Anchor, AnchorTies, Side};
 pub use tuned_mass::{TunedMass, Tuning};
 pub use walking_stop::{Holds, WalkingStops};
 
-/// Declares the devices: a table of `[stack]`, with its help, and the type that its file reads it into.
+/// Declares the devices: a table of `[stack]` with its help, and the type that its file reads it into.
 macro_rules! devices {
     ($(#[doc = $help:literal] $name:ident: $type:ty),* $(,)?) => {
         /// The devices on a stack.
@@ -40,7 +40,7 @@ macro_rules! devices {
             $(#[doc = $help] pub $name: $type),*
         }
 
-        /// The words of every device.
+        /// Descriptions of all devices.
         pub static DEVICES: &[&Words] = &[$(&$name::WORDS),*];
 
         /// The tables of the devices, as fields of the stack.
@@ -52,12 +52,12 @@ macro_rules! devices {
         )),*];
 
         $(impl $type {
-            /// What is said of them.
+            /// Description of the device.
             pub const WORDS: &'static Words = &$name::WORDS;
         })*
 
         impl Devices {
-            /// Reads the devices of a stack of a number of levels.
+            /// Reads the devices of a stack with a number of levels.
             pub(crate) fn read(stack: &Reader<'_>, levels: u32) -> Result<Self, InputError> {
                 Ok(Self { $($name: $name::read(stack.section(stringify!($name))?, levels)?),* })
             }
@@ -67,22 +67,22 @@ macro_rules! devices {
                 $(stack.table(stringify!($name), self.$name.write());)*
             }
 
-            /// Puts them on a stack, one device after the other.
+            /// Installs them on a stack, one device after the other.
             ///
             /// # Errors
-            /// When a device does not go on this stack, with what to do.
+            /// If a device does not fit this stack, with the next move.
             pub(crate) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
                 $(self.$name.place(builder)?;)*
                 Ok(())
             }
 
-            /// The tables of those that are not on the stack.
+            /// Returns the tables of the devices that are not on the stack.
             pub fn absent(&self) -> Vec<&'static str> {
                 let all = [$((stringify!($name), self.$name.is_on())),*];
                 all.into_iter().filter(|(_, on)| !on).map(|(name, _)| name).collect()
             }
 
-            /// The words of those that are on the stack.
+            /// Returns the descriptions of the devices on the stack.
             pub fn present(&self) -> Vec<&'static Words> {
                 let all = [$((&$name::WORDS, self.$name.is_on())),*];
                 all.into_iter().filter(|(_, on)| *on).map(|(words, _)| words).collect()
@@ -110,36 +110,36 @@ devices! {
     tuned_mass: TunedMass,
 }
 
-/// The words of the force elements of a free scene, which are no device of a stack.
+/// Description of the force elements of a free scene, which belong to no device of a stack.
 pub static FREE: Words = Words { many: "elements", ..Words::silent("element") };
 
-/// What is said of a device, in files, in reports, and to who looks for the best of them.
+/// Display strings, candidate settings and cost of a device.
 #[derive(Debug, PartialEq)]
 pub struct Words {
-    /// One element of it.
+    /// Singular of its elements.
     pub one: &'static str,
-    /// More than one; with underscores also the key in the summary.
+    /// Plural; with underscores also the key in the summary.
     pub many: &'static str,
-    /// The force in one.
+    /// Name of the force in one.
     pub force: &'static str,
-    /// What one does that breaks, ...
+    /// Verb for the failure of one, ...
     pub breaks: &'static str,
-    /// ... what more than one do, ...
+    /// ... of several, ...
     pub break_all: &'static str,
-    /// ... and what it is then.
+    /// ... and the state after it.
     pub broken: &'static str,
     /// Settings worth trying on any stack of at least three levels.
     pub candidates: &'static [Setting],
-    /// What becomes of it in use: to be put [over](Setting::over) a candidate.
+    /// Degraded states in use, to be put [over](Setting::over) a candidate.
     pub degraded: &'static [Setting],
-    /// Settings to be put [over](Setting::over) a candidate, with which it does nothing: out of reach, as slack or as
-    /// weak as can be. Such a stack is the one without it, to the last bit.
+    /// Settings to be put [over](Setting::over) a candidate, with which it has no effect: out of reach, as slack or
+    /// as weak as can be. Such a stack equals the one without it, to the last bit.
     pub idle: &'static [&'static str],
-    /// What it costs.
+    /// Cost of the device.
     pub cost: Cost,
 }
 
-/// A way to set a device, in words and as settings of the scenario.
+/// A setting of a device, in words and as overrides of the scenario.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Setting {
     /// In words.
@@ -149,13 +149,13 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// In words and as changes, as others keep them.
+    /// Returns the words and the overrides as owned strings.
     pub fn told(&self) -> (String, Vec<String>) {
         let overrides = self.overrides.iter().map(|change| (*change).to_owned());
         (self.name.to_owned(), overrides.collect())
     }
 
-    /// These settings in place of those of another one for the same fields, and with its others.
+    /// Returns these settings in place of those of another one for the same fields, and the rest of its settings.
     pub fn over(&self, other: &Self) -> Vec<&'static str> {
         let field = |setting: &&'static str| setting.split('=').next();
         let own: Vec<_> = self.overrides.iter().map(field).collect();
@@ -164,18 +164,18 @@ impl Setting {
     }
 }
 
-/// What a device costs, bought and put on.
+/// Cost of a device, bought and installed.
 #[derive(Debug, PartialEq)]
 pub struct Cost {
-    /// Least and most (US$ of 2024) ...
+    /// Lower and upper bound (US$ of 2024) ...
     pub dollars: [f64; 2],
     /// ... for each of these.
     pub each: Each,
-    /// Where that comes from.
+    /// Source of the figures.
     pub source: &'static str,
 }
 
-/// What a price is for.
+/// Unit of a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Each {
     /// A stack.
@@ -185,9 +185,10 @@ pub enum Each {
 }
 
 impl Words {
-    /// Settings worth trying on a stack of so many levels, each in words and as changes of the scenario.
+    /// Returns candidate settings for a stack with a number of levels, each in words and as overrides of the
+    /// scenario.
     ///
-    /// Whether one goes on the stack is for the scenario to tell.
+    /// Whether one fits the stack is up to the scenario to check.
     pub fn settings(&self, levels: u32) -> Vec<(String, Vec<String>)> {
         let mut all: Vec<_> = self.candidates.iter().map(Setting::told).collect();
         if self == &strap::WORDS {
@@ -196,7 +197,7 @@ impl Words {
         all
     }
 
-    /// Of what no report tells.
+    /// Creates the description of elements that appear in no report.
     pub(crate) const fn silent(one: &'static str) -> Self {
         Self {
             one,
@@ -216,7 +217,7 @@ impl Words {
 /// A number of the highest levels; 0 for none.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
-/// The lowest level that has a device, which is on so many of the highest of a number of levels.
+/// Returns the lowest level that has a device, which is on the `highest` levels of a number of levels.
 pub fn lowest(highest: u32, levels: u32) -> u32 {
     levels.saturating_sub(highest) + 1
 }
@@ -231,21 +232,21 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
     Err(reader.inconsistent("levels", message))
 }
 
-/// An element that is not tightened yet.
+/// A force element that is not tightened yet.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
-    /// As the stack is drawn, before it sinks into its contacts.
+    /// The element as drawn, before the stack settles.
     pub(crate) element: Element<Planar>,
-    /// How much longer (m) it will be than the way between its ends; negative under pretension.
+    /// Excess (m) of its length over the distance of its ends; negative under pretension.
     give: f64,
     words: &'static Words,
 }
 
 impl Assembly {
-    /// Puts on the devices and tightens them as the stack stands in `state`.
+    /// Installs the devices and tightens them on the stack as it stands in `state`.
     ///
     /// # Errors
-    /// When an element that was sound as drawn is not on the settled stack.
+    /// If an element that was valid as drawn is invalid on the settled stack.
     pub(crate) fn fasten(&mut self, state: &mut State<Planar>) -> Result<(), ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

@@ -22,7 +22,7 @@ pub(super) static WORDS: Words = Words {
             "stack.pad.friction=0.3",
         ],
     }],
-    // As hard and as smooth as the seats, where these are springs and dampers.
+    // As stiff and as rough as the seats, where these are springs and dampers.
     idle: &[
         "interface.barrel-rack.law=kelvin-voigt",
         "interface.barrel-rack.basis=seat",
@@ -65,12 +65,12 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Pads, InputError>
 }
 
 impl Pads {
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has pads.
     pub fn is_on(&self) -> bool {
         self.stiffness.is_some()
     }
 
-    /// The law of the pad of one support, where there are some.
+    /// Returns the law of the pad of one support, if the stack has pads.
     pub fn law(&self) -> Option<Interface> {
         self.stiffness.map(|stiffness| Interface {
             basis: Basis::Seat,
@@ -87,7 +87,7 @@ impl Pads {
         })
     }
 
-    /// Gives the cradles their law.
+    /// Assigns the law to the cradles.
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {

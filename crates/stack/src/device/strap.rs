@@ -1,8 +1,8 @@
 //! Straps that hold the top of a stack.
 //!
-//! A strap over a barrel lies on its round without slipping: so it is made fast where it leaves the
-//! barrel, at the ends of its horizontal diameter, and from there runs straight down to the rack.
-//! Along the barrels both of its ends are seen in one line, through the middle of the barrel.
+//! A strap over a barrel lies on its round without slipping, so it is attached where it leaves the barrel, at the
+//! ends of its horizontal diameter, and runs from there straight down to the rack. Along the barrels both of its ends
+//! appear on one line, through the middle of the barrel.
 
 use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -47,10 +47,10 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// Pretensions (kN) of straps about the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
+/// Pretensions (kN) of straps around the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
 const PRETENSIONS: [u32; 2] = [1, 3];
 
-/// Straps about all levels of a stack, which one level alone cannot have.
+/// Returns settings with straps around all levels of a stack of more than one level.
 pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String>)> {
     PRETENSIONS.into_iter().filter(move |_| levels > 1).map(move |pretension| {
         let fields = [
@@ -128,11 +128,11 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// One strap over a way (m) that is plumb on the stack as drawn, and how much longer (m) than its way it will be
-    /// once it is tightened on the stack at rest; negative under pretension.
+    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the excess (m) of its length over
+    /// the distance of its ends once it is tightened on the stack at rest; negative under pretension.
     ///
     /// # Errors
-    /// When the pretension would stretch it over more than its whole way.
+    /// If the pretension would stretch it by more than its whole length.
     pub fn strap<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -161,15 +161,15 @@ impl Straps {
         Ok((strap, give))
     }
 
-    /// Puts on the straps: from the ground up, those on the left first.
+    /// Installs the straps: from the ground up, those on the left first.
     ///
     /// # Errors
-    /// When the pretension would stretch a strap over more than its whole way.
+    /// If the pretension would stretch a strap by more than its whole length.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let Builder { spec, parts, bodies, scale, .. } = builder;
         let (scale, view) = (*scale, spec.view);
         let lowest = lowest(self.levels, spec.levels);
-        // Every strap is plumb on the stack as drawn.
+        // Every strap is vertical on the stack as drawn.
         let strap = |upper: BodyId, lower: BodyId, side: &str, from: f64| {
             let apart = bodies[upper].pose.position - bodies[lower].pose.position;
             let name = format!("{}-{} {side}", parts[upper].name, parts[lower].name);
@@ -178,7 +178,7 @@ impl Straps {
             let (strap, give) = self.strap(link, apart.z, scale)?;
             Ok::<_, String>(Loose { element: strap.into(), give, words: &WORDS })
         };
-        // In the mirror left and right change places, in the order of sums, too.
+        // Mirroring swaps left and right, and with them the order of summation.
         let mut sides = [("left", -1.0), ("right", 1.0)];
         if spec.mirror {
             sides.reverse();
@@ -199,7 +199,7 @@ impl Straps {
                     }
                 }
                 PartKind::Rack => {
-                    // The lowest of the strapped levels is tied to nothing below it.
+                    // The lowest of the strapped levels has no strap to the level below.
                     let tied = self.ties == Ties::LevelsTogether && part.level > Some(lowest);
                     let below = parts.iter().position(|other| {
                         other.kind == PartKind::Rack
@@ -218,7 +218,7 @@ impl Straps {
         Ok(())
     }
 
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has straps.
     pub fn is_on(&self) -> bool {
         self.levels > 0
     }

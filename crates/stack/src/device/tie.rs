@@ -1,6 +1,6 @@
-//! Ties of racks to what stands beside or above them: cables and rods that pull, may have slack, yield and tear.
+//! Ties of racks to structures beside or above them: cables and rods that pull, may have slack, yield and tear.
 //!
-//! Walls and ceilings move as the ground does; a real one moves more.
+//! Walls and ceilings move with the ground; a real one moves more.
 
 use barrelstack_dynamics::{Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -116,12 +116,12 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<AnchorTies, InputE
 }
 
 impl AnchorTies {
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has ties.
     pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 
-    /// A share of one tie, before its slack.
+    /// Returns a share of one tie, before its slack.
     pub fn tie<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -143,7 +143,7 @@ impl AnchorTies {
     /// Ties the racks, from the ground up.
     ///
     /// # Errors
-    /// When racks have no neighbors to be tied to.
+    /// If racks have no neighbors to be tied to.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         if !self.is_on() {
@@ -159,7 +159,7 @@ impl AnchorTies {
         }
         let lowest = lowest(self.levels, spec.levels);
         let far = self.distance * scale.length;
-        // In the mirror left and right change places, in the order of sums, too.
+        // Mirroring swaps left and right, and with them the order of summation.
         let mut sides = [("left", -1.0, Side::Left), ("right", 1.0, Side::Right)];
         if spec.mirror {
             sides = [("left", 1.0, Side::Left), ("right", -1.0, Side::Right)];
@@ -181,11 +181,11 @@ impl AnchorTies {
                 });
                 let end = Vec2::new(sign * size, 0.0);
                 let (other, point, name) = match (self.to, neighbor) {
-                    // Each neighbor is met once, from its left.
+                    // Each pair of neighbors is visited once, from its left.
                     (Anchor::Neighbors, Some(next)) if on == Side::Right => {
                         (next, Vec2::new(-end.x, 0.0), builder.parts[next].name.clone())
                     }
-                    // Between racks there is no wall.
+                    // There is no wall between racks.
                     (Anchor::Neighbors, _) | (Anchor::Wall, Some(_)) => continue,
                     (Anchor::Wall, None) => {
                         let at = place + end + Vec2::new(sign * far, 0.0);

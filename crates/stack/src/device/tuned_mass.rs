@@ -32,7 +32,7 @@ pub(super) static WORDS: Words = Words {
         name: "a tuned mass without its damper",
         overrides: &["stack.tuned_mass.damping_ratio=0.01"],
     }],
-    // A mass is a body more: one that weighs nothing is none.
+    // A mass is an additional body: with zero mass there is none.
     idle: &["stack.tuned_mass.mass=\"0 kg\"", "stack.tuned_mass.level=2"],
     cost: Cost {
         dollars: [400.0, 1500.0],
@@ -41,20 +41,20 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// How a mass is tuned to a structure.
+/// Tuning of a mass to a structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
-    /// Its own frequency over that of the structure.
+    /// Natural frequency over that of the structure.
     pub frequency: f64,
-    /// Its damping over the critical one of its own frequency.
+    /// Damping ratio at its own natural frequency.
     pub damping_ratio: f64,
 }
 
 impl Tuning {
-    /// The tuning with which the largest displacement of an undamped structure under a harmonic force is least,
-    /// for a mass that is this share of that of the structure: the frequency `1/(1 + μ)` and the damping
-    /// `√(3μ/8(1 + μ))` (Den Hartog 1956, section 3.3).
-    /// A stack that rocks is no such structure: the more it sways, the slower.
+    /// Returns the tuning that minimizes the largest displacement of an undamped structure under a harmonic force,
+    /// for the ratio μ of the masses: the frequency `1/(1 + μ)` and the damping `√(3μ/8(1 + μ))` (Den Hartog 1956,
+    /// section 3.3).
+    /// A rocking stack is no such structure: the more it sways, the slower.
     ///
     /// ```
     /// let tuning = barrelstack_stack::device::Tuning::den_hartog(0.05);
@@ -105,26 +105,26 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     Ok(mass)
 }
 
-/// Frequency (Hz) of what holds it up: far above that of any stack, and no stiffer than seats.
+/// Frequency (Hz) of its support: far above that of any stack, and no stiffer than seats.
 const HOLDING: f64 = 15.0;
 
 impl TunedMass {
-    /// Half of its width and height (m) as drawn.
+    /// Half of its width and height (m) in drawings.
     pub const HALF: [f64; 2] = [0.15, 0.03];
-    /// Of what holds a mass up, which is not told of.
+    /// Description of the support of a mass, which appears in no report.
     pub const SUPPORT: &'static Words = &Words::silent("support");
 
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has tuned masses.
     pub fn is_on(&self) -> bool {
         self.mass > 0.0
     }
 
-    /// The level whose racks carry masses, of a stack of so many.
+    /// Returns the level whose racks carry masses, in a stack with a number of levels.
     pub fn level_of(&self, levels: u32) -> u32 {
         if self.level == 0 { levels } else { self.level }
     }
 
-    /// On what a share of a mass swings along an axis of the first body of a link.
+    /// Returns the spring on which a share of a mass swings along an axis of the first body of a link.
     pub fn swing<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -146,7 +146,7 @@ impl TunedMass {
         }
     }
 
-    /// What holds a share of a mass up, along an axis of the first body of a link.
+    /// Returns the support of a share of a mass along an axis of the first body of a link.
     pub fn hold<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -159,7 +159,7 @@ impl TunedMass {
         Guide::spring(link, axis, stiff, 0.1 * mass * fast * scale.damping(false))
     }
 
-    /// Puts a mass on every rack of its level, at the center of mass of the rack.
+    /// Installs a mass on every rack of its level, at the center of mass of the rack.
     #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
@@ -179,7 +179,7 @@ impl TunedMass {
                 level: None,
                 column,
                 mass,
-                // Every force goes through its center, so it never turns.
+                // Every force passes through its center, so it never turns.
                 inertia: Some(mass * Self::HALF[0] * Self::HALF[0]),
                 position: builder.bodies[rack].pose.position * (1.0 / scale.length),
                 size: Self::HALF[0],

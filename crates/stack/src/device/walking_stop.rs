@@ -1,6 +1,6 @@
 //! Stops that keep racks from walking on the barrels below: hooks over the ends of the barrels, or saddles.
 //!
-//! A rack that has been lifted above its lips is off them for good.
+//! A rack that has been lifted above its lips is disengaged for good.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -93,12 +93,13 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<WalkingStops, Inpu
 }
 
 impl WalkingStops {
-    /// Whether the stack has them.
+    /// Returns `true` if the stack has stops.
     pub fn is_on(&self) -> bool {
         self.levels > 0
     }
 
-    /// Stops between the bodies of a link, along an axis of the first one, which let go above their lip.
+    /// Returns the stops between the bodies of a link, along an axis of the first one; they disengage above their
+    /// lip.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -115,10 +116,10 @@ impl WalkingStops {
         }
     }
 
-    /// Puts stops between racks and each of the barrels below.
+    /// Installs stops between racks and each of the barrels below.
     ///
     /// # Errors
-    /// When racks stand on racks, which have no barrels below.
+    /// If racks stand on racks, which have no barrels below.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let spec = builder.spec;
         if !self.is_on() {
@@ -145,7 +146,7 @@ impl WalkingStops {
             for barrel in part.supports.clone() {
                 let below = &builder.parts[barrel];
                 let (name, size) = (below.name.clone(), below.size);
-                // A saddle lies on a round that turns under it; a hook is met at the top of its barrel.
+                // A saddle lies on a round that turns under it; a hook touches the top of its barrel.
                 let (point, reach) = match spec.view {
                     View::Transverse => (Vec2::default(), 0.7 * size),
                     View::Longitudinal => {

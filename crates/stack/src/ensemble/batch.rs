@@ -1,4 +1,4 @@
-//! Runs in lanes: who loads them, watches them, and writes down what became of them.
+//! Runs in lanes: loading, observation and results.
 
 use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, run_batch};
 use barrelstack_dynamics::real::{Mask, Real};
@@ -12,10 +12,10 @@ use crate::run::{Ended, conclude, thresholds};
 use crate::stand::{Stack, Standing};
 use crate::watch::{self, Ending, Fates, Joints, StressWatch};
 
-/// Steps between two questions whether to stop.
+/// Number of steps between two polls whether to stop.
 const PATIENCE: u32 = 1024;
 
-/// Runs a group of one topology and method in lanes, as far as it is not asked to stop.
+/// Runs a group of one topology and method in lanes, until it is stopped.
 pub(super) fn run(
     width: Width,
     method: Method,
@@ -24,7 +24,7 @@ pub(super) fn run(
     audience: &mut Audience<'_>,
 ) -> Vec<(usize, CaseResult)> {
     let width = if width.is_here() { width } else { Width::Scalar };
-    // A width that is here runs what it is given.
+    // An available width always returns results.
     width.run(InLanes { method, group, stacks, audience }).unwrap_or_default()
 }
 
@@ -68,22 +68,22 @@ struct Batch<'a, 'b, R: Real> {
     audience: &'a mut Audience<'b>,
     /// The next run of the group.
     next: usize,
-    /// Which run every lane has.
+    /// The run of every lane.
     runs: Vec<usize>,
-    /// What becomes of the bodies of every lane; none before the first run is loaded.
+    /// Fates of the bodies of every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
-    /// How hard nodes press in every lane.
+    /// Node forces of every lane.
     stresses: StressWatch<R>,
-    /// What bodies of every lane bear; none before the first run is loaded.
+    /// Forces between bodies of every lane; `None` before the first run is loaded.
     joints: Option<Joints<R>>,
-    /// What ends every lane before its time is over; none before the first run is loaded.
+    /// Stop criteria of every lane; `None` before the first run is loaded.
     end: Option<watch::End<R>>,
-    /// Where the barrels of every lane were, and when (s) they are looked at next.
+    /// Barrel positions of every lane, and the time (s) at which the next sample is due.
     trails: Vec<Trail>,
     due: R,
     /// The lanes that had come to rest in the last step.
     rested: R::Mask,
-    /// Steps since the audience was asked.
+    /// Number of steps since the last poll.
     steps: u32,
     interrupted: bool,
     results: Vec<(usize, CaseResult)>,
@@ -162,7 +162,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let (collapsed, rested) = end.observe(state, fates);
         self.rested = rested;
         let ended = collapsed | rested;
-        // Lanes without a case have ended, too.
+        // Lanes without a case have ended as well.
         let seen = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
         if seen.any() {
             for lane in (0..R::LANES).filter(|lane| seen.lane(*lane)) {
@@ -181,7 +181,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         };
         let (fates, joints) = (fates.of_lane(lane), joints.of_lane(lane));
         let stresses = self.stresses.finish(lane);
-        // A lane without a case stands still and is not looked at.
+        // A lane without a case does not move and is not sampled.
         self.due.put(lane, &f64::INFINITY);
         let trail = std::mem::take(&mut self.trails[lane]);
         let Some((run, standing)) = self.standing(lane) else { return };

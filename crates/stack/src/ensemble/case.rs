@@ -1,4 +1,4 @@
-//! A case of an ensemble: what it is made of, and what became of it.
+//! A case of an ensemble, and its result.
 
 use std::sync::Arc;
 
@@ -15,69 +15,68 @@ use super::trail::Trail;
 /// A case that is ready to run.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The scenario; its own motion is not looked at.
+    /// The scenario; its own motion is ignored.
     pub scenario: Arc<Scenario>,
-    /// What shakes it, shared by all cases of one motion and level.
+    /// Ground motion, shared by all cases of one motion and level.
     pub ground: Arc<Ground>,
 }
 
 impl Prepared {
-    /// A scenario under its own motion.
+    /// Prepares a scenario under its own motion.
     ///
     /// # Errors
-    /// When the motion cannot be read.
+    /// If the motion cannot be read.
     pub fn new(scenario: Scenario) -> Result<Self, GroundError> {
         let ground = Arc::new(scenario.ground()?);
         Ok(Self { scenario: Arc::new(scenario), ground })
     }
 }
 
-/// What became of a case.
+/// Result of a case.
 #[derive(Clone, Debug)]
 pub struct CaseResult {
-    /// What happened, or why the case could not run.
+    /// Outcome, or the reason why the case could not run.
     pub outcome: Result<Outcome, String>,
-    /// When (s) the first barrel had fallen.
+    /// Time (s) at which the first barrel had fallen.
     pub first_fall: Option<f64>,
-    /// How many barrels there are.
+    /// Number of barrels.
     pub barrels: usize,
-    /// When (s) each barrel had fallen, by name, in the order of the barrels; none where it stood.
+    /// Time (s) at which each barrel had fallen, by name, in the order of the barrels; `None` if it stood.
     pub falls: Vec<(String, Option<f64>)>,
-    /// Largest drop (m) of each barrel that fell, in the order of the barrels.
+    /// Largest drop (m) of each fallen barrel, in the order of the barrels.
     pub fall_heights: Vec<f64>,
-    /// Largest force (N) on each of them since it had fallen.
+    /// Largest force (N) on each of them after it had fallen.
     pub fall_forces: Vec<f64>,
     /// Wine (m³) in each of them.
     pub fall_wine: Vec<f64>,
     /// Wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Demands on the stack until the first loss of seat; all none where it could not run or broke down.
+    /// Demands on the stack until the first loss of seat; all `None` if it could not run or broke down.
     pub demands: Demands,
-    /// The same over the whole run.
+    /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Forces between bodies that lean on each other or have met, by name, at rest and at their largest; none where
-    /// it could not run or broke down.
+    /// Forces between bodies that lean on each other or have met, by name, at rest and at their largest; empty if it
+    /// could not run or broke down.
     pub joints: Vec<(String, Joint)>,
-    /// Largest displacement (m) of a barrel against the ground, left at the end: in a plane that along x, in space the
-    /// horizontal one.
+    /// Largest residual displacement (m) of a barrel relative to the ground: in a plane along x, in space horizontal.
     pub residual_displacement: Option<f64>,
-    /// Why the run ended.
+    /// Reason for the end of the run.
     pub ending: Option<Ending>,
-    /// Time (s) of the motion that was left when it ended; zero where it saw all of it.
+    /// Remaining time (s) of the motion when it ended; zero if the run covered all of it.
     pub cut: Option<f64>,
     /// Time (s) that the run reached.
     pub end_time: Option<f64>,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: Option<u64>,
-    /// Energy missing from the books over the energy that went through.
+    /// Residual of the energy balance over the energy throughput.
     pub energy_residual_ratio: Option<f64>,
-    /// What the reader of the result should know.
+    /// Warnings for the reader of the result.
     pub warnings: Vec<String>,
-    /// Where its barrels were; empty where it could not run or broke down.
+    /// Barrel positions over time; empty if it could not run or broke down.
     pub trail: Trail,
 }
 
-/// What was watched of a case.
+/// Observations of a case.
 pub(super) struct Seen<'a> {
     pub(super) fates: &'a Fates,
     pub(super) stresses: &'a Stresses,
@@ -86,12 +85,12 @@ pub(super) struct Seen<'a> {
 }
 
 impl CaseResult {
-    /// Of a case that was stopped before its end, or not begun.
+    /// Creates the result of a case that was stopped before its end, or not started.
     pub fn interrupted() -> Self {
         Self { outcome: Ok(Outcome::Interrupted), ..Self::failed(String::new()) }
     }
 
-    /// What a verdict and the fates of the bodies say of a case that ran until a time (s).
+    /// Creates the result of a case that ran until a time (s), from its verdict and the fates of its bodies.
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,
@@ -144,10 +143,12 @@ impl CaseResult {
         }
     }
 
-    /// A case whose stack falls under its own weight, before it is shaken: a collapse at the start, of the lowest body
-    /// that does not stand (its name and level) and of all levels from there up, whose barrels count as fallen.
+    /// Creates the result of a case whose stack falls under its own weight, before it is shaken: a collapse at the
+    /// start, of the lowest unsupported body (name and level) and of all levels from there up, whose barrels count as
+    /// fallen.
     ///
-    /// `barrels` are those of the whole stack, each by its name, its level, the height (m) over the floor, which counts
+    /// `barrels` lists those of the whole stack, each with name, level, height (m) over the floor, which counts as
+    /// its drop, and wine (m³).
     /// as its drop, and the wine (m³) in it.
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
@@ -184,7 +185,7 @@ impl CaseResult {
         }
     }
 
-    /// Whether it collapsed; none without a verdict.
+    /// Returns `true` if it collapsed; `None` without a verdict.
     pub fn collapsed(&self) -> Option<bool> {
         match self.outcome {
             Ok(Outcome::Stable) => Some(false),
@@ -195,12 +196,12 @@ impl CaseResult {
         }
     }
 
-    /// Whether its stack fell under its own weight, before it was shaken.
+    /// Returns `true` if its stack fell under its own weight, before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         self.outcome.as_ref().is_ok_and(Outcome::fell_at_rest)
     }
 
-    /// A case that could not run.
+    /// Creates the result of a case that could not run.
     pub fn failed(reason: String) -> Self {
         Self {
             outcome: Err(reason),

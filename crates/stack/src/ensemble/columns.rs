@@ -1,4 +1,4 @@
-//! What a table tells of a case: one list, from which every table of cases is made.
+//! Columns of a table of cases: one list, from which every such table is made.
 
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 
@@ -10,22 +10,22 @@ use crate::watch::Joint;
 /// A column of a table of cases.
 #[derive(Clone, Copy, Debug)]
 pub struct CaseColumn {
-    /// Its name without the unit.
+    /// Name without the unit.
     pub name: &'static str,
     /// SI unit; empty for pure numbers and for text.
     pub unit: &'static str,
-    /// What it tells.
+    /// Role of the column.
     pub role: Role,
-    /// What it means, in a sentence.
+    /// Description in a sentence.
     pub meaning: &'static str,
-    /// The value of a case; none where it does not apply or is not known.
+    /// Returns the value of a case; `None` where it does not apply or is unknown.
     pub get: Get,
 }
 
-/// How a value comes from a case.
+/// Accessor of a value of a case.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
-    /// A whole number.
+    /// An integer.
     Integer(fn(&CaseResult) -> Option<usize>),
     /// A number in SI units.
     Number(fn(&CaseResult) -> Option<f64>),
@@ -34,7 +34,7 @@ pub enum Get {
 }
 
 impl CaseColumn {
-    /// What a column of it holds.
+    /// Returns the specification of the column.
     pub fn spec(&self) -> ColumnSpec {
         let kind = match self.get {
             Get::Integer(_) => ValueKind::Integer,
@@ -44,19 +44,19 @@ impl CaseColumn {
         ColumnSpec::new(self.name, self.unit, self.role, kind)
     }
 
-    /// The value of a case.
+    /// Returns the value of a case.
     pub fn of(&self, case: &CaseResult) -> Option<Value> {
         self.values(std::slice::from_ref(case)).get(0)
     }
 
-    /// The values of all cases.
+    /// Returns the values of all cases.
     fn values(&self, cases: &[CaseResult]) -> Values {
         match self.get {
             Get::Integer(get) => {
                 let whole = |case| get(case).and_then(|count| i64::try_from(count).ok());
                 Values::Integer(cases.iter().map(whole).collect())
             }
-            // A NaN in a table looks like a value and is none.
+            // A NaN in a table would look like a value.
             Get::Number(get) => {
                 let number = |case| get(case).filter(|value| !value.is_nan());
                 Values::Number(cases.iter().map(number).collect())
@@ -69,7 +69,7 @@ impl CaseColumn {
     }
 }
 
-/// A table of cases, a row each in their order: the columns of [`CASE_COLUMNS`].
+/// Returns a table of cases, one row each in their order, with the columns of [`CASE_COLUMNS`].
 ///
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared, table};
@@ -86,7 +86,7 @@ pub fn table(cases: &[CaseResult]) -> Vec<Column> {
     CASE_COLUMNS.iter().map(column).collect()
 }
 
-/// Each line: what it means, the name, the unit, what it tells, and how it comes from a case.
+/// Each line: description, name, unit, role, and accessor.
 macro_rules! columns {
     ($(
         #[doc = $meaning:literal]
@@ -196,12 +196,12 @@ columns! {
     };
 }
 
-/// Numbers divided by semicolons.
+/// Joins numbers with semicolons.
 fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|number| plain(*number)).collect::<Vec<_>>().join(";")
 }
 
-/// The largest in size of all forces of a case.
+/// Returns the largest magnitude of all forces of a case.
 fn force(case: &CaseResult, of: fn(&Joint) -> f64) -> Option<f64> {
     case.joints.iter().map(|(_, joint)| of(joint).abs()).reduce(f64::max)
 }

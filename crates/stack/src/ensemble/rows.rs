@@ -1,5 +1,5 @@
-//! Cases that are made when their turn comes, of which only rows of a table are kept: memory holds those of one batch a
-//! core, however many there are.
+//! Cases that are created on demand and of which only table rows are kept: memory holds those of one batch per core,
+//! however many there are.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,21 +12,21 @@ use crate::ground::{Ground, GroundError, of_spec, scaled};
 use crate::pool;
 use crate::scenario::{MeasuredOn, MotionSource, MotionSpec, Scale, Scenario};
 
-/// Cases that a core takes at once: as many as the first chunks of a study have.
+/// Number of cases that a core takes at once: as many as the first chunks of a study have.
 const BATCH: usize = 64;
 
-/// Fewest batches a core, so that none waits long for the last.
+/// Minimum number of batches per core, so that none waits long for the last.
 const SHARE: usize = 4;
 
-/// Motions as their sources have them, so that none is read for every case.
+/// Cache of unscaled motions, so that none is read for every case.
 #[derive(Debug, Default)]
 pub struct Grounds(Mutex<Vec<(MotionSpec, Arc<Ground>)>>);
 
-/// Motions that are kept at once.
+/// Capacity of the cache.
 const KEPT: usize = 64;
 
 impl Grounds {
-    /// The ground of a scenario, with the bits of [`Scenario::ground`].
+    /// Returns the ground of a scenario, with the bits of [`Scenario::ground`].
     ///
     /// # Errors
     /// As [`Scenario::ground`].
@@ -65,11 +65,11 @@ impl Grounds {
     }
 }
 
-/// Runs `count` cases that `make` makes by their number, on all cores, before an observer who hears of every case and
-/// may stop them all; their table, a row each in the order of their numbers, or none when it was stopped.
+/// Runs `count` cases, created by `make` from their number, on all cores; returns their table, one row each in the
+/// order of their numbers, or `None` when stopped. The observer is called for every case and may stop the run.
 ///
-/// A case that cannot be made is a row with the reason as its error.
-/// `kind` tells which cases have one topology, so that those run together; that changes nothing about any of them.
+/// A case that cannot be created is a row with the reason as its error. Cases of one topology must have the same
+/// `kind`, so that they run together; that changes nothing about any of them.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -136,7 +136,7 @@ pub fn rows(
     let parts: Option<Vec<Vec<Column>>> =
         pool::map(&batches, together, &|_| ()).into_iter().collect();
     let parts = parts?;
-    // Where each case came to stand: its batch, and its row there.
+    // Batch and row of each case.
     let mut places = vec![(0, 0); count];
     for (at, number) in order.iter().enumerate() {
         places[*number] = (at / size, at % size);
@@ -144,7 +144,7 @@ pub fn rows(
     let column = |index: usize| {
         let mut column = Column::empty(CASE_COLUMNS[index].spec());
         for (part, row) in &places {
-            // Of one list, so every value is of the kind of its column.
+            // Both come from one list, so every value has the kind of its column.
             let _ = column.values.push(parts[*part][index].values.get(*row));
         }
         column

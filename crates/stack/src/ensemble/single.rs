@@ -1,4 +1,4 @@
-//! Runs that choose their own steps, one after the other: they have no common one.
+//! Runs with adaptive steps, one after the other, since they share no step.
 
 use std::ops::ControlFlow;
 
@@ -13,7 +13,7 @@ use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
 use crate::watch::{End, Ending, Fates, Joints, StressWatch};
 
-/// Runs a group, as far as it is not asked to stop.
+/// Runs a group, until it is stopped.
 pub(super) fn run(
     group: &[Run<'_>],
     stacks: &[Stack<'_>],
@@ -60,7 +60,7 @@ pub(super) fn run(
     results
 }
 
-/// Watches what becomes of every body and what it bears, and nothing else.
+/// Observes the fates of the bodies and the forces between them.
 struct Watch<'a> {
     fates: Fates,
     stresses: StressWatch,
@@ -69,7 +69,7 @@ struct Watch<'a> {
     started: bool,
     end: End,
     stop: &'a dyn Fn() -> bool,
-    /// When to ask next whether to stop (s).
+    /// Next poll (s) whether to stop.
     next_ask: f64,
     ending: Option<Ending>,
 }

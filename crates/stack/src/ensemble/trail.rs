@@ -1,23 +1,23 @@
-//! Where the barrels of a case were, now and then: the ways of the top ones, and where all came to lie.
+//! Sampled barrel positions of a case: paths of the top barrels, and final positions of all.
 
 use barrelstack_dynamics::{BodyId, Planar, Pose, State};
 
 use crate::assemble::{Assembly, PartKind};
 
-/// Places kept per second: enough to see a barrel sway and fall.
+/// Samples per second: enough to show how a barrel sways and falls.
 pub const RATE: f64 = 16.0;
 
-/// Where barrels were, relative to the ground, at whole multiples of `1/RATE` (s), each seen at the step that
-/// reached it; in single precision, since it is looked at and not computed with.
+/// Barrel positions relative to the ground at whole multiples of `1/RATE` (s), each taken at the step that reached
+/// it; in single precision, since they are for display only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trail {
     /// The barrels of the top level.
     pub top: Vec<BodyId>,
-    /// For each of them, `x` and `z` (m) relative to the ground.
+    /// Path of each of them: `x` and `z` (m) relative to the ground.
     pub ways: Vec<Vec<[f32; 2]>>,
     /// All barrels.
     pub barrels: Vec<BodyId>,
-    /// For each of them, `x`, `z` (m) relative to the ground and the angle (rad), where it was seen last.
+    /// Last position of each of them: `x`, `z` (m) relative to the ground and the angle (rad).
     pub last: Vec<[f32; 3]>,
 }
 
@@ -34,12 +34,12 @@ impl Trail {
         }
     }
 
-    /// When (s) the next place is due; never where no barrel is followed.
+    /// Returns the time (s) at which the next sample is due; infinite where no barrel is followed.
     pub(super) fn due(&self) -> f64 {
         self.ways.first().map_or(f64::INFINITY, |way| way.len() as f64 / RATE)
     }
 
-    /// Sees all barrels by their poses, on their way where that is due.
+    /// Records all barrels by their poses, and extends their paths where a sample is due.
     pub(super) fn see(&mut self, time: f64, pose: impl Fn(BodyId) -> Pose<Planar>) {
         let ground = pose(Assembly::GROUND).position;
         let due = self.due() <= time;
@@ -56,7 +56,7 @@ impl Trail {
         }
     }
 
-    /// Sees a state of a run that is alone.
+    /// Records the state of a single run.
     pub(super) fn see_state(&mut self, state: &State<Planar>) {
         self.see(state.time, |body| state.poses[body]);
     }

@@ -1,4 +1,4 @@
-//! Why there is no run, and which fields of the scenario that is about.
+//! Errors of a run, and the fields of the scenario that they concern.
 
 use barrelstack_dynamics::Lack;
 
@@ -6,10 +6,10 @@ use crate::assemble::AssembleError;
 use crate::ground::GroundError;
 use crate::rest::Restless;
 
-/// Most memory (bytes) that what is kept of a run may take.
+/// Maximum memory (bytes) of the results of a run.
 pub(super) const MOST_KEPT: f64 = 2e9;
 
-/// Why there is no run.
+/// Error of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunFailure {
     /// The motion is missing.
@@ -24,17 +24,17 @@ pub enum RunFailure {
     /// The step is too long for the contacts.
     #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
-        /// The step asked for (ms).
+        /// The step requested (ms).
         asked: f64,
-        /// How that shows.
+        /// The symptom.
         reason: String,
-        /// The step that is taken when none is given (ms).
+        /// The default step (ms).
         instead: f64,
     },
     /// The run would not end, or not begin.
     #[error("{0}")]
     Duration(String),
-    /// What is to be kept is more than memory should hold.
+    /// The results would take more memory than allowed.
     #[error(
         "{samples:.2e} samples of {channels} histories and {frames:.2e} frames of {bodies} bodies take \
          {gigabytes:.1} GB, more than a run may keep ({} GB): lower record.history_rate or \
@@ -42,13 +42,13 @@ pub enum RunFailure {
         MOST_KEPT / 1e9
     )]
     Memory {
-        /// Samples of every history.
+        /// Number of samples of every history.
         samples: f64,
-        /// Histories.
+        /// Number of histories.
         channels: usize,
-        /// Frames.
+        /// Number of frames.
         frames: f64,
-        /// Bodies.
+        /// Number of bodies.
         bodies: usize,
         /// Memory for all of them (10⁹ bytes).
         gigabytes: f64,
@@ -56,7 +56,7 @@ pub enum RunFailure {
 }
 
 impl RunFailure {
-    /// The fields of a scenario that it is about, the likeliest first.
+    /// Returns the fields of a scenario that it concerns, the likeliest first.
     pub fn fields(&self) -> Vec<String> {
         let of = |fields: &[&str]| fields.iter().map(|field| (*field).to_owned()).collect();
         match self {

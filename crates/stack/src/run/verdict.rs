@@ -1,4 +1,4 @@
-//! What the end of a run says of it, in a plane and in space.
+//! Verdict at the end of a run, in a plane and in space.
 
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Space;
@@ -8,38 +8,38 @@ use super::CUT;
 use crate::outcome::Outcome;
 use crate::watch::Ending;
 
-/// Share of the energy that went through, missing from the books, above which a run is invalid.
+/// Ratio of the energy residual to the throughput above which a run is invalid.
 ///
-/// A hundred times what leads to a warning, and two thousand times what a sound step leaves open.
+/// A hundred times the ratio that leads to a warning, and two thousand times that of a sound step.
 const BOOKS_BROKEN: f64 = 0.1;
 
-/// The same above which the reader is warned.
+/// Ratio above which the reader is warned.
 const BOOKS_OPEN: f64 = 1e-3;
 
-/// What a run that came to its end leaves behind.
+/// Totals of a run that reached its end.
 pub struct Ended {
-    /// The energy books at the end.
+    /// Energy balance at the end.
     pub energy: EnergySummary,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
 }
 
-/// What the end of a run says of it.
+/// Verdict at the end of a run.
 pub struct Verdict {
-    /// What happened.
+    /// The outcome.
     pub outcome: Outcome,
-    /// The energy books at the end; none where numbers were lost.
+    /// Energy balance at the end; `None` if numbers were lost.
     pub energy: Option<EnergySummary>,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// What the reader of the result should know, one sentence each.
+    /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
-    /// Why it ended.
+    /// Reason for its end.
     pub ending: Ending,
 }
 
 impl Verdict {
-    /// Judges a run that ended at a time (s) and whose motion ends at another (s), and says what its end leaves open.
+    /// Judges a run that ended at a time (s) and whose motion ends at another (s), with warnings about its end.
     pub fn of(
         ended: Result<Ended, RunError>,
         judge: impl FnOnce() -> Outcome,
@@ -73,13 +73,13 @@ impl Verdict {
 }
 
 impl Ended {
-    /// Of a single run.
+    /// Returns the totals of a single run.
     pub fn of<S: Space<Real = f64>>(totals: &RunTotals<S>) -> Self {
         Self { energy: totals.energy.summary(0), steps: totals.steps }
     }
 }
 
-/// Why a run whose energy books do not balance has no outcome.
+/// Returns the reason why a run whose energy balance does not close has no outcome.
 fn broken_books(energy: &EnergySummary) -> String {
     format!(
         "the energy books miss {:.2e} times the energy that went through, so the steps follow no \
@@ -99,13 +99,13 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// What the end of a run leaves open.
+/// Returns a warning about an end that leaves the outcome open.
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
         Ending::Interrupted => Some(format!(
             "the run was stopped at {time:.3} s, before its end: its numbers hold until then, and it has no outcome"
         )),
-        // A stack that stands in the middle of a motion has not stood it.
+        // A stack that stands in the middle of a motion has not survived it.
         Ending::Duration if *outcome == Outcome::Stable && motion_end - time > CUT => {
             Some(format!(
                 "the run ends at {time:.1} s, the motion at {motion_end:.1} s: what the rest of it does is not \

@@ -32,7 +32,7 @@ named! {
 }
 
 impl Fill {
-    /// Share of the capacity that is wine, of a barrel that is filled to a share of it where it is so in part.
+    /// Returns the share of the capacity that is wine; `filled` is that of a partly filled barrel.
     fn share(self, filled: f64) -> f64 {
         match self {
             Self::FullFrozen | Self::FullFluid => 1.0,
@@ -41,7 +41,7 @@ impl Fill {
         }
     }
 
-    /// Mass (kg) of the contents of a barrel of a capacity (m³), filled to a share of it where it is so in part.
+    /// Returns the mass (kg) of the contents of a barrel of a capacity (m³); `filled` as for `share`.
     fn mass(self, capacity: f64, filled: f64) -> f64 {
         catalog::WINE_DENSITY * capacity * self.share(filled)
     }
@@ -91,20 +91,19 @@ known! {
 }
 
 impl Barrel {
-    /// Outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond
-    /// the heads.
+    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond the
+    /// heads.
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
     }
 
-    /// Volume (m³) of the wine in it.
+    /// Returns the volume (m³) of the wine in the barrel.
     pub fn wine(&self) -> f64 {
         self.capacity * self.fill.share(self.filled)
     }
 
-    /// The barrel with another mass or other contents; a change of contents alone brings the mass
-    /// that goes with it.
+    /// Returns the barrel with another mass or other contents; a change of contents alone adjusts the mass.
     #[must_use]
     pub fn altered(&self, mass: Option<f64>, fill: Option<Fill>) -> Self {
         let fill = fill.unwrap_or(self.fill);
@@ -117,15 +116,14 @@ impl Barrel {
         Self { mass: mass.unwrap_or(regular), fill, ..self.clone() }
     }
 
-    /// Moment of inertia about the center of mass for motion in the plane of a view (kg·m²): about
-    /// the axis of the barrel in the transverse view, about a transverse axis in the longitudinal
-    /// view.
+    /// Returns the moment of inertia (kg·m²) about the center of mass in the plane of a view: about the axis of the
+    /// barrel in the transverse view, about a transverse axis in the longitudinal view.
     ///
-    /// The wood is a shell of constant thickness with two heads, placed so that the room between
-    /// them is the nominal volume. The contents weigh what the wood leaves of `mass`. A frozen
-    /// filling turns with the wood. An ideal fluid does not turn about the axis, except for half a
-    /// Stokes layer at 1 Hz, and about a transverse axis it turns like the fluid in a spheroid with
-    /// the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with liquid).
+    /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
+    /// nominal one. The contents weigh `mass` less the wood. A frozen filling turns with the wood. An ideal fluid
+    /// does not turn about the axis, except for half a Stokes layer at 1 Hz, and about a transverse axis it turns
+    /// like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the
+    /// ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
         match view {
@@ -134,11 +132,11 @@ impl Barrel {
         }
     }
 
-    /// The first wave of its wine in the plane of a view; none where it is full or empty.
+    /// Returns the first sloshing wave in the plane of a view; `None` for a full or empty barrel.
     pub fn wave(&self, view: View) -> Option<Wave> {
         (self.fill == Fill::Part).then(|| {
             let length = 2.0 * self.half_room();
-            // The cylinder of the same capacity.
+            // Radius of the cylinder of the same length and capacity.
             let radius = (self.capacity / (PI * length)).sqrt();
             match view {
                 View::Transverse => slosh::across(radius, self.filled),
@@ -174,8 +172,7 @@ impl Barrel {
             transverse: wine_density * wine.transverse,
         };
         let contents = match self.fill {
-            // Wood heavier than the catalog's, when a mass is given for an empty barrel, keeps
-            // its shape.
+            // A mass above that of the wood, given for an empty barrel, is distributed like the wood.
             Fill::Empty => {
                 let density = wine_mass / wood.volume;
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }
@@ -186,7 +183,7 @@ impl Barrel {
             }
             Fill::FullFluid | Fill::Part => {
                 let lag = frozen.transverse - frozen.axial;
-                // A wave is a mass of its own; the rest turns as in a full barrel.
+                // The wave is a separate mass; the rest turns as in a full barrel.
                 let rest = self.wave(View::Longitudinal).map_or(1.0, |wave| 1.0 - wave.share);
                 Moments {
                     axial: wine_density * stokes_layer(half_room, inner),
@@ -200,8 +197,8 @@ impl Barrel {
         }
     }
 
-    /// Half of the distance between the heads that makes the room inside the nominal volume, or the
-    /// most there is (m).
+    /// Returns half of the distance (m) between the heads at which the inside has the nominal volume, or the largest
+    /// possible one.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
@@ -236,7 +233,7 @@ struct Solid {
 }
 
 impl Solid {
-    /// The body between two radii over `-half..half`, by Simpson's rule.
+    /// Integrates the body between two radii over `-half..half`, by Simpson's rule.
     fn between(half: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> Self {
         const INTERVALS: u32 = 200;
         let step = half / f64::from(INTERVALS);
@@ -248,7 +245,7 @@ impl Solid {
                 _ if i % 2 == 1 => 4.0,
                 _ => 2.0,
             };
-            // Both halves are alike.
+            // Twice, for the two equal halves.
             let slice = 2.0 * weight * step / 3.0;
             let (square_out, square_in) = (square(outer(x)), square(inner(x)));
             let area = PI * (square_out - square_in);
@@ -265,7 +262,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Moment of volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
+/// Returns the moment of volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
 fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     /// Kinematic viscosity of wine (m²/s).
     const VISCOSITY: f64 = 1.6e-6;
@@ -280,7 +277,7 @@ const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
-/// Fuller, the surface is too small for a wave that counts; emptier, the wine is a puddle.
+/// Fuller, the surface is too small for a significant wave; emptier, the wine is a puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
 
 /// A barrel.
@@ -292,7 +289,7 @@ pub static BARREL: Section = Section {
     exclusive: &[],
 };
 
-/// Reads a barrel that lies on rails at `rail_half_spacing` (m) from its middle.
+/// Reads a barrel on rails at `rail_half_spacing` (m) from its middle.
 pub(super) fn read(reader: Reader<'_>, rail_half_spacing: f64) -> Result<Barrel, ScenarioError> {
     let base = reader.catalog_name("base")?;
     let Some(known) = catalog::barrel(&base) else { return Err(reader.missing("base")) };

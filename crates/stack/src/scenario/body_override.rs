@@ -1,4 +1,4 @@
-//! A body of a stack that differs from the others.
+//! Overrides of single bodies of a stack.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::{named, section};
@@ -50,7 +50,7 @@ section! {
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }
 
-/// Reads what differs of a body of a stack.
+/// Reads an override.
 pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride, ScenarioError> {
     let change = BodyOverride::read_fields(&reader)?;
     let BodyOverride { body, level, column, row, mass, fill, offset_y, .. } = change;
@@ -105,10 +105,10 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     Ok(change)
 }
 
-/// Writes what differs of a body.
+/// Writes an override.
 pub(super) fn write(body: &BodyOverride) -> Table {
     let mut table = body.write();
-    // A scenario of a plane is written, and so hashed, as before.
+    // Omitted at its default, so that a plane scenario keeps its text and hash.
     if body.offset_y == 0.0 {
         table.remove("offset_y");
     }

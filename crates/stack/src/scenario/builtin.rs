@@ -1,4 +1,4 @@
-//! The scenarios shipped with the program.
+//! Scenarios shipped with the program.
 
 macro_rules! scenarios {
     ($($name:literal),* $(,)?) => {
@@ -24,12 +24,12 @@ scenarios![
     "tumbling-block",
 ];
 
-/// Names of all built-in scenarios.
+/// Returns the names of all built-in scenarios.
 pub fn names() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|(name, _)| *name)
 }
 
-/// The text of a built-in scenario.
+/// Returns the text of a built-in scenario.
 pub fn get(name: &str) -> Option<&'static str> {
     ALL.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

@@ -1,6 +1,6 @@
 //! Named barrels and racks, with the source of every number.
 //!
-//! Values that no source states are assumptions and say so: measure yours and override them.
+//! Values without a source are marked as assumptions: measure and override them.
 
 use std::f64::consts::PI;
 
@@ -27,12 +27,12 @@ pub struct CatalogBarrel {
     pub empty_mass: f64,
     /// Nominal volume (m³).
     pub capacity: f64,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: &'static str,
 }
 
 impl CatalogBarrel {
-    /// The barrel, but for what it holds and the rack that it lies on.
+    /// Returns the barrel without contents, and without the section on its rack.
     pub(super) const fn barrel(&self) -> Barrel {
         let Self { name, length, bilge_diameter, head_diameter, stave_thickness, .. } = *self;
         Barrel {
@@ -52,7 +52,7 @@ impl CatalogBarrel {
     }
 }
 
-/// The barrels.
+/// Barrels of the catalog.
 pub const BARRELS: &[CatalogBarrel] = &[
     CatalogBarrel {
         name: "bordeaux-225",
@@ -98,18 +98,18 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// What a seat is made of: a place where a rack bears, or is borne.
+/// Constants of a seat: a place where a rack bears, or is borne.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seat {
     /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Ratio of the speeds after and before `mass` strikes it.
+    /// Ratio of the speeds after and before an impact of `mass`.
     pub restitution: f64,
     /// Mass (kg) for which the restitution holds.
     pub mass: f64,
 }
 
-/// The seats of a rack: medians, about which variants draw (`validation/seats.md` has the derivations).
+/// Seats of a rack: medians of the variants (derivations in `validation/seats.md`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
     /// One rail across the crown of a barrel below, and one support of a cradle under a barrel.
@@ -118,19 +118,19 @@ pub struct Seats {
     pub floor: Seat,
     /// One post under the rack above.
     pub post: Seat,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: &'static str,
 }
 
 impl Seat {
     const fn new(stiffness: f64, mass: f64) -> Self {
-        // Full barrels of 270 kg that fell bounced clearly, and what the paper measured on barrels and racks is a
-        // restitution of 0.84 to 0.91 for a full barrel on one to four contact elements.
+        // Full barrels of 270 kg were observed to bounce clearly, and the measurements of the paper on barrels and
+        // racks give a restitution of 0.84 to 0.91 for a full barrel on one to four contact elements.
         Self { stiffness, restitution: 0.8, mass }
     }
 }
 
-/// Racks that lie on barrels, whose rails carry each barrel right above the crowns on which they lie.
+/// Racks on barrels, whose rails carry each barrel right above the crowns on which they lie.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0),
     floor: Seat::new(1e7, 10.0),
@@ -158,14 +158,13 @@ pub struct CatalogRack {
     pub rack: Rack,
     /// Its seats.
     pub seats: Seats,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub help: &'static str,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: &'static str,
 }
 
-/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along
-/// them.
+/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along them.
 const TWO_BARREL: Rack = Rack {
     base: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -188,7 +187,7 @@ const TWO_BARREL: Rack = Rack {
     posts: None,
 };
 
-/// The racks.
+/// Racks of the catalog.
 pub const RACKS: &[CatalogRack] = &[
     CatalogRack {
         rack: TWO_BARREL,
@@ -284,12 +283,12 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|known| known.rack.base).collect()
 }
 
-/// A barrel of the catalog.
+/// Returns a barrel of the catalog.
 pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
     BARRELS.iter().find(|barrel| barrel.name == name)
 }
 
-/// A rack of the catalog.
+/// Returns a rack of the catalog.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
     RACKS.iter().find(|known| known.rack.base == name)
 }

@@ -1,4 +1,4 @@
-//! The force elements of a free scene: straps, rods and guides between points of two bodies.
+//! Force elements of a free scene: straps, rods and guides between points of two bodies.
 
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::Declared as _;

@@ -62,43 +62,43 @@ pub struct FreeBody {
     pub inertia: f64,
     /// Center of mass in local coordinates, from the reference point of the shape (m).
     pub center_of_mass: [f64; 2],
-    /// Place of the reference point `[x, z]` at the start (m).
+    /// Initial position of the reference point `[x, z]` (m).
     pub position: [f64; 2],
-    /// Inclination at the start, counterclockwise (rad).
+    /// Initial inclination, counterclockwise (rad).
     pub angle: f64,
-    /// Velocity of the center of mass at the start (m/s).
+    /// Initial velocity of the center of mass (m/s).
     pub velocity: [f64; 2],
-    /// Spin at the start, counterclockwise (rad/s).
+    /// Initial spin, counterclockwise (rad/s).
     pub spin: f64,
     /// Contact nodes.
     pub nodes: Nodes,
     /// Further boundaries.
     pub boundaries: Vec<Boundary>,
-    /// Bodies of one group may be kept from touching each other.
+    /// Group; contacts within a group can be disabled.
     pub group: Option<String>,
-    /// Whether the body moves with the ground.
+    /// `true` if the body moves with the ground.
     pub fixed_to_ground: bool,
     /// Viscous drag.
     pub viscous: Option<Viscous>,
 }
 
-/// A boundary of a body beside that of its own shape; it weighs nothing.
+/// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
     /// Label used by interfaces.
     pub kind: String,
-    /// Outline that others touch, about the reference point of the body's shape; none where nodes are all.
+    /// Outline that others touch, about the reference point of the body's shape; `None` for nodes alone.
     pub shape: Option<Shape>,
     /// Contact nodes.
     pub nodes: Nodes,
 }
 
-/// The law between two kinds of a free scene.
+/// The contact law between two kinds of a free scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeInterface {
     /// The two kinds; the first carries the nodes (contactor), the second the surface (target).
     pub between: [String; 2],
-    /// Whether bodies of one group meet by it.
+    /// `true` if it applies between bodies of one group.
     pub within_groups: bool,
     /// The law.
     pub law: Interface,
@@ -118,7 +118,7 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Kind, shape and nodes of all its boundaries, that of its own shape first.
+    /// Returns kind, shape and nodes of all its boundaries, that of its own shape first.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
@@ -126,7 +126,7 @@ impl FreeBody {
     }
 }
 
-/// Most bodies of a free scene.
+/// Maximum number of bodies of a free scene.
 const MOST_BODIES: usize = 5000;
 
 table! {
@@ -141,7 +141,7 @@ table! {
     nodes = NODES_KIND, NODES_DEFAULT;
 }
 
-/// The nodes of a boundary.
+/// Kind of the field `nodes` of a boundary.
 const NODES_KIND: Kind = Kind::ChoiceOrTable(names::<NodeRule>, "rule", &nodes::NODES);
 const NODES_DEFAULT: Default = Default::Derived(
     "rolling for a circle, corners for straight sides, 1 cm apart otherwise; must be given without a shape",
@@ -321,7 +321,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Kind, shape and nodes of the boundaries of a kind.
+/// Returns kind, shape and nodes of the boundaries of a kind.
 fn of_kind<'a>(
     bodies: &'a [FreeBody],
     kind: &'a str,

@@ -1,4 +1,4 @@
-//! What no cellar can exclude and nobody knows to the last digit.
+//! Imperfections that differ between variants of a stack.
 
 use barrelstack_input::{named, section};
 

@@ -1,9 +1,9 @@
-//! What the catalog knows, and a file may change.
+//! Types whose defaults are an entry of the catalog.
 
-/// Declares a type that is read over one of the catalog: first what no field of its own states, then each field as in
-/// [`section!`](barrelstack_input::section), with its key in files where that is another name than that of the member.
+/// Declares a type that is read over an entry of the catalog: first the members without a field, then each field as
+/// in [`section!`](barrelstack_input::section), with its key in files where that differs from the name of the member.
 ///
-/// A field that a file leaves out, and that has no value of its own then, is that of the catalog.
+/// A field that a file leaves out, and that has no default of its own then, takes the value of the catalog.
 macro_rules! known {
     (
         $(#[$about:meta])*
@@ -32,7 +32,7 @@ macro_rules! known {
         };
 
         impl $type {
-            /// Reads it over one of the catalog.
+            /// Reads the fields over an entry of the catalog.
             fn read_over(reader: &Reader<'_>, known: &Self) -> Result<Self, ScenarioError> {
                 Ok(Self {
                     $($own: Clone::clone(&known.$own),)*
@@ -44,7 +44,7 @@ macro_rules! known {
                 })
             }
 
-            /// Writes its fields.
+            /// Writes the fields.
             fn write_fields(&self, writer: &mut Writer) {
                 $(self.$field.write(
                     writer,

@@ -1,4 +1,4 @@
-//! From a file and overrides to a checked scenario.
+//! Loads a scenario from a file and overrides.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -10,26 +10,26 @@ use super::tree::{Entry, Node, Origin, SourceFile, Sources, Table, Value};
 use super::{Scenario, Written, builtin, merge, root};
 use crate::system;
 
-/// Largest scenario file (bytes).
+/// Maximum size of a scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Largest file (bytes) that is read at all, to say how large it is.
+/// Maximum size of a file that is read at all, to report its size (bytes).
 const READ_LIMIT: usize = 256 << 20;
 
-/// Longest chain of `extends`.
+/// Maximum length of a chain of `extends`.
 const CHAIN_LIMIT: usize = 8;
 
-/// Whether `extends` may name files.
+/// Access of `extends` to files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Access {
-    /// It may.
+    /// May name files.
     Files,
-    /// It names built-in scenarios only.
+    /// May name built-in scenarios only.
     BuiltinOnly,
 }
 
 impl Scenario {
-    /// Reads a scenario from text; [`Scenario::parse`] takes changes as well, and a name for errors.
+    /// Reads a scenario from text; [`Scenario::parse`] accepts overrides as well, and a name for errors.
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -47,7 +47,7 @@ impl Scenario {
         Self::parse("scenario", text, &[])
     }
 
-    /// Reads a scenario file and the files it extends; [`Scenario::load`] takes changes as well.
+    /// Reads a scenario file and the files it extends; [`Scenario::load`] accepts overrides as well.
     ///
     /// # Errors
     ///
@@ -61,10 +61,9 @@ impl Scenario {
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
     /// its folder.
     ///
-    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`.
-    /// The value is TOML, or text when it is not TOML. Items of lists are known by their name
-    /// (`body.block.mass`), interfaces by their pair (`interface.block-ground.stiffness`), or by
-    /// their number from 1. `extends` may name a built-in scenario only.
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is TOML, or
+    /// text when it is not TOML. List items are addressed by name (`body.block.mass`), interfaces by pair
+    /// (`interface.block-ground.stiffness`), or by number from 1. `extends` may name a built-in scenario only.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -86,11 +85,11 @@ impl Scenario {
         read(source_name, text.as_bytes(), overrides, Access::BuiltinOnly)
     }
 
-    /// As [`Scenario::parse`], from bytes that may not be text.
+    /// Reads a scenario as [`Scenario::parse`] does, from bytes that may not be text.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and when the bytes are not UTF-8.
+    /// As [`Scenario::parse`], and if the bytes are not UTF-8.
     pub fn parse_bytes(
         source_name: &str,
         bytes: &[u8],
@@ -103,15 +102,15 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse_bytes`], and when a file cannot be read.
+    /// As [`Scenario::parse_bytes`], and if a file cannot be read.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = read_file(path, Place::Whole { file: name.clone() })?;
         read(&name, &bytes, overrides, Access::Files)
     }
 
-    /// Reads a scenario from values that stand in no text, such as those of another program; relative paths are
-    /// relative to the current folder, and an error names the path of the value that it is about.
+    /// Reads a scenario from values that come from no text, such as those of another program; relative paths are
+    /// relative to the current folder, and errors name the path of the value.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -146,7 +145,7 @@ impl Scenario {
         finished(sources, table)
     }
 
-    /// The scenario with further values set, as overrides of [`Scenario::parse`] set them; what is set again is
+    /// Returns the scenario with further values set, as by the overrides of [`Scenario::parse`]; values set again are
     /// replaced.
     ///
     /// A record that was given as a value ([`Scenario::with_record`]) belongs to no text and is not kept.
@@ -178,7 +177,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// When there is none of that name, and for a problem of an override.
+    /// If there is none of that name, or an override has a problem.
     pub fn builtin(name: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
         let Some(text) = builtin::get(name) else {
             let place = Place::Whole { file: name.to_owned() };
@@ -208,7 +207,7 @@ fn unknown_builtin(field: &str, name: &str) -> Problem {
 
 pub(super) fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
     system::read(path, READ_LIMIT).map_err(|error| {
-        // A file that extends this one stands elsewhere than the place of the error.
+        // The place of the error is in the extending file, so the path is added.
         let reason = match &place {
             Place::Whole { .. } => error,
             Place::File { .. } | Place::Override { .. } | Place::Unknown => {
@@ -233,13 +232,13 @@ fn read(
     finished(sources, table)
 }
 
-/// The scenario of a table, into which all overrides were laid.
+/// Builds the scenario of a table that includes all overrides.
 fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioError> {
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
     let mut scenario = root::read(reader, &stem(&sources.files[0].name))?;
-    // A title of another file, or of a scenario before it was changed, may say what is no longer so.
+    // A title from another file, or from before a change, may be outdated.
     let parts = ["run.", "record.", "imperfections."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
     let unchanged = sources.overrides.iter().all(kept);
@@ -281,7 +280,7 @@ pub(super) fn add_source(
     Ok(())
 }
 
-/// Parses the first file and lays it over what it extends.
+/// Parses the first file and overlays it on what it extends.
 fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> {
     let table = parsed(sources, 0)?;
     extend(sources, table, 0, access)
@@ -297,7 +296,7 @@ fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     Ok(table)
 }
 
-/// Lays a table of a file over what it extends.
+/// Overlays the table of a file on what it extends.
 pub(super) fn extend(
     sources: &mut Sources,
     table: Table,

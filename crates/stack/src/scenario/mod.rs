@@ -1,7 +1,7 @@
-//! The scenario: what stands where, what shakes it, and how it is run.
+//! Scenarios: bodies, ground motion and run settings.
 //!
-//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives plain data in
-//! SI units, checked so far that nothing downstream has to check again, or one error with its place.
+//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives plain data in SI units, fully
+//! checked, so that nothing downstream has to check again, or one error with its place.
 //!
 //! ```
 //! use barrelstack_stack::scenario::{Scenario, View};
@@ -28,11 +28,10 @@
 //! # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
 //! ```
 //!
-//! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader,
-//! the writer of resolved text, the [JSON Schema](schema) and the
-//! [reference](mod@reference) all look there. To add a
-//! field: a line in that table, a field in the type, a line in its `read` and one in its `write`;
-//! leaving one out fails the tests.
+//! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader, the writer of
+//! resolved text, the [JSON Schema](schema) and the [reference](mod@reference) all use that definition. To add a
+//! field, add a line to that table, a field to the type, a line to its `read` and one to its `write`; omitting one
+//! fails the tests.
 
 pub mod barrel;
 pub mod body_override;
@@ -90,7 +89,7 @@ pub use spatial::{SpatialGround, SpatialScene};
 pub use stack::{InSpace, StackSpec, View};
 pub use uniform::Uniform;
 
-/// What can be wrong with a scenario, where, and what to do about it.
+/// Errors of a scenario: problem, place, and next move.
 pub mod error {
     pub use barrelstack_input::{InputError as ScenarioError, Place, Problem};
 }
@@ -108,20 +107,20 @@ pub mod error {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// One line for people.
+    /// Title, one line for people.
     pub title: String,
-    /// What stands.
+    /// The bodies.
     pub scene: Scene,
-    /// What shakes it.
+    /// The ground motion.
     pub motion: MotionSpec,
-    /// How it is run.
+    /// Run settings.
     pub run: RunSpec,
-    /// What is kept.
+    /// Recording settings.
     pub record: RecordSpec,
     written: Written,
 }
 
-/// Where the values of a scenario were written; two that say the same are equal wherever they say it.
+/// Places where the values of a scenario were written; ignored in comparisons.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>);
 
@@ -137,7 +136,7 @@ impl std::fmt::Debug for Written {
     }
 }
 
-/// What stands.
+/// The bodies of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a scenario has one scene and is seldom copied")]
 pub enum Scene {
@@ -145,9 +144,9 @@ pub enum Scene {
     Stack {
         /// The stack.
         stack: StackSpec,
-        /// Thresholds that tell a collapse.
+        /// Thresholds of a collapse.
         outcome: OutcomeSpec,
-        /// How its variants differ from it.
+        /// Differences between its variants.
         imperfections: Imperfections,
     },
     /// Any planar bodies.
@@ -157,12 +156,12 @@ pub enum Scene {
 }
 
 impl Scenario {
-    /// Titles it by what stands and what shakes it, where it was written for something else.
+    /// Replaces an outdated title by one made from bodies and motion.
     pub(crate) fn retitle(&mut self) {
         self.title = title::of(self);
     }
 
-    /// The stack, unless the scene is free.
+    /// Returns the stack; `None` for a free scene.
     pub fn stack(&self) -> Option<&StackSpec> {
         match &self.scene {
             Scene::Stack { stack, .. } => Some(stack),
@@ -170,7 +169,7 @@ impl Scenario {
         }
     }
 
-    /// Whether its bodies are in space: a stack that is looked at there, or a free scene there.
+    /// Returns `true` if the bodies are in space, for a stack or a free scene.
     pub fn is_spatial(&self) -> bool {
         match &self.scene {
             Scene::Stack { stack, .. } => stack.space.is_some(),
@@ -179,8 +178,8 @@ impl Scenario {
         }
     }
 
-    /// Where the value of the first of these fields was written that the user wrote, be it in an override or in
-    /// the file; else where one of them stands in what the file extends. None where none was written.
+    /// Returns the place of the first of these fields that the user wrote, in an override or in the file; failing
+    /// that, of the first one in an extended file. `None` if none was written.
     pub fn place_of(&self, fields: &[String]) -> Option<Place> {
         let (sources, table) = self.written.0.as_deref()?;
         let origin =
@@ -195,7 +194,7 @@ impl Scenario {
         found.min_by_key(rank).map(|origin| sources.place(origin))
     }
 
-    /// How the variants of the stack differ from it, unless the scene is free.
+    /// Returns the differences between variants of the stack; `None` for a free scene.
     pub fn imperfections(&self) -> Option<&Imperfections> {
         match &self.scene {
             Scene::Stack { imperfections, .. } => Some(imperfections),
@@ -203,13 +202,14 @@ impl Scenario {
         }
     }
 
-    /// The scenario as text that reads back equal: every default written out, every quantity in SI. Paths are kept as written.
+    /// Returns the scenario as text that reads back equal: all defaults written out, all quantities in SI, paths
+    /// unchanged.
     pub fn to_resolved_toml(&self) -> String {
         writer::to_toml(&root::write(self))
     }
 
-    /// What stands and how it is run, as the table of a key in another file such as a study; without title and
-    /// motion, and without when its runs end, which were chosen for its own motion.
+    /// Returns bodies and run settings as the table of a key in another file such as a study; without title and
+    /// motion, and without the end of its runs, which was chosen for its own motion.
     pub fn to_toml_table(&self, key: &str) -> String {
         let plain = |key: &str, value| tree::Entry {
             key: key.to_owned(),
@@ -230,20 +230,20 @@ impl Scenario {
         writer::to_toml(&tree::Table { entries: vec![plain(key, tree::Value::Table(own))] })
     }
 
-    /// Fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
+    /// Returns the fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
     ///
-    /// Two scenarios with the same fingerprint describe the same run, however they were written.
-    /// Records count by their bytes where these are at hand ([`Scenario::with_records`]; in every run they are),
-    /// else by their path as written.
+    /// Two scenarios with the same fingerprint describe the same run, however they were written. Records count by
+    /// their bytes where these are in memory ([`Scenario::with_records`]; in every run they are), else by their path
+    /// as written.
     pub fn fingerprint(&self) -> u64 {
         let motion = self.motion.by_content();
         let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };
         fnv1a(untitled.to_resolved_toml().as_bytes())
     }
 
-    /// Every value but the title, in the order of the file with all defaults written out.
+    /// Returns every value but the title, in the order of the file with all defaults written out.
     ///
-    /// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
+    /// List items are identified by name or by the pair they join, else by number from 1, as in overrides.
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
         settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));

@@ -1,4 +1,4 @@
-//! Where the boundary of a body of a free scene carries contact nodes.
+//! Contact nodes on the boundary of a body of a free scene.
 
 use barrelstack_input::declared::Held;
 use barrelstack_input::{named, section, table};
@@ -11,18 +11,18 @@ use super::shape::Shape;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Where the boundary of a body carries contact nodes.
+/// Placement of contact nodes on the boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Nodes {
     /// At the corners.
     Corners,
     /// Along the boundary at most this far apart, corners included (m).
     Spacing(f64),
-    /// This many on each side, or around a curved shape.
+    /// This number on each side, or around a curved shape.
     Count(u32),
-    /// The one point of a circle that is deepest in the target.
+    /// The deepest point of a circle in the target.
     Rolling,
-    /// None: convex outlines touch each other with their deepest points, wherever those lie.
+    /// None: convex outlines touch each other with their deepest points, wherever these lie.
     Exact,
     /// At chosen places.
     At(Vec<ChosenNode>),
@@ -49,7 +49,7 @@ named! {
     }
 }
 
-/// Most contact nodes of one body.
+/// Maximum number of contact nodes of one body.
 const MOST_NODES: f64 = 20_000.0;
 
 table! {
@@ -68,7 +68,7 @@ table! {
     at most one of &["rule", "spacing", "count", "list"];
 }
 
-/// Reads the nodes of a boundary of this shape; without one they are at chosen places.
+/// Reads the nodes of a boundary; without a shape only chosen places are allowed.
 pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, ScenarioError> {
     let Some(nodes) = reader.optional_section("nodes")? else {
         let Some(shape) = shape else { return Err(reader.missing("nodes")) };
@@ -139,7 +139,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     Ok(rule)
 }
 
-/// Writes them.
+/// Writes the placement.
 pub(super) fn write(nodes: &Nodes) -> Table {
     let mut writer = Writer::new(&NODES);
     match nodes {

@@ -1,4 +1,4 @@
-//! Which kinds of bodies meet in a stack, and by which laws: each pair declared once.
+//! Pairs of kinds of bodies that meet in a stack, each declared once with its contact law.
 
 use super::catalog::{Seat, Seats};
 use super::error::ScenarioError;
@@ -8,18 +8,16 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Stiffness of an impact (N/m^1.5): a full barrel of 270 kg that falls from the top of six levels
-/// (9.3 m/s) is stopped within 15 mm. An assumption: nobody has measured it; cellars saw barrels bounce
-/// clearly, burst and lose their bungs.
+/// Impact stiffness (N/m^1.5): stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within
+/// 15 mm. An assumption: no measurement is known; in cellars barrels bounced clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
-/// The same between racks and from a rack to the ground (N/m^1.5): a rack alone that falls as far is
-/// stopped within 10 mm, and under a barrel that lands on it its several contacts share the load.
+/// Impact stiffness between racks and from a rack to the ground (N/m^1.5): stops a rack alone from the same height
+/// within 10 mm, and several of its contacts share the load of a barrel that lands on it.
 const LIGHT: f64 = 5e8;
 
-/// Declares the pairs: what meets, as a variant, a field and a name in files; its table, the stiffness of
-/// its impacts, its coefficient of friction where a scenario leaves that out, and the source of the
-/// coefficient.
+/// Declares the pairs: variant, field and name in files; table, impact stiffness, default coefficient of friction,
+/// and the source of the coefficient.
 macro_rules! pairs {
     ($(
         $(#[doc = $help:literal])+
@@ -32,20 +30,20 @@ macro_rules! pairs {
         }
 
         impl StackPair {
-            /// All of them, each at the place of its number.
+            /// All pairs, each at the index of its number.
             pub const ALL: &[Self] = &[$(Self::$pair),*];
 
-            /// The name in files.
+            /// Returns the name in files.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$pair => $name),* }
             }
 
-            /// The coefficient of friction where a scenario leaves it out.
+            /// Returns the default coefficient of friction.
             pub fn coefficient(self) -> f64 {
                 match self { $(Self::$pair => $coefficient),* }
             }
 
-            /// Where that comes from.
+            /// Returns the source of that coefficient.
             pub fn source(self) -> &'static str {
                 match self { $(Self::$pair => $source),* }
             }
@@ -61,20 +59,20 @@ macro_rules! pairs {
             }
         }
 
-        /// The law of each pair of a stack.
+        /// The contact law of each pair of a stack.
         #[derive(Debug, Clone, PartialEq)]
         pub struct StackInterfaces {
             $($(#[doc = $help])+ pub $field: Interface),*
         }
 
         impl StackInterfaces {
-            /// The law of a pair.
+            /// Returns the contact law of a pair.
             pub fn of(&self, pair: StackPair) -> &Interface {
                 match pair { $(StackPair::$pair => &self.$field),* }
             }
         }
 
-        /// The laws of contact of a stack.
+        /// Contact laws of a stack.
         pub static INTERFACES: Section = Section {
             name: "interfaces",
             help: "Laws of contact in a stack, by pair.",
@@ -88,7 +86,7 @@ macro_rules! pairs {
             exclusive: &[],
         };
 
-        /// Reads the laws of contact of a stack of racks with such seats.
+        /// Reads the contact laws of a stack whose racks have these seats.
         pub(super) fn read_interfaces(
             reader: Reader<'_>,
             seats: &Seats,
@@ -130,7 +128,7 @@ pairs! {
 }
 
 impl StackPair {
-    /// The seat of a rack that the pair is; none for what meets in impacts.
+    /// Returns the seat of a rack that the pair is; `None` for a pair that meets in impacts.
     fn seat(self, seats: &Seats) -> Option<Seat> {
         match self {
             Self::RackGround => Some(seats.floor),
@@ -145,7 +143,7 @@ impl StackPair {
     }
 }
 
-/// Writes the laws of contact.
+/// Writes the contact laws.
 pub(super) fn write_interfaces(interfaces: &StackInterfaces) -> Table {
     let mut writer = Writer::new(&INTERFACES);
     for pair in StackPair::ALL {

@@ -1,4 +1,4 @@
-//! A rack: what carries the barrels of one level, in both views.
+//! Racks: the frame that carries the barrels of one level, in both views.
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
@@ -13,7 +13,7 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// How a rack stands on what is below.
+/// Support of a rack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RackKind {
     /// Rack-on-barrel: the rack lies on the barrels of the level below.
@@ -58,8 +58,8 @@ named! {
 }
 
 impl SeatContact {
-    /// How many elements stand one behind the other where a transverse section shows one, each with the constants of
-    /// a node.
+    /// Returns the number of elements, one behind the other, that one element of a transverse section represents,
+    /// each with the constants of a node.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,
@@ -164,7 +164,7 @@ pub static RACK: Section = Section {
     exclusive: &[],
 };
 
-/// What each rack of the catalog is, and the fields that it has beside those of all.
+/// Descriptions of the racks of the catalog, and the additional fields of each.
 static BASES: [Variant; catalog::RACKS.len()] = {
     let mut bases = [const { Variant { name: "", help: "", fields: &[] } }; catalog::RACKS.len()];
     let mut at = 0;
@@ -177,7 +177,7 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     bases
 };
 
-/// The seats of the rack that a table names.
+/// Returns the seats of the rack that a table names.
 pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
     let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
     Ok(known.seats)
@@ -250,7 +250,7 @@ pub(super) fn write(rack: &Rack) -> Table {
         posts.write_fields(&mut writer);
     }
     let mut table = writer.finish();
-    // Lists of what is stated have the feet behind the cradle.
+    // Listings of stated values have the feet behind the cradle.
     if let Some(feet) = table.entries.iter().position(|entry| entry.key == "foot_height") {
         table.entries.swap(feet, feet + 1);
     }

@@ -9,8 +9,8 @@ use super::pair::StackPair;
 use super::quantity::plain;
 use super::root::ROOT;
 
-/// Every table and field of a scenario file: kind, range, default and meaning; then the units and
-/// the catalog.
+/// Returns every table and field of a scenario file: kind, range, default and meaning; then the units and the
+/// catalog.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     text.push_str(&of::of_tables(&ROOT, &[], ""));

@@ -84,7 +84,7 @@ table! {
 pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario, ScenarioError> {
     reader.integer("schema")?;
     let title = reader.optional_text("title")?.unwrap_or_else(|| fallback_title.to_owned());
-    // Resolved before the reading; still here when an override gives it.
+    // Resolved earlier; still present only if an override sets it.
     if reader.optional_text("extends")?.is_some() {
         let message = "`extends` cannot be overridden; write it in the file".to_owned();
         return Err(reader.inconsistent("extends", message));

@@ -1,4 +1,4 @@
-//! How a scenario is run, what is kept, and when a stack counts as collapsed.
+//! Run and recording settings, and the thresholds of a collapse.
 
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::Declared as _;
@@ -56,7 +56,7 @@ named! {
 }
 
 impl Accuracy {
-    /// Its time step in those of the standard accuracy.
+    /// Returns the time step relative to that of the standard accuracy.
     pub fn step(self) -> f64 {
         match self {
             Self::Screening => 1.25,
@@ -66,10 +66,10 @@ impl Accuracy {
     }
 }
 
-/// Longest run (s).
+/// Maximum duration of a run (s).
 const LONGEST_RUN: f64 = 3600.0;
 
-/// Most steps of a run of fixed step.
+/// Maximum number of steps of a run of fixed step.
 const MOST_STEPS: f64 = 1e9;
 
 section! {
@@ -143,9 +143,7 @@ section! {
         Kind::Quantity(&[Dimension::ANGLE], Range::up_to(3.2)), Default::Value("\"30 deg\"");
 }
 
-/// Reads how it is run.
-///
-/// `until` ends it where the file does not say what does.
+/// Reads the run settings; `until` is the default for the end of the run.
 pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, ScenarioError> {
     let mut run = RunSpec::read_fields(&reader)?;
     if reader.leaves_out("until") {
@@ -164,7 +162,7 @@ pub(super) fn read_run(reader: Reader<'_>, until: Until) -> Result<RunSpec, Scen
     Ok(run)
 }
 
-/// Writes how it is run.
+/// Writes the run settings.
 pub(super) fn write_run(run: &RunSpec) -> Table {
     let mut writer = run.start();
     run.write_chosen(&mut writer);

@@ -5,11 +5,10 @@ use serde_json::Value;
 
 use super::root::ROOT;
 
-/// The schema (JSON Schema 2020-12) of a scenario file, for completion and checking in editors.
+/// Returns the schema (JSON Schema 2020-12) of a scenario file, for completion and checking in editors.
 ///
-/// It holds names, types, choices and ranges of plain numbers. It requires no field, since
-/// `extends` and overrides may supply any; ranges and dimensions of quantities, and what fields
-/// mean together, are checked by the reader alone.
+/// It holds names, types, choices and ranges of plain numbers. It requires no field, since `extends` and overrides
+/// may supply any; ranges and dimensions of quantities, and combinations of fields, are checked by the reader alone.
 pub fn json_schema() -> Value {
     of_file("barrelstack scenario", &ROOT)
 }

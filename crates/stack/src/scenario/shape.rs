@@ -65,10 +65,10 @@ choices! {
     }
 }
 
-/// The outlines that a part of a compound may have: all but the last, which is a compound itself.
+/// Shapes that a part of a compound may have: all but the last, which is the compound itself.
 static OF_PARTS: &[Variant] = SHAPES.split_at(SHAPES.len() - 1).0;
 
-/// Their names.
+/// Returns their names.
 fn part_names() -> Vec<&'static str> {
     OF_PARTS.iter().map(|variant| variant.name).collect()
 }
@@ -76,7 +76,7 @@ fn part_names() -> Vec<&'static str> {
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 
-/// Most corners of a polygon.
+/// Maximum number of corners of a polygon.
 const MOST_CORNERS: usize = 200;
 
 table! {
@@ -159,7 +159,7 @@ pub(super) fn read(reader: Reader<'_>) -> Result<Shape, ScenarioError> {
     Ok(shape)
 }
 
-/// Checks the corners and turns them counterclockwise.
+/// Checks the corners and orders them counterclockwise.
 fn check_vertices(reader: &Reader<'_>, vertices: &mut [[f64; 2]]) -> Result<(), ScenarioError> {
     let wrong = |message: String| Err(reader.inconsistent("vertices", message));
     if !(3..=MOST_CORNERS).contains(&vertices.len()) {

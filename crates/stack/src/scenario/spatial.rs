@@ -1,4 +1,4 @@
-//! A free scene in space: any bodies on a ground, each of one solid or of several.
+//! A free scene in space: bodies on a ground, each of one solid or of several.
 
 use std::collections::BTreeSet;
 
@@ -38,7 +38,7 @@ pub struct SpatialScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
-/// Most bodies of a free scene in space, whose pairs are listed one by one.
+/// Maximum number of bodies of a free scene in space, whose pairs are listed one by one.
 const MOST_BODIES: usize = 500;
 
 /// Reads the fields of a free scene in space from the top of the file.
@@ -51,7 +51,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
             return Err(reader.inconsistent("name", message));
         }
         let name = reader.text("name")?;
-        // The model knows the ground by this name.
+        // The model uses this name for the ground.
         if name == "ground" || bodies.iter().any(|body| body.name == name) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
@@ -81,7 +81,7 @@ fn read_interfaces(
                 format!("no body is of the kind \"{kind}\"; the kinds are {}", kinds.join(", "));
             return Err(reader.inconsistent("between", message));
         }
-        // Solids meet once, whichever comes first.
+        // Two solids meet once, in either order.
         let same = |other: &FreeInterface| {
             other.between == between || other.between.iter().rev().eq(&between)
         };

@@ -26,7 +26,7 @@ pub enum View {
     Longitudinal,
 }
 
-/// A stack and the laws of its contacts.
+/// A stack and its contact laws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StackSpec {
     /// Plane of the model.
@@ -35,30 +35,29 @@ pub struct StackSpec {
     pub levels: u32,
     /// Barrels per level in this view.
     pub columns: u32,
-    /// Barrels per level along the barrels, where the stack is looked at in both planes and `view` is
-    /// the one across them; none where it is looked at in one.
+    /// Barrels per level along the barrels, if both planes are requested; `view` is then the transverse one. `None`
+    /// for a single plane.
     pub columns_along: Option<u32>,
-    /// How it stands in space, where it is looked at there and `view` is the one across its barrels; none where it
-    /// is looked at in a plane.
+    /// Position in space, if the stack is modeled there; `view` is then the transverse one. `None` for a plane.
     pub space: Option<InSpace>,
     /// The barrel used everywhere unless overridden.
     pub barrel: Barrel,
     /// The rack used everywhere unless overridden.
     pub rack: Rack,
-    /// Whether the whole stack is mirrored left to right.
+    /// `true` if the whole stack is mirrored left to right.
     pub mirror: bool,
     /// Free distance between racks side by side (m).
     pub gap: f64,
-    /// Devices that protect it.
+    /// Protective devices.
     pub devices: Devices,
-    /// Bodies that differ, in the order of the file.
+    /// Overrides of single bodies, in the order of the file.
     pub overrides: Vec<BodyOverride>,
-    /// Laws of contact.
+    /// Contact laws.
     pub interfaces: StackInterfaces,
 }
 
 impl StackSpec {
-    /// Barrels that one rack carries in this view.
+    /// Returns the number of barrels that one rack carries in this view.
     pub fn barrels_per_rack(&self) -> u32 {
         match self.view {
             View::Transverse => self.rack.barrels,
@@ -66,7 +65,7 @@ impl StackSpec {
         }
     }
 
-    /// What differs at one place, later entries last.
+    /// Returns the overrides of one place, later entries last.
     pub fn changes_of(
         &self,
         body: StackBody,
@@ -78,8 +77,8 @@ impl StackSpec {
         })
     }
 
-    /// A stack that is looked at in space as a plane shows it; of the bodies that differ those of all rows, and along
-    /// the barrels those of whole levels.
+    /// Returns a stack in space as a plane shows it; of its overrides, those of all rows, and along the barrels those
+    /// of whole levels.
     #[must_use]
     pub fn in_plane(&self, view: View) -> Self {
         let mut plane = Self { view, space: None, ..self.clone() };
@@ -91,13 +90,13 @@ impl StackSpec {
         plane
     }
 
-    /// The stack across its barrels alone, where it is looked at in both planes.
+    /// Returns the stack in the transverse plane alone, if both planes are requested.
     pub fn across(&self) -> Option<Self> {
         self.columns_along.map(|_| Self { columns_along: None, ..self.clone() })
     }
 
-    /// The stack along its barrels, where it is looked at in both planes; of the bodies that differ those
-    /// of whole levels, since columns count barrels across.
+    /// Returns the stack in the longitudinal plane, if both planes are requested; of its overrides, those of whole
+    /// levels, since columns count barrels across.
     pub fn along(&self) -> Option<Self> {
         let columns = self.columns_along?;
         let mut along =
@@ -106,32 +105,32 @@ impl StackSpec {
         Some(along)
     }
 
-    /// Racks one behind the other on one level in space; one in a plane.
+    /// Returns the number of racks one behind the other on one level in space; 1 in a plane.
     pub fn racks_along(&self) -> u32 {
         self.space.map_or(1, |space| space.columns_along / self.rack.barrels_deep.max(1))
     }
 
-    /// Racks side by side on one level in this view.
+    /// Returns the number of racks side by side on one level in this view.
     pub fn racks_per_level(&self) -> u32 {
         self.columns / self.barrels_per_rack().max(1)
     }
 }
 
-/// How a stack stands in space.
+/// Position of a stack in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InSpace {
     /// Barrels per level along the barrels.
     pub columns_along: u32,
-    /// Angle (rad) by which the stack is turned, seen from above against the clock, from where the component of the
-    /// scenario shakes it across its barrels.
+    /// Angle (rad) of the stack, counterclockwise from above; at zero the component of the scenario acts across its
+    /// barrels.
     pub azimuth: f64,
 }
 
 impl View {
-    /// Both.
+    /// Both views.
     pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
 
-    /// The word used in files and results.
+    /// Returns the word used in files and results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Transverse => "transverse",
@@ -139,7 +138,7 @@ impl View {
         }
     }
 
-    /// For people.
+    /// Returns the words for people.
     pub fn words(self) -> &'static str {
         match self {
             Self::Transverse => "across the barrels",
@@ -158,14 +157,14 @@ named! {
     }
 }
 
-/// Most levels and columns of a stack.
+/// Ranges of the numbers of levels and columns of a stack.
 pub(super) const LEVELS: Kind = Kind::Integer(1, 12);
 pub(super) const COLUMNS: Kind = Kind::Integer(1, 40);
 
 /// A whole turn (rad).
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
-/// The fields of a stack of its own.
+/// Fields of the stack other than devices and overrides.
 const OWN: [Field; 9] = fields! {
     /// Plane of the model: across the barrels, along them, or one after the other, each with a horizontal component
     /// of the record; or "spatial", the stack in space under all components at once.
@@ -199,7 +198,7 @@ const OVERRIDES: Field = Field::new(
     "Bodies that differ from the others.",
 );
 
-/// Lists of fields one after the other.
+/// Concatenates lists of fields.
 const fn joined<const ALL: usize>(lists: [&[Field]; 3]) -> [Field; ALL] {
     let mut all = [OVERRIDES; ALL];
     let (mut list, mut next) = (0, 0);

@@ -1,4 +1,4 @@
-//! A scenario some of whose values are still to be set, such as the base of a study.
+//! Scenario templates: scenarios with values still to be set, such as the base of a study.
 
 use std::path::Path;
 
@@ -9,9 +9,9 @@ use super::reader::Reader;
 use super::tree::{Entry, Node, Origin, Sources, Table, Value};
 use super::{MotionSpec, Scenario, merge, root};
 
-/// A scenario that is read again and again with other values.
+/// A scenario that is read repeatedly with different values.
 ///
-/// Values carry the place where they were written, so that a value that does not fit is told there.
+/// Values carry their place, so that an invalid one is reported there.
 #[derive(Debug)]
 pub struct Template {
     sources: Sources,
@@ -19,11 +19,11 @@ pub struct Template {
     title: String,
 }
 
-/// A file that holds a scenario among other things: its sources, its table, and whether it may name files.
+/// A file that contains a scenario among other tables: sources, table, and access to files.
 pub struct Opened {
-    /// The file, and what it extends.
+    /// The file and those that it extends.
     pub sources: Sources,
-    /// All that it holds.
+    /// Its whole content.
     pub table: Table,
     access: Access,
 }
@@ -32,7 +32,7 @@ impl Opened {
     /// Reads and parses a file.
     ///
     /// # Errors
-    /// When it cannot be read or is not TOML.
+    /// If it cannot be read or is not TOML.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
@@ -42,7 +42,7 @@ impl Opened {
     /// Parses a text that may name built-in scenarios only.
     ///
     /// # Errors
-    /// When it is not TOML.
+    /// If it is not TOML.
     pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
         Self::new(name, text.as_bytes(), Access::BuiltinOnly)
     }
@@ -55,21 +55,21 @@ impl Opened {
         Ok(Self { sources, table, access })
     }
 
-    /// The name of the file without its ending.
+    /// Returns the name of the file without its extension.
     pub fn stem(&self) -> String {
         load::stem(&self.sources.files[0].name)
     }
 
-    /// The folder of the file.
+    /// Returns the folder of the file.
     pub fn folder(&self) -> &Path {
         &self.sources.files[0].folder
     }
 
-    /// The scenario in the table of a key, laid over what it extends; `motion` tells whether it needs one of its
-    /// own.
+    /// Returns the scenario in the table of a key, overlaid on what it extends; `motion` is `true` if it needs a
+    /// motion of its own.
     ///
     /// # Errors
-    /// When what it extends cannot be read.
+    /// If an extended scenario cannot be read.
     pub fn template(
         &self,
         key: &str,
@@ -98,7 +98,7 @@ impl Opened {
 }
 
 impl Template {
-    /// Forgets fields of a table that come from what the scenario extends and not from its own file.
+    /// Removes fields of a table that are inherited from an extended scenario.
     pub fn forget_inherited(&mut self, table: &str, fields: &[&str]) {
         let own = |origin: Origin| match origin {
             Origin::File { file, .. } | Origin::Whole(file) => file == 0,
@@ -113,13 +113,13 @@ impl Template {
         }
     }
 
-    /// The definition of the field at a path such as `interface.rack-ground.friction.coefficient`.
+    /// Returns the definition of the field at a path such as `interface.rack-ground.friction.coefficient`.
     pub fn field(&self, path: &str) -> Option<&'static Field> {
         let keys: Vec<&str> = path.split('.').map(str::trim).collect();
         merge::field_at(Some(&self.table), &root::ROOT, &keys)
     }
 
-    /// The path that looks most like one that no field has.
+    /// Returns the most similar valid path.
     pub fn nearest(&self, path: &str) -> Option<String> {
         let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
         for at in 0..keys.len() {
@@ -137,7 +137,7 @@ impl Template {
         Some(keys.join("."))
     }
 
-    /// The scenario with values set at paths.
+    /// Returns the scenario with values set at paths.
     ///
     /// # Errors
     /// The first problem found, where the value was written.
@@ -163,7 +163,7 @@ impl Template {
         root::read(reader, &self.title)
     }
 
-    /// The value at a path of a scenario, every default written out; `None` where it has none.
+    /// Returns the value at a path of a scenario, every default written out; `None` if it has none.
     pub fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
         let mut table = root::write(scenario);
         let mut keys = path.split('.').map(str::trim).peekable();
@@ -194,7 +194,7 @@ impl Template {
         None
     }
 
-    /// All texts that the scenario was read from, in order.
+    /// Returns all texts that the scenario was read from, in order.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.files.iter().map(|file| file.text.as_str())
     }

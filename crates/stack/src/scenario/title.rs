@@ -1,4 +1,4 @@
-//! The title of what is run, where that is no longer what the title at hand was written for.
+//! Generated titles of scenarios.
 
 use std::path::Path;
 
@@ -12,8 +12,8 @@ const WORDS: [&str; 13] = [
     "twelve",
 ];
 
-/// What stands and what shakes it, such as "Six barrels on three levels, elCentro.AT2"; the old title and
-/// that it was changed for a free scene.
+/// Returns bodies and motion, such as "Six barrels on three levels, elCentro.AT2"; for a free scene the old title
+/// with ", changed".
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
         return format!("{}, changed", scenario.title);
@@ -22,10 +22,10 @@ pub(super) fn of(scenario: &Scenario) -> String {
 }
 
 impl Scenario {
-    /// The same with the event of its record in its title, where nobody wrote one; a file is read for that.
+    /// Adds the event of the record to a generated title; this reads the file.
     ///
     /// # Errors
-    /// When the record cannot be read.
+    /// If the record cannot be read.
     pub fn with_event(&self) -> Result<Self, GroundError> {
         let mut named = self.clone();
         let Scene::Stack { stack, .. } = &self.scene else { return Ok(named) };
@@ -39,7 +39,7 @@ impl Scenario {
 }
 
 fn stands(stack: &StackSpec) -> String {
-    // In space barrels stand behind each other, too.
+    // In space barrels also stand behind each other.
     let rows = stack.space.map_or(1, |space| space.columns_along);
     let mut barrels = counted(stack.levels * stack.columns * rows, "barrel");
     barrels[..1].make_ascii_uppercase();
@@ -61,7 +61,7 @@ fn stands(stack: &StackSpec) -> String {
     format!("{barrels} on {levels}{straps}{others}{view}")
 }
 
-/// What shakes it, how strongly: a record by its event, where that is known.
+/// Returns the motion and its scale: a record by its event, if known.
 pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     let motion = &scenario.motion.source;
     let scaled = match scenario.motion.scale {
@@ -93,12 +93,12 @@ pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     name + &scaled
 }
 
-/// A number in words, where those are short.
+/// Returns a number in words, if these are short.
 pub fn number(count: u32) -> String {
     WORDS.get(count as usize).map_or_else(|| count.to_string(), ToString::to_string)
 }
 
-/// A number of things in words.
+/// Returns a number of things in words.
 pub fn counted(count: u32, one: &str) -> String {
     format!("{} {one}{}", number(count), if count == 1 { "" } else { "s" })
 }

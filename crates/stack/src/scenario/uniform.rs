@@ -14,7 +14,7 @@ pub struct Uniform {
 }
 
 impl Shape {
-    /// The outlines it is made of: itself, but for a compound.
+    /// Returns the outlines that form it: itself, unless it is a compound.
     pub fn parts(&self) -> Vec<PartShape> {
         match self {
             Self::Compound { parts } => parts.clone(),
@@ -28,8 +28,8 @@ impl Shape {
         }
     }
 
-    /// Mass properties of a uniform plate of this outline; of a uniform arc for a cradle. Where parts of a
-    /// compound overlap, matter counts twice; cradles among them, which have no area, count nothing.
+    /// Returns the mass properties of a uniform plate of this outline; of a uniform arc for a cradle. Overlaps of the
+    /// parts of a compound count twice; its cradles, which have no area, do not count.
     pub fn uniform(&self) -> Uniform {
         match self {
             Self::Rectangle { width, height, corner_radius } => Uniform {
@@ -52,7 +52,7 @@ impl Shape {
         }
     }
 
-    /// Area enclosed (m²).
+    /// Returns the enclosed area (m²).
     pub(super) fn area(&self) -> f64 {
         match self {
             Self::Rectangle { width, height, corner_radius } => {
@@ -68,7 +68,7 @@ impl Shape {
         }
     }
 
-    /// Length of the boundary (m); that of the enclosing box for a barrel profile.
+    /// Returns the length of the boundary (m); that of the enclosing box for a barrel profile.
     pub fn perimeter(&self) -> f64 {
         match self {
             Self::Rectangle { width, height, corner_radius } => {
@@ -86,7 +86,7 @@ impl Shape {
     }
 }
 
-/// Parts of one density, each about its own centroid and shifted from there.
+/// Combines parts of one density, each shifted from its own centroid.
 fn compound(parts: &[PartShape]) -> Uniform {
     let placed = || {
         parts.iter().map(|part| {
@@ -107,10 +107,10 @@ fn compound(parts: &[PartShape]) -> Uniform {
     Uniform { centroid, square_radius: placed().map(about).sum() }
 }
 
-/// Polar moment over area of a rectangle with rounded corners (m²).
+/// Returns the polar moment over the area of a rectangle with rounded corners (m²).
 fn rounded_rectangle(w: f64, h: f64, r: f64) -> f64 {
     let (square, quarter) = (r * r, 0.25 * PI * r * r);
-    // A square corner goes and a quarter of a disk comes, each shifted from its own centroid.
+    // Replaces a square corner by a quarter of a disk, each shifted from its own centroid.
     let (u, v) = (0.5 * (w - r), 0.5 * (h - r));
     let corner = square * (square / 6.0 + u * u + v * v);
     let offset = 4.0 * r / (3.0 * PI);
@@ -129,7 +129,7 @@ pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Area (m²), positive when counterclockwise.
+/// Returns the area (m²), positive when counterclockwise.
 pub(super) fn area(vertices: &[[f64; 2]]) -> f64 {
     0.5 * sides(vertices).map(|(a, b)| cross(a, b)).sum::<f64>()
 }
@@ -149,7 +149,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Uniform {
     Uniform { centroid, square_radius: second / area - shift }
 }
 
-/// Area (m²) and polar moment of area (m⁴) between `±r(x)`, with `r` the parabola of the barrel.
+/// Returns area (m²) and polar moment of area (m⁴) between `±r(x)`, with `r` the parabola of the barrel.
 fn barrel_profile(length: f64, bilge: f64, head: f64) -> (f64, f64) {
     // r = b - s u², x = L u / 2, integrated over u from 0 to 1 and doubled.
     let (b, s, half) = (0.5 * bilge, 0.5 * (bilge - head), 0.5 * length);

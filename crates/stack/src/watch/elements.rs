@@ -1,24 +1,24 @@
-//! What force elements bore, and when they broke.
+//! Forces and failure times of force elements.
 
 use barrelstack_dynamics::{Scratch, Space, State};
 
-/// What became of one force element.
+/// Fate of one force element.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElementFate {
-    /// The force (N) that is largest in size until the first loss of seat, and when it was borne (s).
+    /// Force (N) of the largest magnitude until the first loss of seat, and its time (s).
     pub peak: (f64, f64),
-    /// The same over the whole run.
+    /// That force and time over the whole run.
     pub peak_whole_run: (f64, f64),
-    /// When it broke (s).
+    /// Time (s) at which it broke.
     pub broken_at: Option<f64>,
 }
 
-/// What became of every force element, in the order of the model.
+/// Fates of all force elements, in the order of the model.
 #[derive(Clone, Debug, Default)]
 pub struct ElementFates(pub Vec<ElementFate>);
 
 impl ElementFates {
-    /// Looks at an accepted step; `standing` where no seat had been lost before it.
+    /// Records an accepted step; `standing` is `true` if no seat had been lost before it.
     pub fn observe<S: Space<Real = f64>>(
         &mut self,
         state: &State<S>,

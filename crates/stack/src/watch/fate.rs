@@ -1,4 +1,4 @@
-//! The fate of every body: whether it kept its seat, when it left it, how far it fell.
+//! Fate of every body: loss of seat, fall, slip and tilt.
 
 use barrelstack_dynamics::lanes::PerLane;
 use barrelstack_dynamics::real::{Mask, Real};
@@ -7,23 +7,23 @@ use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2, lanewis
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
 
-/// When a body counts as having left its seat, or fallen; all definitions are here.
+/// Thresholds beyond which a body has left its seat, or has fallen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// A barrel has left its seat when its center is this many of its radii from its place in the rack.
+    /// Displacement of a barrel from its place in the rack, in radii, beyond which it has left its seat.
     pub seat_loss_ratio: f64,
-    /// A body has fallen when its center is this far (m) below its place at rest.
+    /// Drop (m) below its place at rest beyond which a body has fallen.
     pub fall_drop: f64,
-    /// A rack has left its seat when it has moved this part of its reach on the barrels below.
+    /// Displacement of a rack on the barrels below, over its reach, beyond which it has left its seat.
     pub rack_slide_ratio: f64,
-    /// A rack has left its seat by rocking when it is tilted this much (rad) against the rack below.
+    /// Tilt (rad) of a rack relative to the rack below beyond which it has left its seat by rocking.
     pub rocking_angle: f64,
-    /// The stack has overturned when its bottom rack is tilted this much (rad).
+    /// Tilt (rad) of the bottom rack beyond which the stack has overturned.
     pub overturning_angle: f64,
 }
 
 impl Thresholds {
-    /// The thresholds of a scenario, its lengths scaled.
+    /// Returns the thresholds of a scenario, with scaled lengths.
     pub fn of(spec: &OutcomeSpec, length_scale: f64) -> Self {
         Self {
             seat_loss_ratio: spec.seat_loss_ratio,
@@ -35,61 +35,60 @@ impl Thresholds {
     }
 }
 
-/// How a rack left its seat.
+/// Kind of a loss of seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
-    /// A barrel came too far from its place in the rack.
+    /// A barrel moved too far from its place in the rack.
     Displaced,
-    /// A rack moved too far along what it stands on.
+    /// A rack moved too far along its support.
     Slid,
     /// A rack tilted too far.
     Tilted,
-    /// It went down before anything else was noticed.
+    /// A body dropped without any of these.
     Dropped,
 }
 
-/// What became of one body.
+/// Fate of one body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
-    /// When (s) it left its seat, and how.
+    /// Time (s) and kind of its loss of seat.
     pub left_seat: Option<(f64, Loss)>,
-    /// When (s) it had fallen by the threshold.
+    /// Time (s) at which it had fallen by the threshold.
     pub fell_at: Option<f64>,
-    /// When (s) it landed: the first time after it had fallen that it went down less than half as fast as
-    /// it had on the way.
+    /// Time (s) at which it landed: the first time after the fall at which it moved down at less than half of its
+    /// largest speed.
     pub landed_at: Option<f64>,
-    /// Its largest speed downward (m/s) from when it had fallen until it landed.
+    /// Largest downward speed (m/s) between fall and landing.
     pub landing_speed: Option<f64>,
-    /// Largest force (N) on it since it had fallen.
+    /// Largest force (N) on it after it had fallen.
     pub fall_force: Option<f64>,
     /// Largest drop (m) below its place at rest.
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
     pub peak_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground at the end.
+    /// Residual displacement (m) along `x` relative to the ground.
     pub residual_displacement: f64,
-    /// Displacement (m) along `x` relative to the ground at the moment of the collapse; at the end if
-    /// there was none.
+    /// Displacement (m) along `x` relative to the ground at the collapse; at the end if there was none.
     pub displacement_at_collapse: f64,
-    /// Largest displacement (m) relative to what the body stands on, before the collapse: a rack's
-    /// walk, a barrel's way in its cradle.
+    /// Largest displacement (m) relative to the support, before the collapse: the walk of a rack, the displacement of
+    /// a barrel in its cradle.
     pub peak_slip: f64,
-    /// Displacement (m) relative to what the body stands on, at the end.
+    /// Displacement (m) relative to the support, at the end.
     pub residual_slip: f64,
     /// Largest tilt (rad) of a rack, before the collapse.
     pub peak_tilt: f64,
     /// Largest rise (m) of a body above its place at rest, before the collapse.
     pub peak_uplift: f64,
-    /// The same peaks over the whole run.
+    /// Peaks over the whole run.
     pub whole_run: PeakMotion,
 }
 
-/// The largest motions of a body in any step of a run, whatever had become of the stack.
+/// Largest motions of a body in any step of a run, collapsed or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion<R: Real = f64> {
     /// Largest displacement (m) along `x` relative to the ground.
     pub displacement: R,
-    /// Largest displacement (m) relative to what the body stands on.
+    /// Largest displacement (m) relative to the support.
     pub slip: R,
     /// Largest tilt (rad) of a rack.
     pub tilt: R,
@@ -98,34 +97,34 @@ pub struct PeakMotion<R: Real = f64> {
 lanewise!(struct PeakMotion<R> { displacement, slip, tilt });
 
 impl Fate {
-    /// The largest motions until the first loss of seat.
+    /// Returns the largest motions until the first loss of seat.
     pub fn until_loss(&self) -> PeakMotion {
         let Self { peak_displacement, peak_slip, peak_tilt, .. } = *self;
         PeakMotion { displacement: peak_displacement, slip: peak_slip, tilt: peak_tilt }
     }
 }
 
-/// Follows all bodies through a run, or through as many runs as there are lanes; sees every step.
+/// Follows all bodies of a run, or of one run per lane; needs every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<R: Real = f64> {
     /// Drop (m) at which a body has fallen.
     fall_drop: R,
     bodies: Vec<Followed<R>>,
-    /// When (s) the first body left its seat; infinite while none has.
+    /// Time (s) at which the first body left its seat; infinite before.
     collapse: R,
-    /// Which body that was.
+    /// That body.
     first: PerLane<Option<BodyId>>,
-    /// When (s) the first barrel had fallen; infinite while none has.
+    /// Time (s) at which the first barrel had fallen; infinite before.
     first_fall: R,
 }
 
-/// What a body is and what it stands on, the same in all lanes.
+/// Kind and supports of a body, equal in all lanes.
 #[derive(Clone, Debug)]
 struct Place {
     kind: PartKind,
     carrier: Option<BodyId>,
     supports: Vec<BodyId>,
-    /// The rack below, against which a rack's tilt is measured.
+    /// Rack below, relative to which the tilt of a rack is measured.
     below: Option<BodyId>,
     /// For a rack that stands on that rack: height (m) of its center over its foot.
     foot: Option<f64>,
@@ -139,27 +138,27 @@ lanewise!(struct Followed<R> {
 });
 lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 
-/// A body, its limits, and what became of it until now.
+/// A body, its limits, and its fate so far.
 #[derive(Clone, Debug)]
 struct Followed<R: Real> {
     place: Place,
     /// Position at rest (m), relative to the ground.
     rest: Vec2<R>,
-    /// How far (m) it may go on what it stands on.
+    /// Limit (m) of its displacement on its support.
     most_slip: R,
-    /// How far (rad) a rack may tilt.
+    /// Limit (rad) of the tilt of a rack.
     most_tilt: R,
-    /// When (s) it left its seat; infinite while it has not.
+    /// Time (s) of its loss of seat; infinite before.
     left_seat: R,
-    /// How.
+    /// Kind of that loss.
     loss: PerLane<Loss>,
-    /// When (s) it had fallen; infinite while it has not.
+    /// Time (s) of its fall; infinite before.
     fell_at: R,
-    /// When (s) it landed; infinite while it has not.
+    /// Time (s) of its landing; infinite before.
     landed_at: R,
-    /// Largest speed downward (m/s) between the two.
+    /// Largest downward speed (m/s) between the two.
     landing_speed: R,
-    /// Largest force (N) since it had fallen.
+    /// Largest force (N) after its fall.
     fall_force: R,
     drop: R,
     peak_displacement: R,
@@ -173,7 +172,7 @@ struct Followed<R: Real> {
 }
 
 impl Fates {
-    /// Starts at rest.
+    /// Creates the fates of a stack at rest.
     pub fn new(assembly: &Assembly, state: &State<Planar>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Assembly::GROUND].position;
         let follow = |(i, part): (usize, &Part)| {
@@ -228,12 +227,12 @@ impl Fates {
         }
     }
 
-    /// Position at rest (m) of a body, relative to the ground.
+    /// Returns the position at rest (m) of a body, relative to the ground.
     pub fn rest(&self, body: BodyId) -> Vec2 {
         self.bodies[body].rest
     }
 
-    /// The fate of a body.
+    /// Returns the fate of a body.
     pub fn fate(&self, body: BodyId) -> Fate {
         let followed = &self.bodies[body];
         Fate {
@@ -254,41 +253,41 @@ impl Fates {
         }
     }
 
-    /// When (s) the first body left its seat.
+    /// Returns the time (s) at which the first body left its seat.
     pub fn collapse_time(&self) -> Option<f64> {
         known(self.collapse)
     }
 
-    /// The first body that left its seat.
+    /// Returns the first body that left its seat.
     pub fn first(&self) -> Option<BodyId> {
         self.first[0]
     }
 
-    /// When (s) the first barrel had fallen.
+    /// Returns the time (s) at which the first barrel had fallen.
     pub fn first_fall(&self) -> Option<f64> {
         known(self.first_fall)
     }
 }
 
-/// A time (s) that has come.
+/// Returns a time (s) if it is finite.
 fn known(time: f64) -> Option<f64> {
     time.is_finite().then_some(time)
 }
 
 impl<R: Real> Fates<R> {
-    /// When (s) the first body left its seat; infinite in lanes where none has.
+    /// Returns the time (s) at which the first body left its seat; infinite in lanes where none has.
     pub fn collapse(&self) -> R {
         self.collapse
     }
 
-    /// The lanes in which no body has left its seat.
+    /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
-    /// Looks at an accepted state.
+    /// Records an accepted state.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
@@ -344,7 +343,7 @@ impl<R: Real> Fates<R> {
         }
     }
 
-    /// Whether a body has left its seat now, and how.
+    /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
@@ -385,9 +384,9 @@ impl<R: Real> Fates<R> {
         self.collapse = R::select(collapses, state.time, self.collapse);
     }
 
-    /// Displacement (m) of a body relative to what it stands on: a barrel in the frame of its rack, the foot of a
-    /// rack in that of the rack on whose posts it stands, a rack against the mean of the barrels below, the rest
-    /// against the ground.
+    /// Returns the displacement (m) of a body relative to its support: a barrel in the frame of its rack, the foot of
+    /// a rack in the frame of the rack whose posts carry it, a rack relative to the mean of the barrels below, other
+    /// bodies relative to the ground.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
@@ -401,7 +400,7 @@ impl<R: Real> Fates<R> {
             return here - state.poses[Assembly::GROUND].position - body.rest;
         }
         if let (Some(rack), Some(foot)) = (body.place.below, body.place.foot) {
-            // Racks that lean together, or one that rocks on the posts of the other, do not slide.
+            // Racks that lean together, or a rack that rocks on the posts of another, do not slide.
             let foot = Vec2::new(R::zero(), R::splat(-foot));
             let from = here + scratch.rotations[i].apply(foot) - state.poses[rack].position;
             let rest = body.rest + foot - self.bodies[rack].rest;
@@ -418,14 +417,14 @@ impl<R: Real> Fates<R> {
     }
 }
 
-/// Raises a peak to a value above it.
+/// Raises a peak to a larger value.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
-/// A value while the stack stands; nothing afterwards.
+/// Returns a value in masked lanes, and zero in others.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
 fn seen<R: Real>(standing: R::Mask, value: R) -> R {

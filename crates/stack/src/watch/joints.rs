@@ -7,16 +7,16 @@ use barrelstack_dynamics::{BodyId, Planar, Scratch, Vec2, lanewise};
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::demand::Span;
 
-/// Two bodies of a stack that press on each other, and the force between them.
+/// Two bodies of a stack in contact, and the force between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint<R: Real = f64> {
-    /// The upper body; of two that do not lean on each other by design, the one that is named first.
+    /// The upper body; of two that do not support each other by design, the one named first.
     pub upper: BodyId,
     /// The lower body, or the other one.
     pub lower: BodyId,
-    /// Whether one leans on the other by design; if not, they have met while shaken.
+    /// `true` if one supports the other by design; `false` if they met during the shaking.
     pub by_design: bool,
-    /// Force (N) on the upper body in the step at hand.
+    /// Force (N) on the upper body in the current step.
     pub force: Vec2<R>,
     /// Vertical force (N) on the upper body at rest.
     pub at_rest: R,
@@ -26,23 +26,24 @@ pub struct Joint<R: Real = f64> {
     pub whole_run: PeakForces<R>,
 }
 
-/// The largest forces between two bodies in any step.
+/// Largest forces between two bodies in any step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakForces<R: Real = f64> {
-    /// Vertical force (N) on the upper body that is largest in size, with its sign, and when (s).
+    /// Vertical force (N) on the upper body of the largest magnitude, with its sign, and its time (s).
     pub vertical: (R, R),
-    /// The same of the horizontal force.
+    /// Horizontal force (N), likewise.
     pub horizontal: (R, R),
 }
 
-/// Follows the forces between bodies through a run, or through as many runs as there are lanes; to be shown every step.
+/// Follows the forces between bodies of a run, or of one run per lane; needs every accepted step.
 #[derive(Clone, Debug)]
 pub struct Joints<R: Real = f64> {
-    /// Every barrel on its rack, every rack on what is below it; then pairs of bodies in the order in which they met.
+    /// Every barrel on its rack, every rack on its supports; then pairs of bodies in the order of their first
+    /// contact.
     pub joints: Vec<Joint<R>>,
-    /// For every body the others that it meets, each with the number of their joint.
+    /// For every body, the others that it touches, each with the index of their joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
-    /// Whether bodies that meet without leaning on each other are followed, too.
+    /// `true` to also follow bodies that meet without support by design.
     follows_all: bool,
 }
 
@@ -83,18 +84,18 @@ impl<R: Real> Lanewise for Joints<R> {
 }
 
 impl Joint {
-    /// Its name, such as "R1 on ground", or "R1.1 against R1.2" where none leans on the other by design.
+    /// Returns the name, such as "R1 on ground", or "R1.1 against R1.2" without support by design.
     pub fn name(&self, assembly: &Assembly) -> String {
         self.named(|body| &assembly.parts[body].name)
     }
 
-    /// Its name from those of its bodies.
+    /// Returns the name from those of the bodies.
     pub fn named<'a>(&self, name: impl Fn(BodyId) -> &'a str) -> String {
         let between = if self.by_design { "on" } else { "against" };
         format!("{} {between} {}", name(self.upper), name(self.lower))
     }
 
-    /// Its largest forces in a span of the run.
+    /// Returns the largest forces in a span of the run.
     pub fn peaks(&self, span: Span) -> PeakForces {
         match span {
             Span::UntilLoss => self.until_loss,
@@ -102,14 +103,14 @@ impl Joint {
         }
     }
 
-    /// Whether its bodies have ever pressed on each other.
+    /// Returns `true` if its bodies have ever touched.
     pub fn has_met(&self) -> bool {
         let PeakForces { vertical, horizontal } = self.whole_run;
         vertical.0 != 0.0 || horizontal.0 != 0.0
     }
 }
 
-/// The bodies on which one of a kind leans by design: the ground, where nothing carries it.
+/// Returns the bodies that support one of a kind by design: the ground, where nothing carries it.
 pub fn leans_on(kind: PartKind, carrier: Option<BodyId>, supports: &[BodyId]) -> Vec<BodyId> {
     match kind {
         PartKind::Rack if supports.is_empty() => vec![carrier.unwrap_or(Assembly::GROUND)],
@@ -121,15 +122,15 @@ pub fn leans_on(kind: PartKind, carrier: Option<BodyId>, supports: &[BodyId]) ->
 }
 
 impl Joints {
-    /// Those of a stack, before any force is known.
+    /// Creates the joints of a stack, without forces.
     pub(crate) fn new(assembly: &Assembly) -> Self {
         let below = |part: &Part| leans_on(part.kind, part.carrier, &part.supports);
-        // The bodies of a free scene may be more than could be listed two by two.
+        // A free scene may have too many bodies to list in pairs.
         Self::between(assembly.parts.iter().map(below), assembly.levels > 0)
     }
 
-    /// Those of every body with each of the ones on which it leans, before any force is known; `follows_all` to
-    /// follow other bodies that meet, too.
+    /// Creates the joints of every body with each of its supports, without forces; `follows_all` to also follow other
+    /// bodies that meet.
     pub fn between(below: impl Iterator<Item = Vec<BodyId>>, follows_all: bool) -> Self {
         let mut joints = Vec::new();
         let mut of_upper = Vec::new();
@@ -140,7 +141,7 @@ impl Joints {
         Self { joints, of_upper, follows_all }
     }
 
-    /// Looks at the state at rest.
+    /// Records the state at rest.
     pub(crate) fn start(&mut self, time: f64, scratch: &Scratch<Planar>) {
         self.observe(time, true, scratch);
         for joint in &mut self.joints {
@@ -148,7 +149,7 @@ impl Joints {
         }
     }
 
-    /// Those by design, and those of other bodies that have met, in the order of the bodies.
+    /// Returns the joints by design, and those of other bodies that have met, in the order of the bodies.
     pub fn listed(&self) -> Vec<&Joint> {
         let mut listed: Vec<&Joint> =
             self.joints.iter().filter(|joint| joint.by_design || joint.has_met()).collect();
@@ -158,7 +159,8 @@ impl Joints {
 }
 
 impl Joints {
-    /// Largest vertical force (N) in a span of the run between a barrel and any rack; none where the two never met.
+    /// Returns the largest vertical force (N) in a span of the run between a barrel and any rack; `None` if the two
+    /// never met.
     pub fn stave_load(
         &self,
         barrel: BodyId,
@@ -175,7 +177,7 @@ impl Joints {
 }
 
 impl<R: Real> Joint<R> {
-    /// Between two bodies, before any force is known.
+    /// Creates the joint of two bodies, without forces.
     fn between(upper: BodyId, lower: BodyId, by_design: bool) -> Self {
         Self {
             upper,
@@ -188,8 +190,8 @@ impl<R: Real> Joint<R> {
         }
     }
 
-    /// Raises the peaks to the force at hand, at a time (s); those until the first loss of seat in the lanes whose
-    /// stack is `standing`.
+    /// Raises the peaks to the current force, at a time (s); those until the first loss of seat in `standing` lanes
+    /// only.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
@@ -209,7 +211,7 @@ fn raise<R: Real>(
     (force, time): (R, R),
     standing: R::Mask,
 ) {
-    // What has stood until now has had one largest force.
+    // The two peaks of standing lanes are equal.
     let more = whole_run.0.abs().lt(force.abs());
     if more.any() {
         for (peak, raised) in [(whole_run, more), (until_loss, more & standing)] {
@@ -219,7 +221,7 @@ fn raise<R: Real>(
 }
 
 impl<R: Real> Joints<R> {
-    /// The number of the joint of two bodies, and whether the first of them is the upper one.
+    /// Returns the index of the joint of two bodies, and `true` if the first of them is the upper one.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
@@ -230,8 +232,8 @@ impl<R: Real> Joints<R> {
         upper.or_else(|| joint(other, one).map(|at| (at, false)))
     }
 
-    /// The number of the joint of two bodies that meet, and whether the first of them is the upper one; none where
-    /// such are not followed.
+    /// Returns the index of the joint of two bodies that meet, and `true` if the first of them is the upper one;
+    /// `None` if such joints are not followed.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
@@ -239,14 +241,14 @@ impl<R: Real> Joints<R> {
         if known.is_some() || !self.follows_all {
             return known;
         }
-        // The ground comes last, of other bodies the one that was made first comes first.
+        // The ground comes last; of other bodies the one with the lower index comes first.
         let first =
             if one.min(other) == Assembly::GROUND { one.max(other) } else { one.min(other) };
         let second = if first == one { other } else { one };
         Some((self.add(first, second), first == one))
     }
 
-    /// Adds a joint of two bodies that do not lean on each other by design.
+    /// Adds a joint of two bodies without support by design.
     fn add(&mut self, upper: BodyId, lower: BodyId) -> usize {
         let at = self.joints.len();
         self.of_upper[upper].push((lower, at));
@@ -254,7 +256,7 @@ impl<R: Real> Joints<R> {
         at
     }
 
-    /// Looks at the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
+    /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
     /// before it.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]

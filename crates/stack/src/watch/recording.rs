@@ -1,4 +1,4 @@
-//! Frames of the motion and histories of displacements, forces and energies, thinned to stated rates.
+//! Frames of the motion, and histories of displacements, forces and energies, thinned to given rates.
 
 use barrelstack_dynamics::forces::{contact_force, tributary_length};
 use barrelstack_dynamics::{EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
@@ -10,7 +10,7 @@ use crate::watch::joints::{Joint, Joints};
 /// A quantity over the sample times of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// What it is, such as "B1.1 displacement x".
+    /// Name, such as "B1.1 displacement x".
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
@@ -33,7 +33,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// The poses of all bodies, frame by frame.
+    /// Returns the poses of all bodies, frame by frame.
     pub fn all_poses(&self) -> impl Iterator<Item = Vec<Pose<Planar>>> {
         let pose = |[x, z, orientation]: &[f64; 3]| Pose {
             position: Vec2::new(*x, *z),
@@ -43,13 +43,13 @@ impl Frames {
     }
 }
 
-/// Two bodies of a stack that lean on each other by design, or have met before the first loss of seat, and the force
+/// Two bodies of a stack with support by design, or that have met before the first loss of seat, and the force
 /// between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointForces {
     /// The bodies, the force at rest and the largest forces in any step.
     pub joint: Joint,
-    /// Its name, such as "R1 on ground".
+    /// Name, such as "R1 on ground".
     pub name: String,
     /// Vertical force (N) on the upper body at the sample times.
     pub vertical: Vec<f64>,
@@ -57,13 +57,13 @@ pub struct JointForces {
     pub horizontal: Vec<f64>,
 }
 
-/// Histories of the ground: acceleration, velocity and displacement, sideways and up.
+/// Number of histories of the ground: acceleration, velocity and displacement, sideways and up.
 const GROUND: usize = 6;
 
-/// Histories of a body: two displacements and a rotation.
+/// Number of histories of a body: two displacements and a rotation.
 const BODY: usize = 3;
 
-/// What is kept of a run.
+/// Recorded data of a run.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The motion.
@@ -83,7 +83,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// The forces between all bodies that have pressed on each other, at rest and at their largest.
+    /// Returns the forces between all bodies that have touched, at rest and at their largest.
     pub fn forces(&self) -> &Joints {
         &self.forces
     }
@@ -132,7 +132,7 @@ impl Recording {
         }
     }
 
-    /// How many numbers a sample has.
+    /// Returns the number of values of a sample.
     pub(crate) fn histories(assembly: &Assembly) -> usize {
         1 + GROUND
             + BODY * assembly.parts.len()
@@ -140,12 +140,12 @@ impl Recording {
             + 2 * Joints::new(assembly).joints.len()
     }
 
-    /// The channel of a name.
+    /// Returns the channel of a name.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// Displacement (m) of a body along `x`, relative to the ground and to its place at rest.
+    /// Returns the displacement (m) of a body along `x`, relative to the ground and to its place at rest.
     pub fn displacement(&self, body: &str) -> Option<&Channel> {
         self.channel(&format!("{body} displacement x"))
     }
@@ -165,13 +165,13 @@ impl Recording {
             self.forces.start(state.time, scratch);
         }
         if standing {
-            // Bodies that have met in this step; they did not press on each other until then.
+            // Bodies that have met in this step, with zeros for the samples before.
             let met = self.forces.joints.iter().skip(self.joints.len());
             self.joints
                 .extend(met.map(|joint| JointForces::new(assembly, joint, self.times.len())));
         }
         self.started = true;
-        // A time counts as reached within rounding of the step that reaches it.
+        // Tolerance of rounding in the time of a step.
         let due = |taken: usize, rate: f64| state.time * rate >= taken as f64 - 1e-6;
         if due(self.frames.times.len(), self.frame_rate) {
             self.take_frame(&assembly.model, state, scratch);
@@ -268,7 +268,7 @@ impl Recording {
         }
     }
 
-    /// Takes over the largest forces once the run is over, and puts the joints into the order of their bodies.
+    /// Stores the largest forces at the end of the run, and sorts the joints by their bodies.
     pub(crate) fn finish(&mut self) {
         for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
             history.joint = joint.clone();
@@ -279,7 +279,7 @@ impl Recording {
 }
 
 impl JointForces {
-    /// Of a joint that bore nothing in all samples so far.
+    /// Creates the forces of a joint that were zero in all samples so far.
     fn new(assembly: &Assembly, joint: &Joint, samples: usize) -> Self {
         let none = vec![0.0; samples];
         let name = joint.name(assembly);
@@ -287,7 +287,7 @@ impl JointForces {
     }
 }
 
-/// The energies that are recorded, in order.
+/// Names of the recorded energies, in order.
 const ENERGIES: [&str; 9] = [
     "kinetic",
     "potential",

@@ -1,5 +1,4 @@
-//! Rest: the ground is still, or calm where the stack has collapsed, and nothing moves fast enough to change what
-//! became of the stack.
+//! Rest criterion: the ground is still, or calm after a collapse, and no motion is fast enough to change the outcome.
 
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{
@@ -10,35 +9,35 @@ use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
 
-/// Height (m) to which its kinetic energy may lift a body at rest, of full size.
+/// Height (m) to which the kinetic energy of a body at rest could lift it, at full size.
 ///
-/// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s.
-/// Stacks sway on their round barrels for minutes with less, since seats do not resist rolling.
+/// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s. Stacks sway on their round
+/// barrels for minutes with less, since seats do not resist rolling.
 pub const CLIMB: f64 = 0.005;
 
-/// How long (s) every body stays so, at full size: longer than half a swing of the tallest stack, so
+/// Duration (s) for which every body must stay so, at full size: longer than half a period of the tallest stack, so
 /// that no turning point passes for rest.
 pub const HOLD: f64 = 3.0;
 
 /// Acceleration of calm ground over gravity.
 ///
-/// What lies after a collapse neither slides nor tips by that, and the last third of many records is weaker.
-/// What still stands is followed to the end: swaying on round barrels gathers what little comes.
+/// It neither slides nor tips bodies after a collapse, and the last third of many records is weaker. A standing stack
+/// is followed to the end: swaying on round barrels accumulates even weak shaking.
 const CALM: f64 = 0.02;
-/// The same over the least friction that holds.
+/// Acceleration of calm ground over gravity, relative to the smallest coefficient of friction.
 const CALM_OF_FRICTION: f64 = 0.1;
 
 /// Height of the center over the radius up to which a barrel is on the floor.
 pub const ON_FLOOR: f64 = 1.05;
 
-/// Why a run ended.
+/// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The ground was still, or calm after a collapse, and what moved had come to rest.
+    /// The ground was still, or calm after a collapse, and all bodies had come to rest.
     Rest,
-    /// The time that the scenario gives to a collapse was over.
+    /// The time that the scenario allows after a collapse was over.
     AfterCollapse,
-    /// The length that the scenario asks for was reached.
+    /// The duration that the scenario sets was reached.
     Duration,
     /// The longest time after the motion was over, and something still moved.
     Patience,
@@ -51,7 +50,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -64,7 +63,7 @@ impl Ending {
         }
     }
 
-    /// Why a run of a scenario ended that was not at rest.
+    /// Returns the reason for an end by time.
     pub fn of_time(scenario: &Scenario) -> Self {
         match scenario.run.until {
             Until::Rest if scenario.run.duration.is_none() => Self::Patience,
@@ -73,27 +72,26 @@ impl Ending {
     }
 }
 
-/// Follows all bodies until they rest, in a run or in as many as there are lanes.
+/// Detects rest of all bodies, in a run or in one run per lane.
 ///
-/// A body rests when its kinetic energy could not lift it by half a centimeter.
-/// So does a barrel that rolls away on the floor, from everything or behind what is faster: it slows by some
-/// 0.2 m/s² and reaches nothing any more.
+/// A body rests when its kinetic energy could not lift it by half a centimeter. So does a barrel that rolls away on
+/// the floor, from everything or behind faster bodies: it slows by some 0.2 m/s² and reaches nothing any more.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
-    /// From when on (s) the ground is still; infinite where the run does not end by rest.
+    /// Time (s) from which the ground is still; infinite if the run does not end by rest.
     still_from: R,
-    /// From when on (s) it is calm; infinite where the run does not end by rest.
+    /// Time (s) from which it is calm; infinite if the run does not end by rest.
     calm_from: R,
     /// Largest kinetic energy of a body at rest over its mass (m²/s²).
     slow: R,
-    /// How long (s) all have to be slow.
+    /// Duration (s) for which all must be slow.
     hold: R,
     bodies: Vec<Mover<R>>,
-    /// When (s) something moved last.
+    /// Time (s) of the last motion.
     moved: R,
 }
 
-/// A body that forces move.
+/// A free body.
 #[derive(Clone, Debug)]
 struct Mover<R: Real> {
     body: BodyId,
@@ -107,7 +105,7 @@ lanewise!(struct Mover<R> { body, inertia, floor });
 lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
-    /// What a scenario asks for, on its ground; nothing rests before it has been observed.
+    /// Creates the criterion of a scenario on its ground; nothing rests before it has been observed.
     pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let scale = scenario.run.similitude;
         let mover = |(body, part): (BodyId, &crate::assemble::Part)| {
@@ -142,25 +140,25 @@ impl Rest {
     }
 }
 
-/// The acceleration of calm ground over gravity, under a stack that is held by some laws.
+/// Returns the acceleration of calm ground over gravity, for a stack with given contact laws.
 pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
     let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,
-        // What holds by nothing else than the shape of its seats, or creeps.
+        // Held by the shape of its seats alone, or creeping.
         FrictionLaw::Frictionless | FrictionLaw::Regularized { .. } => 0.0,
     });
     holding.fold(CALM, f64::min)
 }
 
 impl<R: Real> Rest<R> {
-    /// Looks at an accepted state, and whether the stack has collapsed; whether all have come to rest.
+    /// Records an accepted state, and the lanes that have collapsed; returns the lanes at rest.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
-            // Where the ground moves or something else does, the others need no look.
+            // Once every lane moves, the other bodies need no test.
             if moves.all() {
                 break;
             }
@@ -177,7 +175,7 @@ impl<R: Real> Rest<R> {
         (self.moved + self.hold).le(state.time)
     }
 
-    /// Where a body is a barrel on the floor that reaches nothing any more.
+    /// Returns the lanes in which a body is a barrel on the floor that reaches nothing any more.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {

@@ -1,15 +1,14 @@
-//! Normal contact stress along the boundary of every barrel and rack: at rest, largest until the first loss of seat,
-//! and largest over the whole run.
+//! Normal contact stress along the boundary of every barrel and rack: at rest, and its largest values until the first
+//! loss of seat and over the whole run.
 //!
-//! In a planar model stress is force per length of boundary (N/m).
-//! Every contact loads both of its bodies, each over the length of boundary that its contact element stands for:
-//! a node half of the way to each of its neighbors, and a contact without nodes 1 cm, the spacing of the nodes of the
-//! paper's racks, so that both kinds of contact compare.
+//! In a planar model stress is force per length of boundary (N/m). Every contact loads both of its bodies, each over
+//! the tributary length of its contact element: of a node, half of the distance to each neighbor; of a contact
+//! without nodes, 1 cm, the spacing of the nodes of the paper's racks, so that both kinds of contact compare.
 //! (Hertz's half-width between an oak stave and a steel bar is about 1 mm, less than a stave deforms in bending, and
 //! would change with the force; a bearing of stated length keeps stress proportional to force, as EN 1995-1-1, 6.1.5,
 //! does for timber under compression across the grain.)
-//! On a rack a value sits at every node and at every place where a contact without nodes presses; the boundary of a
-//! barrel is divided into cells, and a contact presses on all the cells of its own length.
+//! On a rack a value belongs to each node and to each place of a contact without nodes; the boundary of a barrel is
+//! divided into cells, and a contact loads all the cells of its own length.
 //!
 //! At rest the stress of every point times its [length](StressEnvelope::lengths) is the contact force on it, so the sum
 //! over the boundary is the sum of the contact forces on the body.
@@ -21,10 +20,10 @@ use barrelstack_dynamics::{BodyId, Vec2};
 
 pub(crate) use follow::StressWatch;
 
-/// Cells around a barrel in transverse section: half a degree each.
+/// Number of cells around a barrel in transverse section: half a degree each.
 const CELLS: usize = 720;
 
-/// A place on a boundary.
+/// A point on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryPoint {
     /// Position (m) in the body frame.
@@ -40,12 +39,12 @@ pub struct BoundaryPoint {
 pub struct StressEnvelope {
     /// The body.
     pub body: BodyId,
-    /// Where the values are.
+    /// Points of the values.
     pub points: Vec<BoundaryPoint>,
-    /// Length of boundary (m) that each value holds for: where something presses at rest, the loaded length, so that
-    /// stress at rest times length is the contact force there.
+    /// Length of boundary (m) of each value: under load at rest, the loaded length, so that stress at rest times
+    /// length is the contact force there.
     pub lengths: Vec<f64>,
-    /// Whether the last point is next to the first.
+    /// `true` if the last point is next to the first.
     pub closed: bool,
     /// At rest (N/m).
     pub at_rest: Vec<f64>,
@@ -55,11 +54,11 @@ pub struct StressEnvelope {
     pub peak_whole_run: Vec<f64>,
     /// Sum of all normal contact forces on the body.
     pub total: TotalForce,
-    /// How the points of a contact are found among them.
+    /// Mapping from contacts to points.
     cells: Cells,
 }
 
-/// The sum of the normal forces of all contacts of a body at one instant: the integral of the stress along its boundary.
+/// Sum of the normal forces of all contacts of a body at one instant: the integral of the stress along its boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TotalForce {
     /// At rest (N).
@@ -76,28 +75,29 @@ enum Cells {
     Around(f64),
     /// By `x` along the upper and then the lower half of a profile of this half length (m).
     Along(f64),
-    /// One for every node, and every place where a contact without nodes presses.
+    /// One for every node, and every place of a contact without nodes.
     Nodes,
 }
 
 impl StressEnvelope {
-    /// Whether the values sit at nodes of the body, and not in cells along its whole boundary.
+    /// Returns `true` if the values belong to nodes of the body, not to cells along its whole boundary.
     pub fn is_on_nodes(&self) -> bool {
         matches!(self.cells, Cells::Nodes)
     }
 
-    /// Sum of stress at rest times length over the boundary (N): the normal contact forces on the body at rest.
+    /// Returns the sum of stress at rest times length over the boundary (N): the normal contact forces on the body at
+    /// rest.
     pub fn force_at_rest(&self) -> f64 {
         self.at_rest.iter().zip(&self.lengths).map(|(stress, length)| stress * length).sum()
     }
 
-    /// Largest stress until the first loss of seat over the largest at rest, wherever each of them is; none where
-    /// nothing presses at rest.
+    /// Returns the largest stress until the first loss of seat over the largest at rest, each anywhere on the
+    /// boundary; `None` without load at rest.
     pub fn amplification(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak)
     }
 
-    /// The same over the whole run.
+    /// Returns the amplification over the whole run.
     pub fn amplification_whole_run(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak_whole_run)
     }
@@ -108,13 +108,13 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| most(peak) / at_rest)
     }
 
-    /// The largest stresses until the first loss of seat, averaged over the boundary that is loaded at rest, over the
-    /// average at rest; none where nothing presses at rest.
+    /// Returns the largest stresses until the first loss of seat, averaged over the boundary that is loaded at rest,
+    /// over the average at rest; `None` without load at rest.
     pub fn mean_amplification(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak)
     }
 
-    /// The same over the whole run.
+    /// Returns the mean amplification over the whole run.
     pub fn mean_amplification_whole_run(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak_whole_run)
     }
@@ -125,16 +125,16 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| loaded.sum::<f64>() / at_rest)
     }
 
-    /// Average, over the boundary that is loaded at rest, of the ratio of the largest stress until the first loss of
-    /// seat to that at rest; none where nothing presses at rest.
+    /// Returns the average, over the boundary that is loaded at rest, of the ratio of the largest stress until the
+    /// first loss of seat to that at rest; `None` without load at rest.
     pub fn mean_ratio(&self) -> Option<f64> {
         let length: f64 = self.loaded().map(|at| self.lengths[at]).sum();
         let ratio = |at: usize| self.peak[at] / self.at_rest[at] * self.lengths[at];
         (length > 0.0).then(|| self.loaded().map(ratio).sum::<f64>() / length)
     }
 
-    /// The mean of the envelope until the first loss of seat over all of the boundary that it covers, over the mean at
-    /// rest over the boundary that is loaded then; none where nothing presses at rest.
+    /// Returns the mean of the envelope until the first loss of seat over the boundary that it covers, divided by the
+    /// mean at rest over the boundary that is loaded then; `None` without load at rest.
     pub fn mean_of_envelope(&self) -> Option<f64> {
         let mean = |stress: &[f64]| {
             let covered = || stress.iter().zip(&self.lengths).filter(|(stress, _)| **stress > 0.0);
@@ -144,13 +144,13 @@ impl StressEnvelope {
         Some(mean(&self.peak)? / mean(&self.at_rest)?)
     }
 
-    /// The largest sum of all normal contact forces until the first loss of seat over that at rest; none where nothing
-    /// presses at rest.
+    /// Returns the largest sum of all normal contact forces until the first loss of seat over that at rest; `None`
+    /// without load at rest.
     pub fn total_amplification(&self) -> Option<f64> {
         (self.total.at_rest > 0.0).then(|| self.total.peak / self.total.at_rest)
     }
 
-    /// The points that are loaded at rest.
+    /// Returns the points that are loaded at rest.
     fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.points.len()).filter(|at| self.at_rest[*at] > 0.0)
     }
@@ -166,7 +166,7 @@ pub struct Stresses {
 }
 
 impl Stresses {
-    /// The envelope of a body.
+    /// Returns the envelope of a body.
     pub fn of(&self, body: BodyId) -> Option<&StressEnvelope> {
         self.of_body.get(body).copied().flatten().map(|at| &self.envelopes[at])
     }

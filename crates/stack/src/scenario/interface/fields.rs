@@ -1,4 +1,4 @@
-//! The fields of `[interface]`.
+//! Fields of `[interface]`.
 
 use barrelstack_input::{fields, named, table};
 
@@ -167,11 +167,11 @@ const LAWS: Variants = Variants {
     ],
 };
 
-/// Damping is stated itself, or by the restitution that it gives.
+/// Damping is given directly or by a restitution.
 const EXCLUSIVE: &[&[&str]] =
     &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
 
-/// The law of contact of one pair in a stack.
+/// The contact law of one pair in a stack.
 pub static INTERFACE: Section = Section {
     name: "interface",
     help: "The law of contact of one pair of bodies.",
@@ -180,7 +180,7 @@ pub static INTERFACE: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// The law of contact of one pair that meets in impacts: of what has fallen, or of neighbors.
+/// The contact law of one pair that meets in impacts: fallen bodies, or neighbors.
 pub static IMPACT: Section = Section {
     name: "impact",
     help: "The law of contact of one pair of bodies that meets in impacts.",
@@ -189,7 +189,7 @@ pub static IMPACT: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// The law of contact between two kinds of a free scene.
+/// The contact law between two kinds of a free scene.
 pub static FREE_INTERFACE: Section = Section {
     name: "free-interface",
     help: "The law of contact between two kinds of body.",
@@ -215,7 +215,7 @@ pub static FREE_INTERFACE: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// Greatest coefficient of friction that makes sense.
+/// Maximum plausible coefficient of friction.
 const COEFFICIENT: Range = Range::between(0.0, 5.0);
 
 const COEFFICIENT_FIELD: Field = Field::new(

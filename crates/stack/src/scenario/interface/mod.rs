@@ -1,4 +1,4 @@
-//! The law of contact between two kinds of body.
+//! Contact laws between two kinds of bodies.
 
 mod fields;
 mod text;
@@ -23,12 +23,12 @@ named! {
     }
 }
 
-/// Dissipation of a law whose restitution depends on what strikes.
+/// Dissipation of a law whose restitution depends on the mass or speed of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// `c` of a linear law (N·s/m per node or seat, or N·s/m² on the basis of length); `d` (s/m) of Hunt and Crossley's.
+    /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary); `d` (s/m) of Hunt and Crossley's.
     Coefficient(f64),
-    /// The damping that gives this restitution to a reference.
+    /// Damping that gives this restitution for a reference.
     Restitution {
         /// Ratio of normal speeds after and before, in `(0, 1]`.
         restitution: f64,
@@ -38,7 +38,7 @@ pub enum Damping {
     },
 }
 
-/// Penetration and its rate to compressive force.
+/// Normal law: compressive force from penetration and its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NormalLaw {
     /// `k δ + c δ̇` on approach, `k δ` on rebound (Candia, de la Llera and Almazán 2008, eq. 2.6).
@@ -70,7 +70,7 @@ pub enum NormalLaw {
         stiffness: f64,
         /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
-        /// `v` (m/s): slower than this, what is borne comes to rest.
+        /// `v` (m/s): slower impacts come to rest.
         speed: f64,
     },
     /// `k δ^1.5`, without dissipation.
@@ -80,7 +80,7 @@ pub enum NormalLaw {
     },
 }
 
-/// Slip to tangential force.
+/// Friction law: tangential force from slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
     /// No friction.
@@ -105,10 +105,10 @@ pub enum Friction {
     },
 }
 
-/// The law of contact between two kinds of body.
+/// Contact law between two kinds of bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interface {
-    /// To what stiffness and damping belong.
+    /// Basis of stiffness and damping.
     pub basis: Basis,
     /// Normal force.
     pub normal: NormalLaw,
@@ -116,14 +116,14 @@ pub struct Interface {
     pub friction: Friction,
 }
 
-/// Damping ratio of a law by its restitution; none where no damping gives it.
+/// Returns the damping ratio of a law for a restitution; `None` where no damping gives it.
 type DampingRatio = fn(f64) -> Option<f64>;
 
-/// Restitution of a law by its damping ratio.
+/// Returns the restitution of a law for a damping ratio.
 type Restitution = fn(f64) -> f64;
 
 impl Interface {
-    /// Multiplies its stiffness.
+    /// Multiplies the stiffness.
     pub fn stiffen(&mut self, factor: f64) {
         match &mut self.normal {
             NormalLaw::SpeedGap { stiffness, .. }
@@ -134,7 +134,7 @@ impl Interface {
         }
     }
 
-    /// Multiplies the damping of a linear law: its coefficient, or the damping ratio that gives its restitution.
+    /// Multiplies the damping of a linear law: the coefficient, or the damping ratio that gives the restitution.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {
@@ -157,7 +157,7 @@ impl Interface {
         }
     }
 
-    /// Multiplies its coefficients of friction, kinetic and static.
+    /// Multiplies the coefficients of friction, kinetic and static.
     pub fn roughen(&mut self, factor: f64) {
         match &mut self.friction {
             Friction::Coulomb { coefficient, static_coefficient, .. } => {

@@ -1,4 +1,4 @@
-//! Reads and writes `[interface]`.
+//! Reader and writer of `[interface]`.
 
 use crate::scenario::catalog::Seat;
 use crate::scenario::dimension::Dimension;
@@ -13,27 +13,26 @@ use crate::scenario::writer::Writer;
 use super::fields::{FREE_INTERFACE, FRICTION, FrictionKind, Law};
 use super::{Basis, Damping, Friction, Interface, NormalLaw};
 
-/// Stiffness (N/m) of one contact node of a stack, and its damping (N·s/m), calibrated by Candia, de la Llera and
-/// Almazán (2008).
+/// Stiffness (N/m) and damping (N·s/m) of one contact node of a stack, calibrated by Candia, de la Llera and Almazán
+/// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
 /// Tangential stiffness of a seat over its normal stiffness.
 ///
-/// Staves bend under what presses on them and are loaded in their own surface by what drags along it, which is stiffer;
-/// with it the stick of five levels on the ground of South Napa yields early enough to turn friction round as rigid
-/// friction does.
+/// Staves bend under a normal load and carry drag in their own surface, which is stiffer; with this ratio the stick
+/// of five levels on the ground of South Napa yields early enough to reverse friction as rigid friction does.
 const STICK_OF_SEAT: f64 = 2.0;
 
-/// What a stack takes for constants that its scenario leaves out.
+/// Defaults of a stack for constants that its scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
-    /// Those of the seat that the pair is, if it is one.
+    /// Constants of the seat, if the pair is one.
     pub(in crate::scenario) seat: Option<Seat>,
     pub(in crate::scenario) rebound_stiffness: f64,
     pub(in crate::scenario) coefficient: f64,
 }
 
-/// Reads a law of contact and ends the reading of its table.
+/// Reads a contact law and finishes its table.
 pub(in crate::scenario) fn read(
     reader: Reader<'_>,
     defaults: Option<PairDefaults>,
@@ -63,7 +62,7 @@ pub(in crate::scenario) fn read(
         }
         Law::Hertz | Law::Rebound => 1.5,
     };
-    // Constants of the paper hold together and for its laws only.
+    // The paper's constants belong together, and to its laws only.
     let is_linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt);
     let node = (is_linear && basis == Basis::Node && defaults.is_some()).then_some(NODE);
     let known = match law {
@@ -116,7 +115,7 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// In what the damping of a law is stated, and the field and unit of what a restitution holds for.
+/// Dimension of the damping of a law, and field and dimension of the reference of its restitution.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =
@@ -151,7 +150,7 @@ fn read_damping(
             Ok(Damping::Restitution { restitution, reference })
         }
         (None, Some(_), None, None) => {
-            // The place is that of the restitution, which may be laid over another file.
+            // The error is placed at the restitution, which may come from an override.
             let problem = missing_problem(reader, field, dimension);
             Err(reader.error("restitution", problem))
         }
@@ -233,7 +232,7 @@ fn stiffness_dimension(exponent: f64, basis: Basis) -> Dimension {
     }
 }
 
-/// A quantity whose dimension depends on the law and the basis.
+/// Reads a quantity whose dimension depends on the law and the basis.
 fn quantity_in(
     reader: &Reader<'_>,
     name: &'static str,
@@ -261,7 +260,7 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes a law of contact of a stack in its section.
+/// Writes the contact law of a stack in its section.
 pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
     let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);

@@ -1,4 +1,4 @@
-//! Follows the contact stress of a run, or of as many runs as there are lanes, through every step.
+//! Follows the contact stress of a run, or of one run per lane, through every step.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,29 +14,29 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// How hard a contact element has pressed on one of its bodies where it presses now.
+/// Largest force of a contact element on one of its bodies at its current place.
 ///
-/// As long as the contact stays between the same bounds it presses on the same cells, and the largest of its forces
-/// there is all that counts: most contacts of most steps are done with a few comparisons.
+/// As long as the contact stays between the same bounds it loads the same cells, and only its largest force there
+/// counts: most contacts of most steps need only a few comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds<R: Real = f64> {
     /// The first point or direction, and that past the last one.
     pub(super) from: Vec2<R>,
     pub(super) to: Vec2<R>,
-    /// Whether the place is above the axis; on a rack, whether it has been found.
+    /// `true` if the place is above the axis; on a rack, if it has been found.
     pub(super) above: R::Mask,
     /// The largest force (N) there.
     most: R,
 }
 
-/// Points of a body that are pressed as one.
+/// Range of points over which a contact loads the same cells.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// All points: a contact element presses on a rack in one place, wherever it first did.
+    /// All points: the place of a contact element on a rack is that of its first contact.
     Everywhere,
-    /// Those between two directions, counterclockwise.
+    /// Points between two directions, counterclockwise.
     Wedge,
-    /// Those between two values of `x` (m) above the axis, or below it.
+    /// Points between two values of `x` (m) above the axis, or below it.
     Strip,
 }
 
@@ -45,7 +45,7 @@ enum Place {
 struct Side {
     body: BodyId,
     place: Place,
-    /// Whether it is the target of the pair, in the frame of whose surface contacts are stated.
+    /// `true` if it is the target of the pair, in the frame of whose surface contacts are stated.
     is_target: bool,
 }
 
@@ -53,22 +53,22 @@ lanewise!(same Side);
 lanewise!(struct Bounds<R> { from, to, most } masks { above });
 lanewise!(struct Pair<R> { bodies, sides, count, offset, rotation });
 
-/// What all contact elements of a pair have in common.
+/// Data shared by all contact elements of a pair.
 #[derive(Clone, Debug)]
 struct Pair<R: Real> {
     /// The contactor and the target.
     bodies: [BodyId; 2],
-    /// Those of them that have an envelope.
+    /// The bodies that have an envelope.
     sides: Vec<Side>,
-    /// How many contact elements there are.
+    /// Number of contact elements.
     count: usize,
-    /// Where the surface of the target is in its body (m), and how it is turned.
+    /// Offset (m) and rotation of the target's surface on its body.
     offset: Vec2<R>,
     rotation: Rotation2<R>,
 }
 
 impl<R: Real> Pair<R> {
-    /// A contact point (m), stated in the frame of the target's surface, in the frame of the body of a side.
+    /// Transforms a contact point (m) from the frame of the target's surface to that of the body of a side.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     fn in_body(
@@ -90,7 +90,7 @@ impl<R: Real> Pair<R> {
 }
 
 impl Bounds {
-    /// Those of an element that has not pressed yet, and of which no place holds the point.
+    /// Returns the bounds of an element without contact so far, which contain no point.
     pub(super) fn none() -> Self {
         Self { from: Vec2::default(), to: Vec2::default(), above: false, most: 0.0 }
     }
@@ -115,44 +115,44 @@ impl<R: Real> Bounds<R> {
     }
 }
 
-/// Where a contact element presses on one of its bodies.
+/// Place of a contact element on one of its bodies.
 #[derive(Clone, Debug, Default)]
 struct Pressed {
     /// Index of the envelope.
     on: usize,
-    /// Length of boundary (m) that the element stands for.
+    /// Tributary length (m) of the element.
     length: f64,
-    /// The points of the envelope; past the last one they go on with the first.
+    /// The points of the envelope; past the last one they continue with the first.
     points: Range<usize>,
 }
 
-/// One run of those that are followed.
+/// One of the followed runs.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     stresses: Stresses,
-    /// Where every element presses, in the order of [`StressWatch::bounds`].
+    /// The place of every element, in the order of [`StressWatch::bounds`].
     pressed: Vec<Pressed>,
     /// The point of a contact on a rack, by pair, contact element and body.
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
 }
 
-/// No elements of a pair are followed before it touches.
+/// Marks a pair that has not touched yet.
 const NEVER: usize = usize::MAX;
 
-/// Follows the stresses of a run, or of as many runs as there are lanes; to be shown every step.
+/// Follows the stresses of a run, or of one run per lane; needs every accepted step.
 #[derive(Clone, Debug)]
 pub(crate) struct StressWatch<R: Real = f64> {
     lanes: Vec<Lane>,
     /// The lanes that have a run.
     watched: R::Mask,
-    /// Those of them in which the first seat has been lost.
+    /// The lanes among them in which the first seat has been lost.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
     /// The first entry of every pair in `bounds`.
     first: Vec<usize>,
     /// One for every contact element and body of every pair that has touched.
     bounds: Vec<Bounds<R>>,
-    /// Sum of the normal contact forces (N) on every body in the step at hand, and the largest one.
+    /// Sum of the normal contact forces (N) on every body in the current step, and its maximum.
     totals: Vec<[R; 2]>,
 }
 
@@ -165,7 +165,7 @@ impl StressWatch {
     ) -> Self {
         let stresses = empty(assembly);
         let mut pairs = Vec::new();
-        // As in a free scene, whose pairs may be more than can be listed.
+        // For example in a free scene, which may have too many pairs to list.
         let watched = !stresses.envelopes.is_empty();
         for pair in assembly.model.pairs().take_while(|_| watched) {
             let side = |(body, is_target): (BodyId, bool)| {
@@ -203,7 +203,7 @@ impl StressWatch {
         watch
     }
 
-    /// Takes the forces at hand as those at rest.
+    /// Stores the current forces as those at rest.
     fn rest(&mut self, scratch: &Scratch<Planar>) {
         let Some(Lane { stresses, pressed, .. }) = self.lanes.first_mut() else { return };
         let envelopes = &mut stresses.envelopes;
@@ -245,7 +245,7 @@ impl StressWatch {
     }
 }
 
-/// Envelopes of all barrels and racks on which nothing presses yet.
+/// Creates the envelopes of all barrels and racks, without load.
 fn empty(assembly: &Assembly) -> Stresses {
     let mut envelopes: Vec<StressEnvelope> = Vec::new();
     let mut of_body = vec![None; assembly.parts.len()];
@@ -253,7 +253,7 @@ fn empty(assembly: &Assembly) -> Stresses {
         let body = &assembly.model.bodies()[i];
         let made = match part.kind {
             PartKind::Barrel => body.surfaces.first().and_then(|placed| {
-                // Most barrels are alike, and so are the cells along their boundaries.
+                // Most barrels are equal, and so are their cells.
                 let alike = |known: &&StressEnvelope| {
                     let other = assembly.model.bodies()[known.body].surfaces.first();
                     !known.is_on_nodes()
@@ -276,7 +276,7 @@ fn empty(assembly: &Assembly) -> Stresses {
 }
 
 impl<R: Real> StressWatch<R> {
-    /// Watches nothing yet.
+    /// Creates an observer that follows no run.
     pub(crate) fn nothing() -> Self {
         Self {
             lanes: vec![Lane::default(); R::LANES],
@@ -289,7 +289,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Puts a run into a lane; all runs that are watched together are of one topology.
+    /// Starts a run in a lane; all runs followed together have one topology.
     pub(crate) fn begin(&mut self, lane: usize, mut single: StressWatch) {
         if self.pairs.is_empty() {
             self.pairs = Lanewise::in_all(&single.pairs);
@@ -302,7 +302,7 @@ impl<R: Real> StressWatch<R> {
         if single.watched {
             single.raise(0);
         }
-        // Where its contacts press is found anew, with what has been found on racks.
+        // The places of its contacts, including those on racks, are found again.
         for bounds in &mut self.bounds {
             bounds.put(lane, &Bounds::none());
         }
@@ -313,7 +313,7 @@ impl<R: Real> StressWatch<R> {
         self.lanes[lane] = alone;
     }
 
-    /// The stresses of the run of a lane, which is watched no more.
+    /// Ends the run of a lane, and returns its stresses.
     pub(crate) fn finish(&mut self, lane: usize) -> Stresses {
         if self.watched.lane(lane) {
             self.raise(lane);
@@ -328,7 +328,7 @@ impl<R: Real> StressWatch<R> {
         std::mem::take(&mut self.lanes[lane]).stresses
     }
 
-    /// Raises the envelopes of a lane to what its contacts have pressed where they are.
+    /// Raises the envelopes of a lane to the largest forces at the current places.
     fn raise(&mut self, lane: usize) {
         let Lane { stresses, pressed, .. } = &mut self.lanes[lane];
         for (bounds, pressed) in self.bounds.iter().zip(pressed.iter()) {
@@ -336,7 +336,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Keeps the envelopes of a lane as those until the first loss of seat.
+    /// Stores the envelopes of a lane as those until the first loss of seat.
     fn keep(&mut self, lane: usize) {
         for envelope in &mut self.lanes[lane].stresses.envelopes {
             envelope.peak.clone_from(&envelope.peak_whole_run);
@@ -344,8 +344,8 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Looks at the contacts of an accepted state; `standing` are the lanes in which no seat had been lost before it,
-    /// and `model` gives the model of a lane.
+    /// Records the contacts of an accepted state; `standing` are the lanes in which no seat had been lost before it,
+    /// and `model` returns the model of a lane.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
     pub(crate) fn observe<'a>(
@@ -417,8 +417,8 @@ impl<R: Real> StressWatch<R> {
 }
 
 impl Lane {
-    /// Finds where an element, by its pair, its number and the body at hand, presses at a point (m) of that body, which
-    /// is `touch` (m) in the frame of the target's surface.
+    /// Finds the place of an element, given by pair, number and body, at a point (m) of that body; `touch` (m) is the
+    /// same point in the frame of the target's surface.
     fn find(
         &mut self,
         model: &Model<Planar>,
@@ -440,13 +440,13 @@ impl Lane {
             let sets = &model.bodies()[pair.contactor].nodes;
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
             if body == pair.contactor && fixed(&sets[pair.nodes]) {
-                // The points of a rack are first those of its fixed nodes, set after set.
+                // The points of a rack begin with those of its fixed nodes, set by set.
                 let before = sets[..pair.nodes].iter().filter(|set| fixed(set)).map(Nodes::count);
                 return before.sum::<usize>() + node as usize;
             }
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let normal = placed.rotation.apply(placed.surface.gap(touch).normal);
-            // Racks turn by a few degrees while they stand.
+            // Racks turn by only a few degrees while they stand.
             let normal = if body == pair.target { normal } else { -normal };
             envelope.push(BoundaryPoint { position: point, normal, coordinate: point.x }, length);
             envelope.points.len() - 1
@@ -456,7 +456,7 @@ impl Lane {
 }
 
 impl Stresses {
-    /// Raises an envelope to the stress of a contact that presses with a force (N).
+    /// Raises an envelope to the stress of a contact with a force (N).
     fn raise(&mut self, pressed: &Pressed, force: f64) {
         if force <= 0.0 {
             return;
@@ -472,7 +472,7 @@ impl Stresses {
 }
 
 impl StressEnvelope {
-    /// Adds a point that stands for a length (m) and on which nothing has pressed.
+    /// Adds a point of a tributary length (m), without load.
     fn push(&mut self, point: BoundaryPoint, length: f64) {
         self.points.push(point);
         self.lengths.push(length);

@@ -1,4 +1,4 @@
-//! The points of a boundary at which stresses are stated, and those of them on which a contact presses.
+//! Points of a boundary for stresses, and the cells that a contact loads.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -28,7 +28,7 @@ fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -
     }
 }
 
-/// Cells along the surface of a barrel.
+/// Returns the cells along the surface of a barrel.
 pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
     match shape {
         Shape::Circle(circle) => {
@@ -69,7 +69,7 @@ pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> 
     }
 }
 
-/// One place for every node of a rack.
+/// Returns one point for every node of a rack.
 pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
     let nodes = || {
         sets.iter().filter_map(|set| match set {
@@ -90,8 +90,8 @@ pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
 }
 
 impl StressEnvelope {
-    /// The cells on which a contact of a length (m) presses around a point (m) of the body; `bounds` are left to hold
-    /// the points for which they stay the same.
+    /// Returns the cells that a contact of a length (m) loads around a point (m) of the body; sets `bounds` to the
+    /// range of points for which they stay the same.
     pub(super) fn place(&self, point: Vec2, length: f64, bounds: &mut Bounds) -> Range<usize> {
         match self.cells {
             Cells::Around(radius) => {
@@ -125,8 +125,8 @@ impl StressEnvelope {
     }
 }
 
-/// The first and the last cell of a width whose middle is covered by a length about a coordinate (at
-/// least one), and the coordinates from which and up to which that stays so.
+/// Returns the first and the last cell of a width whose middle is within a length about a coordinate (at least one),
+/// and the range of coordinates for which that stays so.
 fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
     let half = 0.5 * length;
     let first = ((coordinate - half) / width + 0.5).floor();
