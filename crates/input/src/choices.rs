@@ -1,4 +1,4 @@
-//! Closed sets in files: names alone, and names that bring fields of their own.
+//! Closed sets in files: plain names, and variants with fields of their own.
 
 use crate::InputError;
 use crate::field::{Section, Variant};
@@ -6,26 +6,27 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// One of several, each with its own fields in the table that chooses it; made by [`choices!`](crate::choices!).
+/// A variant of several, each with its own fields in the table that selects it; declared by
+/// [`choices!`](crate::choices!).
 pub trait Chosen: Sized {
-    /// All of them.
+    /// Returns all variants.
     fn variants() -> &'static [Variant];
 
-    /// Their names.
+    /// Returns their names.
     fn names() -> Vec<&'static str> {
         Self::variants().iter().map(|variant| variant.name).collect()
     }
 
-    /// The name of this one.
+    /// Returns the name of this variant.
     fn name(&self) -> &'static str;
 
-    /// Reads the one that a table chose, with its fields.
+    /// Reads the variant that a table selects, with its fields.
     fn read_chosen(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes its fields.
+    /// Writes the fields of the variant.
     fn write_chosen(&self, writer: &mut Writer);
 
-    /// Writes a table that has these fields only.
+    /// Writes a table that has only these fields.
     fn write_as(&self, section: &'static Section) -> Table {
         let mut writer = Writer::chosen(section, self.name());
         self.write_chosen(&mut writer);

@@ -1,4 +1,4 @@
-//! One declaration of a table: the type, its fields, and how they are read and written.
+//! Single declaration of a table: the type, its fields, and how they are read and written.
 
 use crate::error::InputError;
 use crate::field::{Kind, Named, Section};
@@ -6,33 +6,33 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A type that is declared with the fields that it is read from and written to; made by [`section!`](crate::section).
+/// A type declared together with its fields in files; declared by [`section!`](crate::section).
 pub trait Declared: Sized {
-    /// The table in files.
+    /// Returns the definition of the table.
     fn section() -> &'static Section;
 
-    /// Reads the fields; the caller checks what they mean together and ends the reading.
+    /// Reads the fields; the caller checks their consistency and calls [`Reader::finish`].
     fn read_fields(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes the fields, but those that a field brings.
+    /// Writes the fields, except those of the selected variant.
     fn write_fields(&self, writer: &mut Writer);
 
-    /// Starts its table.
+    /// Starts the table.
     fn start(&self) -> Writer {
         Writer::new(Self::section())
     }
 
-    /// Writes the fields that the one which chooses brings.
+    /// Writes the fields of the selected variant.
     fn write_chosen(&self, _: &mut Writer) {}
 
-    /// Reads a table that has these fields only and in which every value goes with every other.
+    /// Reads a table that has only these fields and no constraints between them.
     fn read(reader: Reader<'_>) -> Result<Self, InputError> {
         let read = Self::read_fields(&reader)?;
         reader.finish();
         Ok(read)
     }
 
-    /// Writes a table that has these fields only.
+    /// Writes a table that has only these fields.
     fn write(&self) -> Table {
         let mut writer = self.start();
         self.write_fields(&mut writer);
@@ -41,25 +41,25 @@ pub trait Declared: Sized {
     }
 }
 
-/// What a field of a declared type may hold.
+/// A type that a field of a declared type may have.
 pub trait Held: Sized {
-    /// Reads the field of a name.
+    /// Reads the field.
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError>;
 
-    /// Writes the field of a name.
+    /// Writes the field.
     fn write(&self, writer: &mut Writer, name: &'static str);
 
-    /// Reads the field of a name that may be absent.
+    /// Reads the field; `None` if it is absent.
     fn read_optional(reader: &Reader<'_>, name: &'static str) -> Result<Option<Self>, InputError> {
         (!reader.leaves_out(name)).then(|| Self::read(reader, name)).transpose()
     }
 
-    /// Leaves the field of a name out, because it is absent.
+    /// Omits the field.
     fn omit(writer: &mut Writer, name: &'static str) {
         writer.omit(&[name]);
     }
 
-    /// Reads the field of a name, which is that of what is known where the file leaves it out.
+    /// Reads the field, falling back to `known`.
     fn read_over(reader: &Reader<'_>, name: &'static str, known: &Self) -> Result<Self, InputError>
     where
         Self: Clone,
@@ -103,7 +103,7 @@ fn is_plain(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_))
 }
 
-/// What may be absent, or has a word in its place.
+/// An optional field, or one that allows a word in place of the value.
 impl<T: Held> Held for Option<T> {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         T::read_optional(reader, name)
@@ -121,7 +121,7 @@ fn has_word(kind: Kind) -> bool {
     matches!(kind, Kind::WordOr(..))
 }
 
-/// Says how values of a type are read and written.
+/// Implements [`Held`] for a type by a reading and a writing function.
 macro_rules! held {
     ($($type:ty: $read:expr, $write:expr;)*) => {$(
         impl Held for $type {
@@ -158,7 +158,7 @@ impl<T: Declared> Held for Vec<T> {
     }
 }
 
-/// A member of a closed set; where what is left out derives from others, the first, for the caller to correct.
+/// A member of a closed set; if absent with a derived default, the first member, which the caller corrects.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         if reader.leaves_out(name) { Ok(T::NAMES[0].1) } else { reader.choice(name) }
@@ -169,10 +169,10 @@ impl<T: Named> Held for T {
     }
 }
 
-/// Declares a type with the table that it is read from: each field once, with its type, what it holds, what an
-/// absent one means, and its help, which is its doc comment; `as` its key in files, where that is another name.
+/// Declares a type with the table that it is read from: each field once, with its type, its kind, its default
+/// and its doc comment, which is its help; `as` gives its key in files, if that differs.
 ///
-/// A table whose further fields are chosen `by` one of these says so, and the type of that one is made by
+/// A table whose further fields are selected `by` one of its fields says so, and the type of that field is declared by
 /// [`choices!`](crate::choices!).
 ///
 /// ```

@@ -1,10 +1,10 @@
-//! What a quantity measures, as exponents of length, mass, time and angle.
+//! Physical dimensions, as exponents of length, mass, time and angle.
 
 use std::fmt;
 use std::ops::{Add, Neg};
 
-/// Exponents of length, mass, time and angle, **in halves**, so that the Hertz stiffness (N/m^1.5)
-/// has one too.
+/// Exponents of length, mass, time and angle, **in halves**, which includes the Hertz stiffness
+/// (N/m^1.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i8,
@@ -13,7 +13,7 @@ pub struct Dimension {
     angle: i8,
 }
 
-/// A dimension with a name and a unit of its own.
+/// A dimension with a name and a unit.
 struct Known {
     dimension: Dimension,
     name: &'static str,
@@ -62,7 +62,7 @@ dimensions! {
 }
 
 impl Dimension {
-    /// The SI unit, in the notation of input files.
+    /// Returns the SI unit, in the notation of input files.
     pub fn si_unit(self) -> String {
         self.known().map_or_else(
             || {
@@ -81,12 +81,12 @@ impl Dimension {
         )
     }
 
-    /// A quantity of this dimension as a user would write it.
+    /// Returns a quantity of this dimension as a user would write it.
     pub fn example(self) -> String {
         self.known().map_or_else(|| format!("1 {}", self.si_unit()), |k| k.example.to_owned())
     }
 
-    /// The exponents times `halves / 2`; `None` when they leave the range or the halves.
+    /// Returns the exponents times `halves / 2`; `None` if they overflow or are not multiples of a half.
     pub(crate) fn power(self, halves: i8) -> Option<Self> {
         let scale = |exponent: i8| -> Option<i8> {
             let doubled = i16::from(exponent) * i16::from(halves);
@@ -129,7 +129,7 @@ impl Neg for Dimension {
     }
 }
 
-/// The name and the SI unit: `a stiffness (N/m)`.
+/// Writes the name and the SI unit: `a stiffness (N/m)`.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.known() {

@@ -1,10 +1,10 @@
-//! What can be wrong with an input file, where, and what to do about it.
+//! Errors of input files: problem, place and remedy.
 
 use std::fmt;
 
 use crate::quantity::QuantityError;
 
-/// Where an input is wrong.
+/// The place of an error in the input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// In a file.
@@ -15,7 +15,7 @@ pub enum Place {
         line: usize,
         /// Column in characters, from 1.
         column: usize,
-        /// Length in characters of what is wrong on that line.
+        /// Length in characters of the faulty text on that line.
         width: usize,
         /// The line.
         text: String,
@@ -30,12 +30,12 @@ pub enum Place {
         /// Name of the file as given.
         file: String,
     },
-    /// In no text of the user.
+    /// In no text of the user, but in a default.
     Unknown,
 }
 
 impl Place {
-    /// The place of a byte range of a text.
+    /// Returns the place of a byte range of a text.
     pub(crate) fn in_text(file: &str, text: &str, start: usize, end: usize) -> Self {
         let start = floor_boundary(text, start);
         let end = floor_boundary(text, end).max(start);
@@ -61,7 +61,7 @@ fn floor_boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// The short form: `file:line:column`, or the override.
+/// Writes the short form: `file:line:column`, or the override.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -75,14 +75,14 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong.
+/// The kind of an input error.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
     /// The text is not TOML.
     #[error("this is not TOML: {message}")]
     Syntax {
-        /// The parser's words.
+        /// Message of the parser.
         message: String,
     },
     /// The bytes are not UTF-8 text.
@@ -91,7 +91,7 @@ pub enum Problem {
         /// Offset of the first bad byte.
         offset: usize,
     },
-    /// The file is far larger than such a file.
+    /// The file is far larger than any valid one.
     #[error("the file has {size} bytes, at most {limit} are read; is it a record?")]
     TooLarge {
         /// Size in bytes.
@@ -102,17 +102,17 @@ pub enum Problem {
     /// The file cannot be read.
     #[error("cannot read the file: {reason}; correct the path")]
     Unreadable {
-        /// The system's words.
+        /// Message of the system.
         reason: String,
     },
-    /// A key that no field has.
+    /// An unknown key.
     #[error("unknown key `{key}` in {section}{}", suggestion(nearest.as_deref()))]
     UnknownKey {
         /// The key.
         key: String,
-        /// Where it stands.
+        /// Table that contains it.
         section: String,
-        /// The valid key that looks most like it.
+        /// The most similar valid key.
         nearest: Option<String>,
         /// All valid keys.
         valid: Vec<String>,
@@ -122,35 +122,35 @@ pub enum Problem {
     ForeignKey {
         /// The key.
         key: String,
-        /// Where it stands.
+        /// Table that contains it.
         section: String,
-        /// The field that chooses the variant.
+        /// The field that selects the variant.
         tag: String,
-        /// The variant chosen.
+        /// The variant selected.
         variant: String,
         /// The variants that have the field.
         owners: String,
         /// All valid keys.
         valid: Vec<String>,
     },
-    /// A field that must be given.
+    /// A required field is missing.
     #[error("`{field}` is missing from {section}; add {example}")]
     Missing {
         /// The field.
         field: String,
-        /// Where it belongs.
+        /// Table that needs it.
         section: String,
-        /// What to add.
+        /// Text to add.
         example: String,
     },
-    /// A value of another type.
+    /// A value of the wrong type.
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType {
         /// The field.
         field: String,
-        /// What was expected.
+        /// Expected type.
         expected: String,
-        /// What was found.
+        /// Value found.
         found: String,
     },
     /// A number where a quantity is needed.
@@ -158,19 +158,19 @@ pub enum Problem {
     BareNumber {
         /// The field.
         field: String,
-        /// What was found.
+        /// Value found.
         found: String,
-        /// The field with a unit.
+        /// The field with a valid value.
         example: String,
     },
-    /// A text that is not the quantity needed.
+    /// A text that is not the quantity required.
     #[error("`{field}`: {reason}; write for example {example}")]
     Quantity {
         /// The field.
         field: String,
-        /// Why.
+        /// Reason.
         reason: QuantityError,
-        /// A good value.
+        /// A valid value.
         example: String,
     },
     /// A number outside its range.
@@ -183,14 +183,14 @@ pub enum Problem {
         /// The value.
         found: String,
     },
-    /// A name that is not in the list.
+    /// An unknown name.
     #[error("`{field}`: there is no \"{found}\"{}", suggestion(nearest.as_deref()))]
     UnknownName {
         /// The field.
         field: String,
         /// The name.
         found: String,
-        /// The valid name that looks most like it.
+        /// The most similar valid name.
         nearest: Option<String>,
         /// All valid names.
         valid: Vec<String>,
@@ -198,7 +198,7 @@ pub enum Problem {
     /// Two fields that exclude each other.
     #[error("{section} has both `{first}` and `{second}`; keep one")]
     Exclusive {
-        /// Where they stand.
+        /// Table that contains them.
         section: String,
         /// The first.
         first: String,
@@ -208,15 +208,15 @@ pub enum Problem {
     /// None of several fields.
     #[error("{section} needs one of {choices}")]
     OneOf {
-        /// Where it belongs.
+        /// Table that needs one.
         section: String,
         /// The choices.
         choices: String,
     },
-    /// Values that are fine alone and wrong together.
+    /// Values that are valid by themselves and inconsistent together.
     #[error("{message}")]
     Inconsistent {
-        /// The sentence.
+        /// Message.
         message: String,
     },
 }
@@ -226,7 +226,7 @@ fn suggestion(nearest: Option<&str>) -> String {
 }
 
 impl Problem {
-    /// The list of valid names, when that helps.
+    /// Returns the list of valid names or units, if that helps.
     fn help(&self) -> Option<String> {
         if let Self::UnknownKey { valid, .. }
         | Self::ForeignKey { valid, .. }
@@ -257,30 +257,30 @@ impl Problem {
     }
 }
 
-/// Why an input cannot be used: one problem at one place.
+/// An error in an input: a problem at a place.
 ///
-/// `Display` writes the sentence, the place, the line with a caret under what is wrong, and the
-/// valid names when there are any. [`InputError::sentence`] is the same on one line.
+/// `Display` writes the problem, the place, the line with a caret below the fault, and the
+/// valid names if there are any. [`InputError::sentence`] is the same on one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError(Box<(Problem, Place)>);
 
 impl InputError {
-    /// A problem at a place.
+    /// Creates an error of a problem at a place.
     pub fn new(problem: Problem, place: Place) -> Self {
         Self(Box::new((problem, place)))
     }
 
-    /// What is wrong.
+    /// Returns the problem.
     pub fn problem(&self) -> &Problem {
         &self.0.0
     }
 
-    /// Where it is wrong.
+    /// Returns the place.
     pub fn place(&self) -> &Place {
         &self.0.1
     }
 
-    /// The error on one line: place, then problem.
+    /// Returns the error on one line: place, then problem.
     pub fn sentence(&self) -> String {
         printable(&format!("{}: {}", self.place(), self.problem()))
     }
@@ -318,12 +318,12 @@ impl fmt::Display for InputError {
     }
 }
 
-/// Text that cannot disturb a terminal.
+/// Replaces control characters, which could disturb a terminal.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// The part of a line around the column that fits a terminal, tabs and controls shown as spaces.
+/// Returns the part of a line around the column that fits a terminal, with control characters as spaces.
 fn window(line: &str, column: usize, width: usize) -> (String, usize, usize) {
     const BEFORE: usize = 60;
     const TOTAL: usize = 100;

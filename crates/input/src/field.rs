@@ -1,6 +1,6 @@
-//! The one definition of every field of an input file: name, kind, default and help.
+//! Definition of the fields of input files: name, kind, default and help.
 //!
-//! The reader, the writer, the reference and the JSON Schema all look here, so that they cannot
+//! The reader, the writer, the reference and the JSON Schema are derived from it, so that they cannot
 //! disagree.
 
 use std::fmt;
@@ -13,31 +13,31 @@ use crate::quantity::plain;
 pub struct Section {
     /// Name in the reference and the schema, unique.
     pub name: &'static str,
-    /// What it describes, one sentence.
+    /// Purpose, in one sentence.
     pub help: &'static str,
-    /// Fields that it always has.
+    /// Fields common to all variants.
     pub fields: &'static [Field],
-    /// Fields that depend on one of them.
+    /// Fields that depend on the value of one field.
     pub variants: Option<Variants>,
-    /// Groups of fields of which at most one may be given.
+    /// Groups of mutually exclusive fields.
     pub exclusive: &'static [&'static [&'static str]],
 }
 
 /// Fields that depend on the value of one field.
 #[derive(Debug)]
 pub struct Variants {
-    /// The field that chooses.
+    /// The field that selects the variant.
     pub tag: &'static str,
     /// The variants.
     pub list: &'static [Variant],
 }
 
-/// Fields present for one value of the choosing field.
+/// Fields present for one value of the selecting field.
 #[derive(Debug)]
 pub struct Variant {
     /// The value.
     pub name: &'static str,
-    /// What it means, one sentence.
+    /// Meaning, in one sentence.
     pub help: &'static str,
     /// The fields.
     pub fields: &'static [Field],
@@ -48,33 +48,33 @@ pub struct Variant {
 pub struct Field {
     /// Key in the file.
     pub name: &'static str,
-    /// What it holds.
+    /// Kind of value.
     pub kind: Kind,
-    /// What an absent field means.
+    /// Meaning of an absent field.
     pub default: Default,
-    /// What it means, one sentence.
+    /// Meaning, in one sentence.
     pub help: &'static str,
 }
 
-/// What an absent field means.
+/// Meaning of an absent field.
 #[derive(Debug, Clone, Copy)]
 pub enum Default {
     /// It must be given.
     Required,
-    /// Nothing.
+    /// Absent.
     Nothing,
-    /// A value that depends on others, in words.
+    /// A value that depends on other fields, in words.
     Derived(&'static str),
     /// A value, as TOML.
     Value(&'static str),
 }
 
-/// What a field holds.
+/// Kind of value of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
     /// Text.
     Text,
-    /// Text, or an integer that stands for its digits.
+    /// Text, or an integer, which is taken as text.
     Label,
     /// `true` or `false`.
     Flag,
@@ -86,7 +86,7 @@ pub enum Kind {
     Quantity(&'static [Dimension], Range),
     /// A word, or a quantity.
     WordOr(&'static str, &'static [Dimension], Range),
-    /// A unit, or a quantity that stands for one.
+    /// A unit, or a quantity that serves as one.
     Unit(Dimension),
     /// Two quantities `[x, z]`.
     Point(Dimension),
@@ -102,57 +102,57 @@ pub enum Kind {
     Choice(fn() -> Vec<&'static str>),
     /// A table.
     Table(&'static Section),
-    /// A list of tables, known by name in overrides.
+    /// A list of tables, referred to by name in overrides.
     Tables(&'static Section),
     /// A list of texts.
     Texts,
-    /// A single value, whose kind another field decides.
+    /// A single value, whose kind depends on another field.
     Value,
     /// A list of such values.
     Values,
-    /// One of a list of names, or a table; a name stands for a table with this key set to it.
+    /// One of a list of names, or a table; a name is short for a table with this key set to it.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
 
 /// A range of numbers in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Least value.
+    /// Smallest value.
     pub least: f64,
-    /// Whether the least value is excluded.
+    /// `true` if the smallest value is excluded.
     pub above: bool,
-    /// Greatest value.
+    /// Largest value.
     pub greatest: f64,
 }
 
-/// Greatest size of a number without a limit of its own: far beyond any stack, far below overflow.
+/// Largest magnitude of a number without a limit of its own: far beyond any stack, far below overflow.
 const VAST: f64 = 1e12;
 
 impl Range {
-    /// Any number of reasonable size.
+    /// Any number of reasonable magnitude.
     pub const ANY: Self = Self { least: -VAST, above: false, greatest: VAST };
     /// Greater than zero.
     pub const POSITIVE: Self = Self { least: 0.0, above: true, greatest: VAST };
     /// Zero or greater.
     pub const NOT_NEGATIVE: Self = Self { least: 0.0, above: false, greatest: VAST };
 
-    /// From the least to the greatest, both included.
+    /// Creates a range from the smallest to the largest value, both included.
     pub const fn between(least: f64, greatest: f64) -> Self {
         Self { least, above: false, greatest }
     }
 
-    /// Greater than zero and at most the greatest.
+    /// Creates a range of positive numbers up to the largest value, included.
     pub const fn up_to(greatest: f64) -> Self {
         Self { least: 0.0, above: true, greatest }
     }
 
-    /// Whether a number lies in the range; never for one that is not finite.
+    /// `true` if a number lies in the range; `false` for one that is not finite.
     pub fn contains(&self, value: f64) -> bool {
         let low = if self.above { value > self.least } else { value >= self.least };
         low && value <= self.greatest
     }
 
-    /// The range in words, with a unit.
+    /// Describes the range in words, with a unit.
     pub fn describe(&self, unit: &str) -> String {
         let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
         let bounds = (self.above, self.least == -VAST, self.greatest == VAST);
@@ -169,28 +169,28 @@ impl Range {
 
 /// A closed set whose members have names in files.
 pub trait Named: Copy + PartialEq + 'static {
-    /// All names and members.
+    /// All members with their names.
     const NAMES: &'static [(&'static str, Self)];
 
-    /// The name of a member.
+    /// Returns the name of the member.
     fn name(self) -> &'static str {
-        // Every member is in the list: the round-trip tests read each back.
+        // Every member is in the list, as round-trip tests verify.
         Self::NAMES.iter().find(|(_, member)| *member == self).map_or("", |(name, _)| name)
     }
 }
 
-/// The names of a closed set.
+/// Returns the names of a closed set.
 pub fn names<T: Named>() -> Vec<&'static str> {
     T::NAMES.iter().map(|(name, _)| *name).collect()
 }
 
 impl Field {
-    /// A field of a name and a kind, with what its absence means and what it is for.
+    /// Creates a field from its name, kind, default and help.
     pub const fn new(name: &'static str, kind: Kind, default: Default, help: &'static str) -> Self {
         Self { name, kind, default, help }
     }
 
-    /// The field with a good value, as a user would write it.
+    /// Returns the field with a valid value, as a user would write it.
     pub fn example(&self) -> String {
         if let Kind::Table(_) = self.kind {
             format!("a table `{}`", self.name)
@@ -203,7 +203,7 @@ impl Field {
 }
 
 impl Kind {
-    /// The table inside a field, or that each item of its list is.
+    /// Returns the table inside a field, or of each item of its list.
     pub fn section(&self) -> Option<&'static Section> {
         match self {
             Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section) => {
@@ -229,7 +229,7 @@ impl Kind {
         }
     }
 
-    /// A good value as TOML.
+    /// Returns a valid value as TOML.
     pub fn example(&self) -> String {
         match self {
             Self::Text => "\"…\"".to_owned(),
@@ -264,7 +264,7 @@ impl Kind {
     }
 }
 
-/// What the field holds, in words.
+/// Writes the kind of value in words.
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |dimensions: &[Dimension]| {
@@ -303,7 +303,7 @@ impl fmt::Display for Kind {
 }
 
 impl Section {
-    /// All fields for a variant, or for all variants when there is none chosen.
+    /// Returns the common fields with those of a variant, if given.
     pub fn fields_of(
         &'static self,
         variant: Option<&'static Variant>,
@@ -311,18 +311,18 @@ impl Section {
         self.fields.iter().chain(variant.map_or(&[][..], |v| v.fields))
     }
 
-    /// The field of a name in the section or any of its variants.
+    /// Returns the field of a name in the section or any of its variants.
     pub fn any_field(&'static self, name: &str) -> Option<&'static Field> {
         self.all_fields().find(|field| field.name == name)
     }
 
-    /// The fields of the section and of all its variants.
+    /// Returns the fields of the section and of all its variants.
     pub fn all_fields(&'static self) -> impl Iterator<Item = &'static Field> {
         let variants = self.variants.iter().flat_map(|v| v.list).flat_map(|v| v.fields);
         self.fields.iter().chain(variants)
     }
 
-    /// The other members of the groups of exclusive fields that a field belongs to.
+    /// Returns the other fields of the exclusive groups that contain a field.
     pub fn rivals(&'static self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.contains(&name));
         groups.flat_map(|group| group.iter().copied()).filter(move |rival| *rival != name)

@@ -1,4 +1,4 @@
-//! A file named by an input file: where it lies, or what is in it.
+//! A file referred to by an input file: its path or its content.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::{fnv1a, system};
 
-/// A file named by a scenario.
+/// A file referred to by a scenario.
 ///
 /// ```
 /// use barrelstack_input::FileRef;
@@ -21,49 +21,49 @@ use crate::{fnv1a, system};
 pub struct FileRef {
     /// The path as written.
     pub path: String,
-    /// Folder of the file that wrote it; empty for the current folder.
+    /// Folder of the referring file; empty for the current folder.
     pub folder: PathBuf,
-    /// Whether the caller named it, and not a file.
+    /// `true` if the caller named it, not a file.
     is_of_caller: bool,
-    /// What is in it, where that is at hand.
+    /// Its content, if loaded.
     bytes: Option<Arc<[u8]>>,
 }
 
 impl FileRef {
-    /// A file by its path and the folder of the file that wrote it.
+    /// Creates a reference from a path and the folder of the referring file.
     pub fn new(path: impl Into<String>, folder: PathBuf) -> Self {
         Self { path: path.into(), folder, is_of_caller: false, bytes: None }
     }
 
-    /// A file that the caller names, by its path from the current folder.
+    /// Creates a reference named by the caller, relative to the current folder.
     pub fn of_caller(path: impl Into<String>) -> Self {
         Self { is_of_caller: true, ..Self::new(path, PathBuf::new()) }
     }
 
-    /// Whether the caller named it, and not a file: a scenario of somebody else names files, too.
+    /// `true` if the caller named it, not a file: scenarios of others may refer to files, too.
     pub fn is_of_caller(&self) -> bool {
         self.is_of_caller
     }
 
-    /// The path to open.
+    /// Returns the path to open.
     pub fn resolve(&self) -> PathBuf {
         self.folder.join(&self.path)
     }
 
-    /// Has it at hand from now on, so that it is opened no more.
+    /// Stores the content, so that the file is no longer opened.
     pub fn hold(&mut self, bytes: impl Into<Arc<[u8]>>) {
         self.bytes = Some(bytes.into());
     }
 
-    /// Whether it is at hand.
+    /// `true` if the content is loaded.
     pub fn is_held(&self) -> bool {
         self.bytes.is_some()
     }
 
-    /// What is in it: as it is at hand, else as the system gives it, if it has at most `limit` bytes.
+    /// Returns the content: as stored, else read from the file, if that has at most `limit` bytes.
     ///
     /// # Errors
-    /// In words, when the file cannot be read or is larger.
+    /// A message if the file cannot be read or is larger.
     pub fn read(&self, limit: usize) -> Result<Arc<[u8]>, String> {
         match &self.bytes {
             Some(bytes) => Ok(Arc::clone(bytes)),
@@ -71,8 +71,8 @@ impl FileRef {
         }
     }
 
-    /// The file by what is in it, wherever it lies and whatever it is called; as it is where that is not at
-    /// hand.
+    /// Returns a reference identified by its content, independent of path and name; unchanged if the content is not
+    /// loaded.
     #[must_use]
     pub fn by_content(&self) -> Self {
         match &self.bytes {
@@ -82,7 +82,7 @@ impl FileRef {
     }
 }
 
-/// Two references are equal when they were written alike and the same is at hand, so that a scenario keeps
+/// References are equal if their paths as written and their contents are equal, so that a scenario keeps
 /// its identity when its folder moves.
 impl PartialEq for FileRef {
     fn eq(&self, other: &Self) -> bool {
@@ -90,7 +90,7 @@ impl PartialEq for FileRef {
     }
 }
 
-/// Without what is in it, which may be megabytes.
+/// Omits the content, which may be megabytes.
 #[expect(
     clippy::missing_fields_in_debug,
     reason = "keys of results hold this text, and who names a file changes no result"

@@ -1,13 +1,13 @@
-//! Input files with units: every field declared once, read with its place, merged, written out, listed.
+//! Input files with units: fields declared once, read with positions, merged, written out, listed.
 //!
-//! A kind of file is a [`field::Section`]: its fields with their kinds, defaults, ranges and meaning, one
-//! table inside another.
-//! From it come the [`reader`], whose errors name file, line and column, what was expected and the next
-//! move; the [`writer`] of resolved text, every default written out; [`merge`], which lays files and
-//! overrides over one another; the [JSON Schema](schema); and the [`reference`](mod@reference).
-//! What a field means for the domain is the caller's.
+//! A kind of file is a [`field::Section`]: its fields with their kinds, defaults, ranges and meaning, in nested
+//! tables.
+//! From it derive the [`reader`], whose errors name file, line and column, the expected value and the next
+//! move; the [`writer`] of resolved text, every default written out; [`merge`], which merges files and
+//! overrides; the [JSON Schema](schema); and the [`reference`](mod@reference).
+//! The meaning of a field for the domain is up to the caller.
 
-// Physics reads its numbers here, so they have the same bits on every machine (`clippy.toml`).
+// Results must be bit-identical on every machine, so their input numbers must be, too (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::missing_errors_doc,

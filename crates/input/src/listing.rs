@@ -1,4 +1,4 @@
-//! Every value of an input file in a flat list, with its meaning and where it comes from.
+//! Flat list of all values of an input file, with their meanings and sources.
 
 use crate::field::{Default, Field, Section};
 use crate::quantity::Quantity;
@@ -13,25 +13,25 @@ pub struct Setting {
     pub path: String,
     /// The value, quantities in SI with their unit.
     pub value: String,
-    /// What the field means.
+    /// Meaning of the field.
     pub help: &'static str,
-    /// Where the value comes from.
+    /// Source of the value.
     pub source: Source,
 }
 
-/// Where a value comes from, as far as the value itself tells.
+/// The source of a value, as far as the value itself reveals it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Written in the file, or in what it extends.
+    /// Written in the file, or in a file that it extends.
     Given,
-    /// That of an absent field.
+    /// The default of an absent field.
     Default,
-    /// Written in the file, or what these words say for an absent field.
+    /// Written in the file, or derived as these words state for an absent field.
     Derived(&'static str),
 }
 
 impl Source {
-    /// The source in words.
+    /// Describes the source in words.
     pub fn words(self) -> String {
         match self {
             Self::Given => "given".into(),
@@ -41,9 +41,9 @@ impl Source {
     }
 }
 
-/// Every value of a table with all defaults written out, in its order.
+/// Lists every value of a table with all defaults written out, in its order.
 ///
-/// Items of lists are known by their name or the pair they join, else by their number from 1, as in overrides.
+/// Items of lists are identified by their name or the pair they join, else by their number from 1, as in overrides.
 pub fn settings(table: &Table, section: &'static Section) -> Vec<Setting> {
     let mut settings = Vec::new();
     gather(&mut settings, table, section, "");
@@ -74,7 +74,7 @@ fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, pat
     }
 }
 
-/// The value without the quotes that a file needs.
+/// Formats the value without the quotes of a file.
 fn shown(value: &Value) -> String {
     if let Value::Text(text) = value { text.clone() } else { inline(value) }
 }
@@ -89,7 +89,7 @@ fn source(field: &Field, value: &Value) -> Source {
     }
 }
 
-/// Whether two values mean the same: quantities by their size, numbers whatever their kind.
+/// `true` if two values are equal in meaning: quantities in SI, integers and floats alike.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| match value {
         Value::Integer(Some(value)) => Some(*value as f64),
@@ -100,7 +100,7 @@ fn same(a: &Value, b: &Value) -> bool {
         }
     };
     match (number(a), number(b)) {
-        // A default in other units differs in the last digit.
+        // Converting a default to other units changes the last digit.
         (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
         _ => shown(a) == shown(b),
     }

@@ -1,19 +1,19 @@
-//! A table of measurements: CSV with a unit in the header of every column.
+//! Tables of measurements: CSV with a unit in the header of every column.
 
 use std::path::{Path, PathBuf};
 
 use crate::system;
 use crate::{Dimension, Quantity};
 
-/// The next move where a cell holds no number.
+/// Remedy for a cell without a number.
 const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
 
-/// Most bytes of a file of measurements.
+/// Largest size of a file of measurements (bytes).
 const SIZE_LIMIT: usize = 64 << 20;
 
 /// A table of measurements.
 ///
-/// Columns are separated by commas, or by semicolons or tabs where the header has those.
+/// Columns are separated by commas, or by semicolons or tabs if the header contains them.
 /// Empty lines and lines that start with `#` are skipped.
 ///
 /// ```
@@ -32,7 +32,7 @@ pub struct Table {
     rows: Vec<(usize, Vec<String>)>,
 }
 
-/// Why a table cannot be used.
+/// The reason why a table cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The file cannot be read.
@@ -40,31 +40,31 @@ pub enum TableError {
     Unreadable {
         /// The path.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         reason: String,
     },
-    /// A place of the file is not what it should be.
+    /// A cell or line is not as expected.
     #[error("{file}, line {line}{place}: expected {expected}, found {found}; {remedy}", place = in_column(column.as_deref()))]
     Cell {
         /// The file.
         file: String,
         /// The line, from 1.
         line: usize,
-        /// The column, as the header names it; none where the whole line is meant.
+        /// The column, as in the header; `None` if the whole line is meant.
         column: Option<String>,
-        /// What should stand there.
+        /// Expected content.
         expected: Box<str>,
-        /// What stands there.
+        /// Content found.
         found: Box<str>,
         /// The next move.
         remedy: Box<str>,
     },
-    /// The file is no such table, or holds not what is asked of it.
+    /// The file is not such a table, or lacks required content.
     #[error("{file}: {reason}")]
     Unsuited {
         /// The file.
         file: String,
-        /// Why, with the next move.
+        /// The reason, with the next move.
         reason: String,
     },
 }
@@ -73,18 +73,18 @@ fn in_column(column: Option<&str>) -> String {
     column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
 }
 
-/// What stands in a cell of a column with gaps.
+/// Content of a cell of a column with gaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
-    /// Nothing.
+    /// Empty.
     Empty,
-    /// The word that stands for no number.
+    /// The word that replaces a number.
     Word,
     /// A value (SI).
     Number(f64),
 }
 
-/// The head of a column.
+/// Header of a column.
 #[derive(Clone, Debug)]
 struct Column {
     name: String,
@@ -92,7 +92,7 @@ struct Column {
 }
 
 impl Column {
-    /// Splits `force (kN)`.
+    /// Parses a header such as `force (kN)`.
     fn of(text: &str) -> Self {
         match text.strip_suffix(')').and_then(|text| text.rsplit_once('(')) {
             Some((name, unit)) => {
@@ -111,7 +111,7 @@ impl Table {
     /// Reads a file.
     ///
     /// # Errors
-    /// When it cannot be read or is no table.
+    /// If it cannot be read or is not a table.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         let unreadable = |reason| TableError::Unreadable { path: path.to_owned(), reason };
         let bytes = system::read(path, SIZE_LIMIT).map_err(unreadable)?;
@@ -120,10 +120,10 @@ impl Table {
         Self::parse(&path.display().to_string(), &text)
     }
 
-    /// Reads a text; `file` is what errors call it.
+    /// Parses a text; `file` is its name in errors.
     ///
     /// # Errors
-    /// When there is no header, no row below it, or a row of another width.
+    /// Without a header or rows, or if a row has another number of columns.
     pub fn parse(file: &str, text: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text
@@ -168,37 +168,37 @@ impl Table {
         Ok(Self { file: file.to_owned(), header_line, columns, rows })
     }
 
-    /// What errors call the file.
+    /// Returns the name of the file in errors.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Names of all columns, without their units.
+    /// Returns the names of all columns, without their units.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.columns.iter().map(|column| column.name.as_str())
     }
 
-    /// Whether there is a column of this name, in capitals or not.
+    /// `true` if there is a column of this name, ignoring case.
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|column| column.is(name))
     }
 
-    /// A warning for every column that is none of `known`.
+    /// Returns a warning for every column that is not in `known`.
     pub fn unused(&self, known: &[&str]) -> Vec<String> {
         let unknown = |column: &&Column| !known.iter().any(|name| column.is(name));
         let columns = self.columns.iter().filter(unknown);
         columns.map(|column| format!("column \"{}\" is not used", column.name)).collect()
     }
 
-    /// How many rows of measurements there are.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         self.rows.len()
     }
 
-    /// The values (SI) of a column that must be there.
+    /// Returns the values (SI) of a required column.
     ///
     /// # Errors
-    /// When it is missing, has no unit or another one, or holds anything but numbers.
+    /// If it is missing, has no unit or a wrong one, or holds anything but numbers.
     pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let (at, unit) = self.place(name, dimension)?;
         let column = &self.columns[at].name;
@@ -208,11 +208,11 @@ impl Table {
         self.rows.iter().map(value).collect()
     }
 
-    /// The cells of a column that must be there, each with a number (SI), a `word` in place of one, or
-    /// nothing.
+    /// Returns the cells of a required column, each a number (SI), the `word` that replaces one, or
+    /// empty.
     ///
     /// # Errors
-    /// As [`Table::required`], for cells that hold anything else.
+    /// As [`Table::required`], for cells with any other content.
     pub fn entries(
         &self,
         name: &str,
@@ -229,7 +229,7 @@ impl Table {
         self.rows.iter().map(entry).collect()
     }
 
-    /// Where a column stands, and its unit.
+    /// Returns the index and the unit of a column.
     fn place(&self, name: &str, dimension: Dimension) -> Result<(usize, &str), TableError> {
         let mut found = self.columns.iter().enumerate().filter(|(_, column)| column.is(name));
         let example = || format!("`{name} ({})`", dimension.si_unit());
@@ -284,10 +284,10 @@ impl Table {
         })
     }
 
-    /// As [`Table::required`], and every value must be positive.
+    /// Like [`Table::required`], for positive values.
     ///
     /// # Errors
-    /// As there, and at the first value that is not.
+    /// As there, and for the first value that is not positive.
     pub fn positive(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let values = self.required(name, dimension)?;
         if let Some(row) = values.iter().position(|value| *value <= 0.0) {
@@ -297,11 +297,11 @@ impl Table {
         Ok(values)
     }
 
-    /// The values of a column of annual rates, whose unit is `1/year`, `1/yr` or `1/a`: a year is no SI unit, and
-    /// rates are kept a year.
+    /// Returns the values of a column of annual rates, whose unit is `1/year`, `1/yr` or `1/a`; rates stay per year,
+    /// since a year is no SI unit.
     ///
     /// # Errors
-    /// When the column is missing, has another unit, or holds anything but numbers.
+    /// If the column is missing, has another unit, or holds anything but numbers.
     pub fn per_year(&self, name: &str) -> Result<Vec<f64>, TableError> {
         let place = self.columns.iter().position(|column| column.is(name));
         let unit = place.and_then(|at| self.columns[at].unit.as_deref());
@@ -324,7 +324,7 @@ impl Table {
         self.rows.iter().map(number).collect()
     }
 
-    /// An error at a value of a row, counted from 0.
+    /// Creates an error at a value of a row, counted from 0.
     pub fn at(
         &self,
         row: usize,
@@ -337,7 +337,7 @@ impl Table {
         self.refuse(line, Some(column), expected, found, remedy)
     }
 
-    /// What stands in a row, counted from 0, as it was written.
+    /// Returns the text of a cell of a row, counted from 0.
     pub fn cell(&self, row: usize, name: &str) -> String {
         let at = self.columns.iter().position(|column| column.is(name));
         let cell = at.and_then(|at| self.rows.get(row)?.1.get(at));
@@ -362,7 +362,7 @@ impl Table {
         }
     }
 
-    /// The file as a whole does not serve.
+    /// Creates an error about the file as a whole.
     pub fn unsuited(&self, reason: impl Into<String>) -> TableError {
         TableError::Unsuited { file: self.file.clone(), reason: reason.into() }
     }

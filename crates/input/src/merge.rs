@@ -1,18 +1,18 @@
-//! Lays one file over another, and overrides over both.
+//! Merging of files and overrides.
 //!
-//! Tables are merged key by key and everything else is replaced. A field that excludes another
-//! removes it, and a new variant removes the fields of the old one, so that what is laid over never
-//! has to undo what lies below.
+//! Tables are merged key by key and all other values are replaced. A field removes those that it
+//! excludes, and a new variant removes the fields of the old one, so that an upper layer never
+//! has to undo a lower one.
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
 use crate::reader::item_name;
 use crate::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
 
-/// Lays `over` over `base`.
+/// Merges `over` into `base`, taking precedence.
 pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
     let mut entries = over.entries;
-    // The field that chooses a variant goes first, since it decides what the other keys mean.
+    // The field that selects a variant goes first, since the meaning of other keys depends on it.
     if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
         entries.sort_by_key(|entry| entry.key != variants.tag);
     }
@@ -33,8 +33,8 @@ pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>)
     }
 }
 
-/// Makes room for a key: removes its rivals and the fields of an abandoned variant, and turns a
-/// name into the table it stands for when a table is laid over it. Returns the section inside the
+/// Prepares a key: removes mutually exclusive fields and the fields of a replaced variant, and expands a
+/// name to its table if a table is merged into it. Returns the section of the
 /// key.
 fn place_for(
     base: &mut Table,
@@ -45,7 +45,7 @@ fn place_for(
 ) -> Option<&'static Section> {
     let section = section?;
     for rival in section.rivals(key) {
-        // Rivals laid over together are the user's contradiction, to be told and not resolved.
+        // Mutually exclusive keys in one layer are reported as a conflict, not merged.
         if !together.iter().any(|key| key == rival) {
             base.remove(rival);
         }
@@ -89,7 +89,7 @@ fn field_of(table: &Table, section: &'static Section, key: &str) -> Option<&'sta
     section.fields_of(variant).find(|field| field.name == key).or_else(|| section.any_field(key))
 }
 
-/// A name becomes a table with the name under its key.
+/// Expands a name to a table with the name under its key.
 fn expand_name(node: &mut Node, key: &str) {
     if let Value::Text(name) = &node.value {
         let origin = node.origin;
@@ -99,7 +99,7 @@ fn expand_name(node: &mut Node, key: &str) {
     }
 }
 
-/// Turns every name that stands for a table into that table.
+/// Expands every name that is short for a table.
 pub fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
@@ -148,8 +148,8 @@ fn apply_override(
     set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
 }
 
-/// The definition of the field at a path, as the table below chooses among variants; `None` where no field has
-/// it.
+/// Returns the definition of the field at a path, for the variants that the table selects; `None` if there
+/// is none.
 pub fn field_at(
     table: Option<&Table>,
     section: &'static Section,
@@ -175,7 +175,7 @@ pub fn field_at(
     field_at(below, inner, rest)
 }
 
-/// The item of a list by its name or its number.
+/// Returns the item of a list by its name or its number.
 fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
     let named = |(index, item): &(usize, &Node)| {
         item_name(item, *index) == wanted || wanted == (index + 1).to_string()
@@ -183,9 +183,9 @@ fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
     items.iter().enumerate().find(named).map(|(_, item)| item)
 }
 
-/// Where the value at a path was written; `None` where nothing is.
+/// Returns the origin of the value at a path; `None` if there is none.
 ///
-/// Items of lists are known by their name or their number, as in overrides.
+/// Items of lists are identified by their name or their number, as in overrides.
 pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     let (key, rest) = keys.split_first()?;
     let mut node = &table.get(key)?.node;
@@ -201,7 +201,7 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     }
 }
 
-/// Whether any value of a table was written in an override; the tables on the way to another are none.
+/// `true` if any value of a table has this origin; tables created for a nested value do not count.
 fn holds(table: &Table, origin: Origin) -> bool {
     fn inside(node: &Node, origin: Origin) -> bool {
         if let Value::Table(below) = &node.value {
@@ -213,9 +213,9 @@ fn holds(table: &Table, origin: Origin) -> bool {
     table.entries.iter().any(|entry| inside(&entry.node, origin))
 }
 
-/// Applies the overrides from one on, in order.
+/// Applies the overrides from index `first` on, in order.
 ///
-/// One that takes back what another has set contradicts it, and is refused; the same one twice is not.
+/// An override that undoes an earlier one is a contradiction and an error; a repetition is not.
 pub fn apply_overrides(
     table: &mut Table,
     section: &'static Section,
@@ -241,7 +241,7 @@ pub fn apply_overrides(
     Ok(())
 }
 
-/// Sets the value at a path, making the tables on the way.
+/// Sets the value at a path, creating the tables along it.
 pub fn set(
     table: &mut Table,
     section: Option<&'static Section>,

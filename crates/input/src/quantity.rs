@@ -1,4 +1,4 @@
-//! Quantities written with their unit, such as `9.8 kN/cm`, to SI.
+//! Quantities written with their unit, such as `9.8 kN/cm`, converted to SI.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -6,16 +6,16 @@ use std::fmt;
 use crate::dimension::Dimension;
 use crate::unit::{self, Scale};
 
-/// A value in SI and what it measures.
+/// A value in SI with its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     /// Value in SI units.
     pub value: f64,
-    /// What it measures.
+    /// Dimension.
     pub dimension: Dimension,
 }
 
-/// Why a text is not a quantity.
+/// The reason why a text is not a quantity.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityError {
     /// The text does not start with a decimal number.
@@ -30,50 +30,50 @@ pub enum QuantityError {
         /// The text.
         text: String,
     },
-    /// A number alone.
+    /// A number without a unit.
     #[error("`{text}` has no unit")]
     NoUnit {
         /// The text.
         text: String,
     },
-    /// A word that is no unit.
+    /// An unknown unit.
     #[error("unknown unit `{unit}` in `{text}`")]
     UnknownUnit {
-        /// The word.
+        /// The unit.
         unit: String,
         /// The text.
         text: String,
-        /// The unit that looks most like it.
+        /// The most similar unit.
         nearest: Option<String>,
     },
-    /// A unit expression that cannot be read.
+    /// A malformed unit expression.
     #[error("cannot read the unit of `{text}`: {reason}")]
     Malformed {
         /// The text.
         text: String,
-        /// What is wrong.
+        /// The reason.
         reason: &'static str,
     },
-    /// A unit of two meanings where neither is expected rather than the other.
+    /// A unit with two meanings, neither of which is expected.
     #[error("the `gal` of `{text}` is a US gallon or a cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
         /// The text.
         text: String,
     },
-    /// A quantity of another kind.
+    /// A quantity of another dimension.
     #[error("`{text}` is {found}, expected {expected}")]
     WrongDimension {
         /// The text.
         text: String,
-        /// What the text measures.
+        /// Dimension of the text.
         found: String,
-        /// What was wanted.
+        /// Expected dimension.
         expected: String,
     },
 }
 
 impl Quantity {
-    /// Reads a quantity of any dimension.
+    /// Parses a quantity of any dimension.
     ///
     /// A quantity is a decimal number and a unit. Units may be multiplied (space, `*` or `·`),
     /// divided (`/`), raised to a power (`m^2`, `m²`, `m^1.5`) and grouped with parentheses.
@@ -89,7 +89,7 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// When the number is missing, too large or not finite, or when the unit is missing, unknown or
+    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or
     /// malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         match Self::readings(text, &[])?.as_slice() {
@@ -98,7 +98,7 @@ impl Quantity {
         }
     }
 
-    /// All that a text may mean; a number alone is one where a plain number is wanted.
+    /// Returns all possible meanings of a text; a number alone is one if a plain number is wanted.
     fn readings(text: &str, wanted: &[Dimension]) -> Result<Vec<Self>, QuantityError> {
         let trimmed = text.trim();
         let shown = || shorten(trimmed);
@@ -119,8 +119,8 @@ impl Quantity {
         units.iter().map(reading).collect()
     }
 
-    /// Reads a quantity that must measure one of `wanted`; `gal` is a US gallon where that fits, and a
-    /// cm/s² where that does.
+    /// Parses a quantity of one of the dimensions `wanted`; `gal` is a US gallon or a cm/s², whichever
+    /// fits.
     ///
     /// ```
     /// use barrelstack_input::{Dimension, Quantity};
@@ -132,7 +132,7 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// As [`Quantity::parse`], and when the dimension is none of `wanted`.
+    /// As [`Quantity::parse`], and if the dimension is none of `wanted`.
     pub fn parse_as(text: &str, wanted: &[Dimension]) -> Result<Self, QuantityError> {
         let readings = Self::readings(text, wanted)?;
         if let Some(quantity) = readings.iter().find(|q| wanted.contains(&q.dimension)) {
@@ -148,8 +148,8 @@ impl Quantity {
         })
     }
 
-    /// A text to write in place of one that is no quantity of `wanted`: with the unit that it lacks or
-    /// that was probably meant, or else an example. It always reads as one of `wanted`.
+    /// Returns a replacement for a text that is no quantity of `wanted`: with the missing unit or the one
+    /// probably meant, else an example. It always parses as one of `wanted`.
     pub fn suggestion(text: &str, wanted: &[Dimension]) -> String {
         let trimmed = text.trim();
         let reads = |text: &String| text.len() <= 60 && Self::parse_as(text, wanted).is_ok();
@@ -160,13 +160,13 @@ impl Quantity {
         let repaired = Decimal::take(trimmed).and_then(|(number, rest)| {
             let (number, rest) = (number.text, rest.trim());
             if rest.is_empty() {
-                // The unit of the example is the one that people write.
+                // The unit of the example is the usual one.
                 let units = wanted.iter().map(|d| d.example());
                 let units = units.filter_map(|text| Some(text.split_once(' ')?.1.to_owned()));
                 return units.map(|unit| format!("{number} {unit}")).find(reads);
             }
             let Some(fraction) = rest.strip_prefix(',') else { return with_unit(number, rest) };
-            // Three digits behind a comma may be thousands.
+            // Three digits after a comma may be thousands.
             let (digits, unit) = split_digits(fraction);
             let decimals = !number.contains('.') && !matches!(digits.len(), 0 | 3);
             decimals.then(|| with_unit(&format!("{number}.{digits}"), unit.trim()))?
@@ -176,14 +176,14 @@ impl Quantity {
     }
 }
 
-/// The shortest text in SI units that reads back to the same bits.
+/// Writes the shortest text in SI units that reads back to the same bits.
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", plain(self.value), self.dimension.si_unit())
     }
 }
 
-/// The shortest decimal text that reads back to the same bits; an exponent when the number is very
+/// Formats the shortest decimal text that reads back to the same bits, with an exponent if the number is very
 /// large or small.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
@@ -194,12 +194,12 @@ pub fn plain(value: f64) -> String {
     }
 }
 
-/// A computed number for an error message: at most five significant digits.
+/// Rounds a computed number for an error message to five significant digits.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }
 
-/// A text cut to a length that fits an error message.
+/// Truncates a text for an error message.
 pub fn shorten(text: &str) -> String {
     const LIMIT: usize = 60;
     if text.chars().count() <= LIMIT {
@@ -209,8 +209,8 @@ pub fn shorten(text: &str) -> String {
     }
 }
 
-/// A decimal number kept as digits and a power of ten, so that scaling by a decimal unit loses
-/// nothing.
+/// A decimal number as digits and a power of ten, so that conversion by a decimal unit is
+/// exact.
 struct Decimal<'a> {
     negative: bool,
     /// All digits in order, without the point; empty for zero.
@@ -221,7 +221,7 @@ struct Decimal<'a> {
 }
 
 impl<'a> Decimal<'a> {
-    /// Splits a leading decimal number from the text.
+    /// Splits a leading decimal number off the text.
     fn take(text: &'a str) -> Option<(Self, &'a str)> {
         let unsigned = |text: &'a str| text.strip_prefix(['-', '+']).unwrap_or(text);
         let (whole, rest) = split_digits(unsigned(text));
@@ -244,7 +244,7 @@ impl<'a> Decimal<'a> {
         Some((Self { negative: text.starts_with('-'), digits, exponent, text: taken }, rest))
     }
 
-    /// The number in SI: exact up to one rounding for decimal units, up to a few for the others.
+    /// Returns the number in SI: exact up to one rounding for decimal units, up to a few for others.
     fn times(&self, scale: &Scale) -> f64 {
         let sign = if self.negative { -1.0 } else { 1.0 };
         if self.digits.is_empty() {
@@ -257,7 +257,7 @@ impl<'a> Decimal<'a> {
             .ok()
             .and_then(|digits| digits.checked_mul(scale.numerator))
             .map(|product| {
-                // A denominator that divides leaves one correctly rounded conversion from text.
+                // Exact division leaves a single, correctly rounded conversion from text.
                 let (product, divisor) = if product.is_multiple_of(scale.denominator) {
                     (product / scale.denominator, 1.0)
                 } else {
@@ -276,13 +276,13 @@ impl<'a> Decimal<'a> {
     }
 }
 
-/// The digits that a text starts with, and what follows them.
+/// Splits leading digits off a text.
 fn split_digits(text: &str) -> (&str, &str) {
     text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
-/// Decimal text to the nearest double; the text is well formed by construction, and infinity is
-/// caught by the caller.
+/// Converts decimal text to the nearest double; the text is well formed by construction, and the caller
+/// checks for infinity.
 fn decimal_to_f64(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }

@@ -1,12 +1,12 @@
-//! The reference of a kind of input file in Markdown, made from the definition of the fields.
+//! The reference of a kind of input file in Markdown, generated from the definition of its fields.
 
 use std::fmt::Write as _;
 
 use crate::field::{Default, Field, Kind, Range, Section};
 use crate::unit;
 
-/// The tables and fields of a file whose top is a section, but for those of the sections
-/// left to another page, which `there` names.
+/// Writes the tables and fields of a file with a top-level section, except for those documented on another
+/// page, which `there` names.
 pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str) -> String {
     let mut text = String::new();
     let mut seen: Vec<(&str, String)> =
@@ -15,7 +15,7 @@ pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str)
     text
 }
 
-/// Writing to a `String` cannot fail, so results of `writeln!` are dropped in this file.
+/// Writes a table. Writing to a `String` cannot fail, so results of `writeln!` are dropped in this file.
 fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section: &'static Section) {
     let heading =
         if path.is_empty() { "Top of the file".to_owned() } else { format!("`[{path}]`") };
@@ -95,7 +95,7 @@ fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// The units, and how they are combined.
+/// Lists the units, and how they are combined.
 pub fn units() -> String {
     let names: Vec<String> =
         unit::names().filter(|u| *u != "1").map(|u| format!("`{u}`")).collect();

@@ -1,15 +1,15 @@
-//! The JSON Schema of input files, made from the definition of the fields.
+//! The JSON Schema of input files, generated from the definition of their fields.
 
 use serde_json::{Map, Value, json};
 
 use crate::field::{Default, Field, Kind, Range, Section};
 
-/// The schema (JSON Schema 2020-12) of a file whose top is a section, for completion and checking in
+/// Returns the schema (JSON Schema 2020-12) of a file with a top-level section, for completion and checking in
 /// editors.
 ///
-/// It holds names, types, choices and ranges of plain numbers. It requires no field, since other files
-/// and overrides may supply any; ranges and dimensions of quantities, and what fields mean together,
-/// are checked by the reader alone.
+/// It contains names, types, choices and ranges of plain numbers. It requires no field, since other files
+/// and overrides may supply any; the reader alone checks ranges and dimensions of quantities, and consistency
+/// between fields.
 pub fn of_file(title: &str, top: &'static Section) -> Value {
     let mut sections = Map::new();
     collect(&mut sections, top);
@@ -21,7 +21,7 @@ pub fn of_file(title: &str, top: &'static Section) -> Value {
     })
 }
 
-/// A number and a unit; no unit starts with a digit, except for the one of `1/s`.
+/// A number and a unit; no unit starts with a digit, except for `1/s`.
 const QUANTITY: &str =
     r"^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?(\s*[^-+.0-9eE\s].*|\s+1/.*)$";
 
@@ -29,7 +29,7 @@ fn reference(section: &Section) -> String {
     format!("#/$defs/{}", section.name)
 }
 
-/// Adds a section and all it contains.
+/// Adds a section and all nested ones.
 fn collect(sections: &mut Map<String, Value>, outer: &'static Section) {
     if sections.contains_key(outer.name) {
         return;
@@ -44,8 +44,8 @@ fn section(section: &'static Section) -> Value {
     let Some(variants) = &section.variants else {
         return object(section.help, section.fields.iter());
     };
-    // One alternative for each variant; a file that extends another may leave the choosing field
-    // out.
+    // One alternative for each variant; a file that extends another may omit the selecting
+    // field.
     let alternatives: Vec<Value> = variants
         .list
         .iter()

@@ -1,4 +1,4 @@
-//! Files as the system gives them: read with a limit, refused in plain words.
+//! File system access: reading with a limit, safe writing, errors in plain words.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::Duration;
 
-/// What the system says of a file, in words that a person can act on.
+/// Describes an I/O error so that the user can act on it.
 pub fn words(error: &io::Error) -> String {
     let known = [
         (io::ErrorKind::NotFound, "there is no such file"),
@@ -20,17 +20,17 @@ pub fn words(error: &io::Error) -> String {
         return words.to_owned();
     }
     let text = error.to_string();
-    // The number of the error says nothing that its words do not say.
+    // The error number adds nothing to the words.
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Opens a file for reading, or a link to one.
+/// Opens a file, or a link to one, for reading.
 ///
-/// A named pipe is refused, because one that nobody writes to would block for ever, and so is a device, which may have no
-/// end. Pipes that the shell opened (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
+/// Named pipes are refused, because one without a writer would block forever, and so are devices, which may be
+/// endless. Pipes opened by the shell (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
 ///
 /// # Errors
-/// In words, when the file cannot be opened, or is a named pipe, a device or a socket.
+/// A message if the file cannot be opened, or is a named pipe, a device or a socket.
 pub fn open(path: &Path) -> Result<File, String> {
     let of_the_shell =
         ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|place| path.starts_with(place));
@@ -41,7 +41,7 @@ pub fn open(path: &Path) -> Result<File, String> {
     File::open(path).map_err(|error| words(&error))
 }
 
-/// Refuses what is no regular file, in words.
+/// Refuses anything but a regular file, with a message.
 fn regular(of: &fs::Metadata) -> io::Result<()> {
     if of.is_file() {
         return Ok(());
@@ -55,7 +55,7 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     ))
 }
 
-/// What is neither a file nor a folder.
+/// Names what is neither a file nor a folder.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;
@@ -79,7 +79,7 @@ fn kind(of: &fs::Metadata) -> &'static str {
 /// Reads a file of at most `limit` bytes.
 ///
 /// # Errors
-/// In words, when the file cannot be opened ([`open`]) or read, or is larger.
+/// A message if the file cannot be opened ([`open`]) or read, or is larger.
 pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let file = open(path)?;
@@ -90,13 +90,13 @@ pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Makes a folder and folders below it, and refuses a link in the place of one of those below: a folder of results that
-/// somebody else made must not lead what is written into it to another place.
+/// Creates a folder and folders below it, and refuses a link in place of one of the latter: a results folder made by
+/// someone else must not redirect output to another place.
 ///
-/// The folder itself may be a link, which whoever named it chose.
+/// The root may be a link, which the user chose.
 ///
 /// # Errors
-/// When the system refuses, and for a link.
+/// If the system refuses, and for a link.
 pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     let mut folder = root.to_owned();
@@ -119,10 +119,10 @@ pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Begins a file that is written anew: what has its name, be it a link, is removed first and never written to.
+/// Creates a new file, replacing any existing file or link of that name, which is removed and never written to.
 ///
 /// # Errors
-/// When the system refuses.
+/// If the system refuses.
 pub fn begin(path: &Path) -> io::Result<File> {
     let create = || File::options().read(true).write(true).create_new(true).open(path);
     match create() {
@@ -134,13 +134,13 @@ pub fn begin(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Opens a file of a folder of results to be changed, or makes it; refuses a link, behind which a file of somebody else
-/// may lie.
+/// Opens a file of a results folder for modification, or creates it; refuses links, which may lead to files of
+/// someone else.
 ///
 /// # Errors
-/// When the system refuses, and for what is no regular file.
+/// If the system refuses, and for anything but a regular file.
 pub fn open_to_change(path: &Path) -> io::Result<File> {
-    // Another process may remove or make it in between.
+    // Another process may create or remove it in between.
     for _ in 0..100 {
         match File::options().read(true).write(true).create_new(true).open(path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -160,15 +160,15 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
     Err(io::Error::other("it is made and removed all the time"))
 }
 
-/// The name under which a file is written until it is whole: of this process alone.
+/// Returns the name of a file while it is incomplete, specific to this process.
 pub fn temporary(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(unfinished());
     path.with_file_name(name)
 }
 
-/// Whether a file is one that a process was writing when it was killed, by its name: that of the file as a whole, which
-/// has to be one of those that are meant, and what [`temporary`] puts behind it.
+/// `true` if the name is that of a file left incomplete by a killed process: the name of the complete file, which
+/// must satisfy `meant`, and the suffix of [`temporary`].
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))
@@ -178,16 +178,16 @@ pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     !process.is_empty() && process.bytes().all(|c| c.is_ascii_digit()) && meant(whole)
 }
 
-/// What the names of files end with that this process has not finished.
+/// Returns the suffix of incomplete files of this process.
 pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }
 
-/// Held while a file is not yet under its own name.
+/// Locked while a file is incomplete.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// A lock that whoever ends the process never gives back, so that nobody begins what it guards; none after a fifth of a
-/// second, for a disk that hangs.
+/// Acquires a lock that is never released, for use before the process ends, so that nothing that it guards begins;
+/// `None` after a fifth of a second, in case a disk hangs.
 pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
     for _ in 0..20 {
         match lock.try_lock() {
@@ -201,15 +201,15 @@ pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'stat
     ManuallyDrop::new(None)
 }
 
-/// Waits for the file that is being written, and lets nobody begin another one: the process ends.
+/// Waits for the file being written and blocks all further ones: the process ends.
 pub fn write_no_more() {
     taken(&WRITING);
 }
 
-/// Writes under a name of this process alone and renames, so that the file is never half there.
+/// Writes to a temporary name and renames, so that the file is never incomplete.
 ///
 /// # Errors
-/// When the system refuses.
+/// If the system refuses.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let part = temporary(path);
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
@@ -217,16 +217,16 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
         .and_then(|mut file| file.write_all(bytes))
         .and_then(|()| fs::rename(&part, path));
     if written.is_err() {
-        // It may never have been made, and that is well.
+        // Ignore the error: the file may not exist.
         let _ = fs::remove_file(&part);
     }
     written
 }
 
-/// Whether files can be made in a folder that may have to be made itself; tried, and nothing left.
+/// Checks that files can be created in a folder, which may not exist yet; leaves nothing behind.
 ///
 /// # Errors
-/// In words, when the system refuses.
+/// A message if the system refuses.
 pub fn writable(folder: &Path) -> Result<(), String> {
     let folder = std::path::absolute(folder).map_err(|error| words(&error))?;
     let missing: Vec<&Path> = folder.ancestors().take_while(|folder| !folder.exists()).collect();
@@ -235,7 +235,7 @@ pub fn writable(folder: &Path) -> Result<(), String> {
         .and_then(|()| begin(&probe).map(drop))
         .and_then(|()| fs::remove_file(&probe));
     for made in missing {
-        // What could not be made need not be removed, and what is not empty is somebody else's.
+        // Ignore the error: a folder may not have been created, or may hold files of others.
         let _ = fs::remove_dir(made);
     }
     tried.map_err(|error| words(&error))
@@ -248,7 +248,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder of its own below that of the system, gone with the value.
+    /// A temporary folder, removed on drop.
     struct Place(PathBuf);
 
     impl Place {
@@ -306,7 +306,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&target)?, "kept");
         assert_eq!(fs::read_dir(&outside)?.count(), 0);
         assert_eq!(fs::read_to_string(out.join("a"))?, "new");
-        // Whoever names the folder itself may name a link.
+        // The root itself may be a link.
         symlink(&outside, place.0.join("chosen"))?;
         folder_below(&place.0.join("chosen"), Path::new("shards"))?;
         assert!(outside.join("shards").is_dir());

@@ -1,4 +1,4 @@
-//! Parsed TOML in which every key and value remembers where it was written.
+//! Parsed TOML in which every key and value keeps its origin.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -10,12 +10,12 @@ use toml::de::{DeTable, DeValue};
 use crate::error::{InputError, Place, Problem};
 use crate::writer;
 
-/// Where a key or value was written.
+/// The origin of a key or value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// In a file, by its index in [`Sources`], from byte to byte.
+    /// In a file, by its index in [`Sources`], as a byte range.
     File {
-        /// Which file.
+        /// Index of the file.
         file: usize,
         /// The first byte.
         start: usize,
@@ -26,16 +26,16 @@ pub enum Origin {
     Whole(usize),
     /// In an override, by its index.
     Override(usize),
-    /// Nowhere: a default.
+    /// A default, written nowhere.
     Default,
 }
 
 /// A value with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Where it was written.
+    /// Origin.
     pub origin: Origin,
-    /// What it is.
+    /// Value.
     pub value: Value,
 }
 
@@ -44,13 +44,13 @@ pub struct Node {
 pub enum Value {
     /// A text.
     Text(String),
-    /// An integer; `None` when it leaves 64 bits.
+    /// An integer; `None` if it exceeds 64 bits.
     Integer(Option<i64>),
-    /// A number with a point or an exponent.
+    /// A number with a decimal point or an exponent.
     Float(f64),
     /// `true` or `false`.
     Flag(bool),
-    /// A date or a time, which no field holds.
+    /// A date or a time, which no field accepts.
     Date,
     /// A list.
     Array(Vec<Node>),
@@ -59,7 +59,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The kind of value, with its article.
+    /// Describes the value with its article, for messages.
     pub fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{}\"", crate::quantity::shorten(text)),
@@ -74,18 +74,18 @@ impl Value {
     }
 }
 
-/// One key of a table.
+/// A key of a table with its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// The key.
     pub key: String,
-    /// Where the key was written.
+    /// Origin of the key.
     pub origin: Origin,
     /// Its value.
     pub node: Node,
 }
 
-/// A table in the order of writing.
+/// A table, in the order in which it is written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
     /// The keys with their values.
@@ -93,12 +93,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// The entry of a key.
+    /// Returns the entry of a key.
     pub fn get(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    /// The entry of a key, to be changed.
+    /// Returns the entry of a key, mutably.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Entry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
@@ -111,39 +111,39 @@ impl Table {
         }
     }
 
-    /// Removes the entry of a key, if there is one.
+    /// Removes the entry of a key, if present.
     pub fn remove(&mut self, key: &str) {
         self.entries.retain(|entry| entry.key != key);
     }
 }
 
-/// A file that takes part.
+/// A source file.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
-    /// What errors call it.
+    /// Its name in errors.
     pub name: String,
-    /// What it holds.
+    /// Its content.
     pub text: String,
     /// Folder against which its relative paths are resolved.
     pub folder: PathBuf,
 }
 
-/// All texts that take part, for the errors.
+/// All source texts, for errors.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// The files, known by their index.
+    /// The files, identified by their index.
     pub files: Vec<SourceFile>,
     /// Overrides as given, `path=value`.
     pub overrides: Vec<String>,
 }
 
 impl Sources {
-    /// An error at a place.
+    /// Creates an error at an origin.
     pub fn error(&self, origin: Origin, problem: Problem) -> InputError {
         InputError::new(problem, self.place(origin))
     }
 
-    /// The place of an origin.
+    /// Returns the place of an origin.
     pub fn place(&self, origin: Origin) -> Place {
         match origin {
             Origin::File { file, start, end } => {
@@ -156,7 +156,7 @@ impl Sources {
         }
     }
 
-    /// Gives every value of a tree that no text holds a place: its path and what it is, as an override would say it.
+    /// Gives every value of a tree without source text an origin: an override of its path and value.
     ///
     /// Items of lists count from 1.
     pub fn adopt(&mut self, table: &mut Table) {
@@ -202,7 +202,7 @@ impl Sources {
     }
 }
 
-/// Reads the value of an override or a default: TOML when it is, text when it is not.
+/// Parses the value of an override or a default: as TOML if possible, else as text.
 pub fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(
@@ -211,7 +211,7 @@ pub fn parse_value(text: &str, origin: Origin) -> Node {
     )
 }
 
-/// What the parser found; `origin` is that of a range of bytes.
+/// Converts a parsed value; `origin` maps byte ranges to origins.
 fn convert(value: &Spanned<DeValue<'_>>, origin: &dyn Fn(Range<usize>) -> Origin) -> Node {
     let span = value.span();
     let value = match value.get_ref() {
@@ -219,7 +219,7 @@ fn convert(value: &Spanned<DeValue<'_>>, origin: &dyn Fn(Range<usize>) -> Origin
         DeValue::Integer(integer) => {
             Value::Integer(i64::from_str_radix(integer.as_str(), integer.radix()).ok())
         }
-        // The parser has checked the form; what cannot be read is refused later as not finite.
+        // The parser has checked the syntax; an unreadable number is later refused as not finite.
         DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(_) => Value::Date,

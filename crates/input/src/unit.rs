@@ -1,4 +1,4 @@
-//! Units and their products, quotients and powers.
+//! Units with their products, quotients and powers.
 
 use crate::dimension::Dimension;
 use crate::quantity::QuantityError;
@@ -10,7 +10,7 @@ pub(crate) struct Scale {
     pub(crate) denominator: u128,
     pub(crate) ten: i32,
     pub(crate) pi: i32,
-    /// What the exact parts cannot hold: half powers, and products beyond 128 bits.
+    /// Part that is not exactly representable: half powers, and products beyond 128 bits.
     pub(crate) factor: f64,
 }
 
@@ -116,15 +116,15 @@ const ALIASES: &[(&str, &str)] = &[
     ("newtons", "N"),
 ];
 
-/// The word with two meanings, and the unit that each of them is called by.
+/// The ambiguous name, and the unambiguous names of its two meanings.
 const GAL: (&str, [&str; 2]) = ("gal", ["gallon", "Gal"]);
 
-/// Names of all units.
+/// Returns the names of all units.
 pub fn names() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
-/// What is wrong with a unit expression, before the whole text is known.
+/// An error in a unit expression, without its context.
 pub(crate) enum UnitError {
     Unknown { unit: String, nearest: Option<String> },
     Malformed(&'static str),
@@ -140,7 +140,7 @@ impl UnitError {
     }
 }
 
-/// Reads a unit expression; there are two readings where it holds `gal`, which is a US gallon and a
+/// Parses a unit expression; one with `gal` has two readings, a US gallon and a
 /// cm/s².
 pub(crate) fn readings(text: &str) -> Result<Vec<Unit>, UnitError> {
     if text.len() > 200 {
@@ -215,7 +215,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
                     chars.next();
                 }
                 tokens.push(Token::Name(name));
-                // `ft/s2` as files and spreadsheets have it.
+                // `ft/s2`, as in files and spreadsheets.
                 if let Some(power) = chars.next_if(|next| c != '1' && ('2'..='6').contains(next)) {
                     tokens.push(Token::Power(power.to_string()));
                 }
@@ -236,7 +236,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
     Ok(tokens)
 }
 
-/// Deepest nesting of parentheses.
+/// Largest depth of nested parentheses.
 const DEPTH: u32 = 8;
 
 fn product(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitError> {
@@ -254,7 +254,7 @@ fn product(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErr
                 divided = true;
             }
             Token::Times | Token::Name(_) | Token::Open => {
-                // `N/m s` is read as N/(m·s) by some and as (N/m)·s by others.
+                // `N/m s` is ambiguous: N/(m·s) or (N/m)·s.
                 if divided {
                     return Err(UnitError::Malformed(
                         "a product after a quotient is ambiguous; write `N s/m` or `N/(m s)`",
@@ -297,7 +297,7 @@ fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErro
     Ok(unit)
 }
 
-/// A power in halves: `2` is 4, `1.5` is 3.
+/// Parses a power in halves: `2` is 4, `1.5` is 3.
 fn halves(power: &str) -> Result<i8, UnitError> {
     let value: f64 =
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
@@ -309,7 +309,7 @@ fn halves(power: &str) -> Result<i8, UnitError> {
     Ok(halves as i8)
 }
 
-/// Words that have no single meaning, or are no words, and the unit that is most often meant.
+/// Names without a single meaning, and symbols, with the unit most often meant.
 const MEANT: &[(&str, &str)] =
     &[("\"", "in"), ("'", "ft"), ("pound", "lb"), ("pounds", "lb"), ("ton", "t"), ("tons", "t")];
 
@@ -330,10 +330,10 @@ fn named(name: &str) -> Result<Unit, UnitError> {
     Err(UnitError::Unknown { unit: name.chars().take(30).collect(), nearest })
 }
 
-/// Units of mass and of the weight of as much, which are mistaken for one another.
+/// Units of mass with the units of the corresponding weight, which are often confused.
 const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
 
-/// The text of a unit with every name replaced that `replace` gives another for.
+/// Returns the text of a unit with names replaced according to `replace`.
 fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -348,8 +348,8 @@ fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String
     out
 }
 
-/// Other texts for a unit that is unknown or of another kind than wanted, the likeliest first; they
-/// may be no better.
+/// Returns candidate replacements for a unit that is unknown or of a wrong dimension, the likeliest first; they
+/// may be invalid, too.
 pub(crate) fn alternatives(text: &str) -> Vec<String> {
     let canonical =
         |word: &str| ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, unit)| *unit);
@@ -384,7 +384,7 @@ impl Unit {
         Self { scale: self.scale.times(other.scale), dimension: self.dimension + other.dimension }
     }
 
-    /// The unit to the power `halves / 2`.
+    /// Returns the unit to the power `halves / 2`.
     fn power(self, halves: i8) -> Result<Self, UnitError> {
         let dimension =
             self.dimension.power(halves).ok_or(UnitError::Malformed("its powers are too large"))?;
@@ -398,7 +398,7 @@ impl Scale {
     fn times(self, other: Self) -> Self {
         let factor = self.factor * other.factor;
         let (ten, pi) = (self.ten + other.ten, self.pi + other.pi);
-        // Common factors go first, so that lbf/lb or deg/deg stay exact.
+        // Common factors are canceled first, so that lbf/lb or deg/deg stay exact.
         let (a, d) = reduce(self.numerator, other.denominator);
         let (c, b) = reduce(other.numerator, self.denominator);
         if let (Some(numerator), Some(denominator)) = (a.checked_mul(c), b.checked_mul(d)) {

@@ -1,4 +1,4 @@
-//! Writes one table of a file field by field, as its definition says.
+//! Writes one table of a file field by field, according to its definition.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use crate::field::{Field, Kind, Named, Section, Variant};
 use crate::quantity::{Quantity, plain};
 use crate::tree::{Entry, Node, Origin, Table, Value};
 
-/// One table being written; the twin of the reader.
+/// Writer of one table; the counterpart of the reader.
 pub struct Writer {
     section: &'static Section,
     variant: Option<&'static Variant>,
@@ -22,12 +22,12 @@ impl Writer {
         Self { section, variant: None, table: Table::default(), seen: Vec::new() }
     }
 
-    /// Starts a table of a variant and writes the field that chooses it.
+    /// Starts a table of a variant and writes the field that selects it.
     pub fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
         Self::chosen(section, tag.name())
     }
 
-    /// Starts a table of the variant of a name and writes the field that chooses it.
+    /// Starts a table of the variant of a name and writes the field that selects it.
     pub fn chosen(section: &'static Section, name: &'static str) -> Self {
         let variants = section.variants.as_ref();
         let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
@@ -39,8 +39,8 @@ impl Writer {
         writer
     }
 
-    /// Ends the table: in builds with assertions, every defined field must have been written or
-    /// left out.
+    /// Ends the table; with debug assertions, checks that every defined field has been written or
+    /// omitted.
     pub fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
@@ -54,7 +54,7 @@ impl Writer {
         found.unwrap_or_else(|| panic!("field `{name}` is written but not defined"))
     }
 
-    /// What a field holds.
+    /// Returns the kind of value of a field.
     pub fn kind_of(&mut self, name: &'static str) -> Kind {
         self.field(name).kind
     }
@@ -65,12 +65,12 @@ impl Writer {
         self.table.entries.push(Entry { key: name.to_owned(), origin: Origin::Default, node });
     }
 
-    /// Leaves a field out, because it is absent or another takes its place.
+    /// Omits fields, because they are absent or replaced by others.
     pub fn omit(&mut self, names: &[&'static str]) {
         self.seen.extend(names);
     }
 
-    /// A quantity in the SI unit of the field's only dimension.
+    /// Writes a quantity in the SI unit of the first dimension of the field.
     pub fn quantity(&mut self, name: &'static str, value: f64) {
         let kind = self.field(name).kind;
         let dimension = if let Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) = kind
@@ -84,12 +84,12 @@ impl Writer {
         self.quantity_in(name, value, dimension);
     }
 
-    /// A quantity of one of several dimensions.
+    /// Writes a quantity in the SI unit of a dimension.
     pub fn quantity_in(&mut self, name: &'static str, value: f64, dimension: Dimension) {
         self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
     }
 
-    /// A value as it is written where there is one, or nothing.
+    /// Writes a value by `write`, or omits the field.
     pub fn optional<T>(
         &mut self,
         name: &'static str,
@@ -102,12 +102,12 @@ impl Writer {
         }
     }
 
-    /// A quantity, or nothing.
+    /// Writes a quantity, or omits the field.
     pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
         self.optional(name, value, Self::quantity);
     }
 
-    /// A quantity, or the word in its place.
+    /// Writes a quantity, or the word that replaces it.
     pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match (value, self.field(name).kind) {
             (Some(value), _) => self.quantity(name, value),
@@ -116,47 +116,47 @@ impl Writer {
         }
     }
 
-    /// A plain number.
+    /// Writes a plain number.
     pub fn number(&mut self, name: &'static str, value: f64) {
         self.put(name, Value::Float(value));
     }
 
-    /// An integer.
+    /// Writes an integer.
     pub fn integer(&mut self, name: &'static str, value: u32) {
         self.put(name, Value::Integer(Some(i64::from(value))));
     }
 
-    /// `true` or `false`.
+    /// Writes `true` or `false`.
     pub fn flag(&mut self, name: &'static str, value: bool) {
         self.put(name, Value::Flag(value));
     }
 
-    /// Text.
+    /// Writes text.
     pub fn text(&mut self, name: &'static str, value: &str) {
         self.put(name, Value::Text(value.to_owned()));
     }
 
-    /// Text, or nothing.
+    /// Writes text, or omits the field.
     pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
         self.optional(name, value, Self::text);
     }
 
-    /// A member of a closed set.
+    /// Writes a member of a closed set.
     pub fn choice<T: Named>(&mut self, name: &'static str, value: T) {
         self.text(name, value.name());
     }
 
-    /// Two texts.
+    /// Writes two texts.
     pub fn pair(&mut self, name: &'static str, value: &[String; 2]) {
         self.put(name, Value::Array(value.iter().map(|v| node(Value::Text(v.clone()))).collect()));
     }
 
-    /// Two quantities.
+    /// Writes a point of two quantities.
     pub fn point(&mut self, name: &'static str, value: [f64; 2]) {
         self.list(name, value);
     }
 
-    /// Three quantities.
+    /// Writes three quantities.
     pub fn triple(&mut self, name: &'static str, value: [f64; 3]) {
         self.list(name, value);
     }
@@ -168,7 +168,7 @@ impl Writer {
         self.put(name, point(value, dimension));
     }
 
-    /// A list of points.
+    /// Writes a list of points.
     pub fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
         let Kind::Points(dimension) = self.field(name).kind else {
             panic!("field `{name}` is no list of points")
@@ -176,12 +176,12 @@ impl Writer {
         self.put(name, Value::Array(values.iter().map(|v| node(point(*v, dimension))).collect()));
     }
 
-    /// A table.
+    /// Writes a table.
     pub fn table(&mut self, name: &'static str, table: Table) {
         self.put(name, Value::Table(table));
     }
 
-    /// A list of tables; nothing when empty.
+    /// Writes a list of tables; omits the field if empty.
     pub fn tables(&mut self, name: &'static str, tables: Vec<Table>) {
         if tables.is_empty() {
             self.omit(&[name]);
@@ -201,7 +201,7 @@ fn point<const N: usize>(value: [f64; N], dimension: Dimension) -> Value {
     Value::Array(value.map(text).into())
 }
 
-/// The table as TOML: values first, then tables, each in order.
+/// Writes the table as TOML: values first, then tables, each in order.
 pub fn to_toml(table: &Table) -> String {
     let mut text = String::new();
     write_table(&mut text, table, "");
@@ -212,7 +212,7 @@ fn is_table(value: &Value) -> bool {
     matches!(value, Value::Table(_)) || tables_of(value).is_some()
 }
 
-/// The items of a list of tables.
+/// Returns the items of a list of tables.
 fn tables_of(value: &Value) -> Option<Vec<&Table>> {
     let Value::Array(items) = value else { return None };
     items
@@ -221,7 +221,7 @@ fn tables_of(value: &Value) -> Option<Vec<&Table>> {
         .collect()
 }
 
-/// Writing to a `String` cannot fail, so results of `writeln!` are dropped here.
+/// Writes a table. Writing to a `String` cannot fail, so results of `writeln!` are dropped here.
 fn write_table(text: &mut String, table: &Table, path: &str) {
     for entry in table.entries.iter().filter(|entry| !is_table(&entry.node.value)) {
         let _ = writeln!(text, "{} = {}", entry.key, inline(&entry.node.value));
@@ -230,7 +230,7 @@ fn write_table(text: &mut String, table: &Table, path: &str) {
         let path =
             if path.is_empty() { entry.key.clone() } else { format!("{path}.{}", entry.key) };
         if let Value::Table(table) = &entry.node.value {
-            // A table of tables needs no header of its own.
+            // A table that contains only tables needs no header.
             let bare = !table.entries.is_empty()
                 && table.entries.iter().all(|entry| is_table(&entry.node.value));
             if !bare {
@@ -245,14 +245,14 @@ fn write_table(text: &mut String, table: &Table, path: &str) {
     }
 }
 
-/// A value as TOML on one line.
+/// Formats a value as TOML on one line.
 pub fn inline(value: &Value) -> String {
     match value {
         Value::Text(text) => quote(text),
         Value::Integer(value) => value.unwrap_or_default().to_string(),
         Value::Float(value) => {
             let text = plain(*value);
-            // TOML tells a float from an integer by the point or the exponent.
+            // TOML distinguishes a float from an integer by the decimal point or the exponent.
             if text.contains(['.', 'e']) { text } else { format!("{text}.0") }
         }
         Value::Flag(value) => value.to_string(),

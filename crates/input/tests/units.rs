@@ -1,4 +1,4 @@
-//! Units as the trade writes them, and hints about units that work when they are obeyed.
+//! Units as written in practice, and suggestions of units, which must be valid.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -12,7 +12,7 @@ fn gal_is_a_gallon_where_a_volume_is_asked_for_and_an_acceleration_where_one_is(
     assert_eq!(as_one("350 gal", Dimension::ACCELERATION), 3.5);
     let density = as_one("8.3 lb/gal", Dimension::DENSITY);
     assert!((density / (8.3 * 0.453_592_37 / 3.785_411_784e-3) - 1.0).abs() < 1e-15); // measured 2e-16
-    // Spelled out, each is one thing alone.
+    // The unambiguous names have one meaning only.
     for (text, wanted) in [("60 gallon", Dimension::ACCELERATION), ("350 Gal", Dimension::VOLUME)] {
         let error = Quantity::parse_as(text, &[wanted]).unwrap_err();
         assert!(matches!(error, QuantityError::WrongDimension { .. }), "{text}: {error}");
@@ -21,7 +21,7 @@ fn gal_is_a_gallon_where_a_volume_is_asked_for_and_an_acceleration_where_one_is(
     assert!(matches!(unclear, QuantityError::Ambiguous { .. }), "{unclear}");
 }
 
-/// All dimensions that fields ask for.
+/// All dimensions that fields require.
 const WANTED: [Dimension; 22] = [
     Dimension::NONE,
     Dimension::LENGTH,
@@ -47,7 +47,7 @@ const WANTED: [Dimension; 22] = [
     Dimension::DENSITY,
 ];
 
-/// Units as people write them, right, wrong, and for something else.
+/// Returns units as people write them: right, wrong, and of another dimension.
 fn written_units() -> Vec<String> {
     let known = unit::names().map(str::to_owned);
     let words = "lbs lbm pound pounds kgs KG Kg ton tons tonne gal Gal GAL gals gallon gallons US_gal \
@@ -77,7 +77,7 @@ fn every_hint_about_a_unit_works_when_it_is_obeyed() {
         }
         assert!(Quantity::parse_as(&wanted.example(), &[wanted]).is_ok(), "{wanted}");
     }
-    // Measured 7,000: nearly every unit is of another kind than wanted.
+    // Measured 7,000: nearly every unit is of another dimension than wanted.
     assert!(hints > 5000, "{hints}");
 }
 
@@ -97,7 +97,7 @@ fn hints_about_units_are_what_was_meant() {
         ("2 KN", D::FORCE, "2 kN"),
         ("2,5 m", D::LENGTH, "2.5 m"),
         ("275", D::MASS, "275 kg"),
-        // 1500 kg or 1.5 kg: nothing is repaired.
+        // 1500 kg or 1.5 kg: ambiguous, so the example is returned.
         ("1,500 kg", D::MASS, "275 kg"),
     ] {
         assert_eq!(Quantity::suggestion(text, &[wanted]), hint, "{text}");
@@ -108,13 +108,13 @@ fn hints_about_units_are_what_was_meant() {
 fn hints_about_units_of_columns_work_when_they_are_obeyed() {
     let mut hints = 0;
     for wanted in WANTED {
-        // A unit in a head stands in parentheses itself.
+        // In a header the unit is itself in parentheses.
         for unit in written_units().iter().filter(|unit| !unit.contains(['(', ')'])) {
             let table = |unit: &str| Table::parse("t.csv", &format!("x ({unit})\n1\n2\n")).unwrap();
             let Err(TableError::Cell { remedy, .. }) = table(unit).required("x", wanted) else {
                 continue;
             };
-            // The next move writes the head of the column out.
+            // The remedy states the complete header of the column.
             let (_, rest) = remedy.split_once("x (").unwrap_or_else(|| panic!("{unit}: {remedy}"));
             let (better, _) = rest.rsplit_once(')').unwrap();
             assert!(table(better).required("x", wanted).is_ok(), "{unit}: {remedy}");

@@ -1,4 +1,4 @@
-//! Reads one table of a file field by field, as its definition says.
+//! Reads one table of a file field by field, according to its definition.
 
 use std::cell::RefCell;
 
@@ -11,7 +11,7 @@ mod values;
 
 type Result<T> = std::result::Result<T, InputError>;
 
-/// One table of a file, checked for unknown and conflicting keys.
+/// Reader of one table, checked for unknown and conflicting keys.
 pub struct Reader<'a> {
     sources: &'a Sources,
     section: &'static Section,
@@ -24,7 +24,7 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Opens a table, or the place where it would be.
+    /// Opens a table, or an absent one at its position.
     pub fn open(
         sources: &'a Sources,
         section: &'static Section,
@@ -95,7 +95,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Ends the reading: in builds with assertions, every defined field must have been read.
+    /// Ends reading; with debug assertions, checks that every defined field has been read.
     pub fn finish(self) {
         let seen = self.seen.borrow();
         for field in self.section.fields_of(self.variant) {
@@ -108,24 +108,24 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether a field is given.
+    /// `true` if a field is given.
     pub fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }
 
-    /// Whether a field is left out that has no value of its own then.
+    /// `true` if a field is absent and has no default value of its own.
     pub fn leaves_out(&self, name: &'static str) -> bool {
         !self.has(name)
             && matches!(self.field(name).default, Default::Nothing | Default::Derived(_))
     }
 
-    /// The name of the variant that the table chose.
+    /// Returns the name of the selected variant.
     pub fn chosen(&self) -> Result<&'static str> {
         let tag = self.section.variants.as_ref().map_or("", |variants| variants.tag);
         self.variant.map(|variant| variant.name).ok_or_else(|| self.missing(tag))
     }
 
-    /// The section as users know it.
+    /// Returns the name of the section in messages.
     pub fn label(&self) -> String {
         if self.path.is_empty() {
             format!("the {}", self.section.name)
@@ -134,33 +134,33 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The full path of a field.
+    /// Returns the full path of a field.
     pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// An error about a field, placed at its value when it has one.
+    /// Creates an error about a field, placed at its value if there is one.
     pub fn error(&self, name: &str, problem: Problem) -> InputError {
         let origin = self.entry(name).map_or(self.origin, |node| node.origin);
         self.sources.error(origin, problem)
     }
 
-    /// An error about a value that is given.
+    /// Creates an error about a given value.
     pub fn error_at(&self, origin: Origin, problem: Problem) -> InputError {
         self.sources.error(origin, problem)
     }
 
-    /// Values that are fine alone and wrong together.
+    /// Creates an error about values that are valid by themselves and inconsistent together.
     pub fn inconsistent(&self, name: &str, message: String) -> InputError {
         self.error(name, Problem::Inconsistent { message })
     }
 
-    /// An error about the table as a whole.
+    /// Creates an error about the table as a whole.
     pub fn section_error(&self, problem: Problem) -> InputError {
         self.sources.error(self.origin, problem)
     }
 
-    /// None of several fields is given.
+    /// Creates an error about several fields of which none is given.
     pub fn one_of(&self, names: &[&str]) -> InputError {
         let choices: Vec<String> = names.iter().map(|name| self.example_of(name)).collect();
         let problem = Problem::OneOf { section: self.label(), choices: choices.join(", ") };
@@ -171,14 +171,14 @@ impl<'a> Reader<'a> {
         self.section.any_field(name).map_or_else(String::new, Field::example)
     }
 
-    /// A field that another value makes necessary is missing.
+    /// Creates an error about a missing field that another value requires.
     pub fn missing(&self, name: &str) -> InputError {
         let example = self.example_of(name);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
     }
 
-    /// What a field holds.
+    /// Returns the kind of value of a field.
     pub fn kind_of(&self, name: &'static str) -> Kind {
         self.field(name).kind
     }
@@ -187,7 +187,7 @@ impl<'a> Reader<'a> {
         self.table.and_then(|table| table.get(name)).map(|entry| &entry.node)
     }
 
-    /// The definition of a field; a name without one is a bug in this library.
+    /// Returns the definition of a field; a name without one is a bug in this library.
     fn field(&self, name: &'static str) -> &'static Field {
         self.seen.borrow_mut().push(name);
         let found = self.section.fields_of(self.variant).find(|field| field.name == name);
@@ -195,7 +195,7 @@ impl<'a> Reader<'a> {
             .unwrap_or_else(|| panic!("field `{name}` of {} is read but not defined", self.label()))
     }
 
-    /// A table inside this one; one that is absent has only defaults.
+    /// Opens a table inside this one; an absent one has only defaults.
     pub fn section(&self, name: &'static str) -> Result<Self> {
         let field = self.field(name);
         let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
@@ -214,12 +214,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Leaves a field to another reader.
+    /// Marks a field as read by another reader.
     pub fn skip(&self, name: &'static str) {
         self.field(name);
     }
 
-    /// A table inside this one as written, for another reader.
+    /// Returns a table inside this one as written, for another reader.
     pub fn table(&self, name: &'static str) -> Result<&'a Table> {
         let field = self.field(name);
         let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
@@ -229,12 +229,12 @@ impl<'a> Reader<'a> {
         Ok(table)
     }
 
-    /// Where a field was written; where the table was, for one that is not given.
+    /// Returns the origin of a field; that of the table if the field is absent.
     pub fn origin_of(&self, name: &str) -> Origin {
         self.entry(name).map_or(self.origin, |node| node.origin)
     }
 
-    /// A table inside this one that may be absent.
+    /// Opens a table inside this one, if present.
     pub fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
         if self.has(name) {
             self.section(name).map(Some)
@@ -244,7 +244,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A list of tables.
+    /// Opens the tables of a list.
     pub fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
         let field = self.field(name);
         let Kind::Tables(section) = field.kind else { self.defined_otherwise(name) };
@@ -263,13 +263,13 @@ impl<'a> Reader<'a> {
         Ok(readers)
     }
 
-    /// A field read as another kind than its definition says is a bug in this library.
+    /// Panics: a field read as another kind than defined is a bug in this library.
     fn defined_otherwise(&self, name: &str) -> ! {
         panic!("field `{name}` of {} is defined as another kind than it is read", self.label())
     }
 }
 
-/// How an item of a list is called in paths: its name, the pair it joins, or its number from 1.
+/// Returns the name of a list item in paths: its name, the pair it joins, or its number from 1.
 pub fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
@@ -289,7 +289,7 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// What users of other programs write, and what it is called here.
+/// Names common in other programs, with ours.
 const HABITS: &[(&str, &str)] = &[
     ("mu", "coefficient"),
     ("mu", "friction"),
@@ -307,7 +307,7 @@ const HABITS: &[(&str, &str)] = &[
     ("material", "kind"),
 ];
 
-/// The name that looks most like a word, if any comes close.
+/// Returns the most similar name, if any is close.
 pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if word.len() > 60 {
         return None;

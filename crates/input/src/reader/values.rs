@@ -30,17 +30,17 @@ impl Reader<'_> {
         value?.ok_or_else(|| self.missing(name))
     }
 
-    /// A quantity in SI.
+    /// Reads a quantity in SI.
     pub fn quantity(&self, name: &'static str) -> Result<f64> {
         self.required(name, self.optional_quantity(name))
     }
 
-    /// A quantity in SI that may be absent.
+    /// Reads an optional quantity in SI.
     pub fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         Ok(self.optional_quantity_with_dimension(name)?.map(|quantity| quantity.value))
     }
 
-    /// A quantity whose dimension tells what it means.
+    /// Reads an optional quantity whose meaning depends on its dimension.
     pub fn optional_quantity_with_dimension(&self, name: &'static str) -> Result<Option<Quantity>> {
         self.value(name, |reader, field, node| {
             if let Kind::Quantity(dimensions, range) = field.kind {
@@ -53,7 +53,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A quantity, or `None` for the word that stands in its place.
+    /// Reads a quantity, or `None` for the word that replaces it.
     pub fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::WordOr(word, dimensions, range) = field.kind else {
@@ -67,12 +67,12 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
-    /// A plain number.
+    /// Reads a plain number.
     pub fn number(&self, name: &'static str) -> Result<f64> {
         self.required(name, self.optional_number(name))
     }
 
-    /// A plain number that may be absent.
+    /// Reads an optional plain number.
     pub fn optional_number(&self, name: &'static str) -> Result<Option<f64>> {
         self.value(name, |reader, field, node| {
             let Kind::Number(range) = field.kind else { reader.defined_otherwise(name) };
@@ -80,7 +80,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The value of a node that holds a plain number.
+    /// Reads a plain number from a node.
     pub fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
         let wrong = || self.wrong_type(name, Kind::Number(range), node);
         let value = match &node.value {
@@ -100,12 +100,12 @@ impl Reader<'_> {
         Ok(value)
     }
 
-    /// An integer in its range.
+    /// Reads an integer within its range.
     pub fn integer(&self, name: &'static str) -> Result<u32> {
         self.required(name, self.optional_integer(name))
     }
 
-    /// An integer that may be absent.
+    /// Reads an optional integer within its range.
     pub fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
             let value = reader.read_integer(name, node, field.kind)?;
@@ -113,7 +113,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The value of a node that holds an integer of a kind.
+    /// Reads an integer of a kind from a node.
     pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
         let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
         let Value::Integer(value) = node.value else {
@@ -133,12 +133,12 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// `true` or `false`.
+    /// Reads `true` or `false`.
     pub fn flag(&self, name: &'static str) -> Result<bool> {
         self.required(name, self.optional_flag(name))
     }
 
-    /// `true` or `false`, or absent.
+    /// Reads an optional `true` or `false`.
     pub fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
         self.value(name, |reader, field, node| {
             let Value::Flag(value) = node.value else {
@@ -148,12 +148,12 @@ impl Reader<'_> {
         })
     }
 
-    /// Text.
+    /// Reads text.
     pub fn text(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_text(name))
     }
 
-    /// Text that may be absent; `false` counts as absent where the field allows it.
+    /// Reads optional text; `false` counts as absent if the field allows it.
     pub fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
         let value = self.value(name, |reader, field, node| {
             let text = match (&node.value, field.kind) {
@@ -174,7 +174,7 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
-    /// A single value as written, for the caller to make sense of.
+    /// Reads a single value as written, for the caller to interpret.
     pub fn node(&self, name: &'static str) -> Result<Option<Node>> {
         self.value(name, |reader, field, node| {
             if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
@@ -184,7 +184,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A list of single values as written, not empty.
+    /// Reads a nonempty list of single values as written.
     pub fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
         self.value(name, |reader, field, node| {
             let Value::Array(items) = &node.value else {
@@ -205,7 +205,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A list of texts; empty where it is absent.
+    /// Reads a list of texts; empty if absent.
     pub fn texts(&self, name: &'static str) -> Result<Vec<String>> {
         let nodes = self.nodes(name)?.unwrap_or_default();
         let text =
@@ -213,7 +213,7 @@ impl Reader<'_> {
         Ok(nodes.into_iter().filter_map(text).collect())
     }
 
-    /// A file, relative to the file that names it.
+    /// Reads a file path, relative to the file that contains it.
     pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
         Ok(Some(match self.entry(name).map(|node| node.origin) {
@@ -226,12 +226,12 @@ impl Reader<'_> {
         }))
     }
 
-    /// A member of a closed set.
+    /// Reads a member of a closed set.
     pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         self.required(name, self.optional_choice(name))
     }
 
-    /// A member of a closed set that may be absent.
+    /// Reads an optional member of a closed set.
     pub fn optional_choice<T: Named>(&self, name: &'static str) -> Result<Option<T>> {
         self.value(name, |reader, _, node| {
             let text = reader.read_name(name, node, &crate::field::names::<T>())?;
@@ -240,12 +240,12 @@ impl Reader<'_> {
         })
     }
 
-    /// A name of a list.
+    /// Reads one of a list of names.
     pub fn catalog_name(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_catalog_name(name))
     }
 
-    /// A name of a list that may be absent.
+    /// Reads one of a list of names, if present.
     pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
@@ -253,7 +253,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Two texts.
+    /// Reads two texts.
     pub fn pair(&self, name: &'static str) -> Result<[String; 2]> {
         let value = self.value(name, |reader, field, node| {
             if let Value::Array(items) = &node.value
@@ -267,22 +267,22 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    /// Two quantities.
+    /// Reads an optional point of two quantities.
     pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
         self.list(name)
     }
 
-    /// Two quantities.
+    /// Reads a point of two quantities.
     pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
         self.required(name, self.optional_point(name))
     }
 
-    /// Three quantities.
+    /// Reads three quantities.
     pub fn triple(&self, name: &'static str) -> Result<[f64; 3]> {
         self.required(name, self.optional_triple(name))
     }
 
-    /// Three quantities that may be absent.
+    /// Reads three quantities, if present.
     pub fn optional_triple(&self, name: &'static str) -> Result<Option<[f64; 3]>> {
         self.list(name)
     }
@@ -296,7 +296,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A list of points.
+    /// Reads a list of points.
     pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
@@ -311,7 +311,7 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    /// The value of a node that holds one of a list of names.
+    /// Reads one of a list of names from a node.
     pub fn read_name(&self, name: &str, node: &Node, valid: &[&'static str]) -> Result<String> {
         let Value::Text(text) = &node.value else {
             return Err(self.wrong_type(name, Kind::Text, node));
@@ -353,7 +353,7 @@ impl Reader<'_> {
         Ok(point)
     }
 
-    /// The value of a node that holds a quantity.
+    /// Reads a quantity from a node.
     pub fn read_quantity(
         &self,
         name: &str,
@@ -391,7 +391,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A number without a unit, with the advice to add the SI unit.
+    /// Creates an error about a number without a unit, which advises to add the SI unit.
     fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
         let example = format!("`{name} = \"{number} {unit}\"`");
         let found = node.value.describe();
@@ -399,7 +399,7 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// A unit alone counts as one of it.
+    /// Reads a unit, where a name alone stands for one of it.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
             && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
@@ -431,7 +431,7 @@ impl Reader<'_> {
         Err(self.sources.error(node.origin, problem))
     }
 
-    /// A value of another type than a kind asks for.
+    /// Creates an error about a value of another type than its kind requires.
     pub fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> InputError {
         self.wrong_type_as(name, &kind.to_string(), node)
     }
