@@ -1,6 +1,6 @@
-//! How fast a stack is computed: one run on one core, and how its cost grows with the stack.
+//! Speed of a run on one core, and growth of its cost with the size of the stack.
 //!
-//! `cargo bench -p barrelstack` prints the figures; nothing is asserted, since they are the machine's.
+//! `cargo bench -p barrelstack` prints the figures; nothing is asserted, since they depend on the machine.
 #![expect(clippy::print_stdout, reason = "printing is what it is for")]
 
 use std::ops::ControlFlow;
@@ -15,13 +15,13 @@ use barrelstack_dynamics::{
     Method, Observer, Planar, Scratch, Simulation, State, look, settle, simulate,
 };
 
-/// How often each figure is measured; the median is printed.
+/// Number of measurements of each figure; the median is printed.
 const REPEATS: usize = 7;
 
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
-    // `cargo test --benches` runs benches, too, and wants no figures.
+    // `cargo test --benches` runs benches, too, without figures.
     if std::env::args().any(|argument| argument == "--test") {
         return Ok(());
     }
@@ -34,7 +34,7 @@ fn main() -> Result<(), Failure> {
     growth("columns", [2, 4, 8])
 }
 
-/// The eight-barrel case from its scenario to its outcome, and what the watching costs.
+/// Measures the eight-barrel case from its scenario to its outcome, and the cost of its observers.
 fn whole_run() -> Result<(), Failure> {
     let scenario = Scenario::builtin("candia-8-barrels", &[])?;
     let mut end_time = 0.0;
@@ -77,7 +77,7 @@ fn whole_run() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The report of a minute of a large stack: what it takes to write, and how large it is.
+/// Measures the report of a minute of a large stack: time to write it, and its size.
 fn report() -> Result<(), Failure> {
     let changes = [
         "stack.view=longitudinal",
@@ -100,9 +100,9 @@ fn report() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The cost of a step while the stack stands, against the number of its levels or columns.
+/// Measures the cost of a step while the stack stands, against the number of its levels or columns.
 fn growth(what: &str, values: impl IntoIterator<Item = u32>) -> Result<(), Failure> {
-    /// The stack still stands then (s).
+    /// Time (s) at which the stack still stands.
     const STANDING: f64 = 0.5;
     println!("a step of the standing stack against its {what}");
     println!("  {what:>8}   bodies   tested   touching   µs/step   ns/touching contact");
@@ -123,7 +123,7 @@ fn growth(what: &str, values: impl IntoIterator<Item = u32>) -> Result<(), Failu
     Ok(())
 }
 
-/// A stack at rest, ready to be shaken again and again.
+/// A stack at rest, ready to be shaken repeatedly.
 struct Stage {
     scenario: Scenario,
     assembly: Assembly,
@@ -133,11 +133,11 @@ struct Stage {
     step: f64,
 }
 
-/// What shaking took.
+/// Cost of a simulation.
 struct Cost {
     seconds: f64,
     steps: f64,
-    /// Contact elements tested.
+    /// Number of tested contact elements.
     elements: f64,
 }
 
@@ -152,7 +152,7 @@ impl Stage {
         Ok(Self { scenario: scenario.clone(), assembly, ground, state, scratch, step })
     }
 
-    /// The median cost of shaking from rest; `shake` returns the steps it took.
+    /// Returns the median cost of shaking from rest; `shake` returns its number of steps.
     fn measure(
         &self,
         shake: impl Fn(&Self, &mut State<Planar>, &mut Scratch<Planar>) -> u64,
@@ -169,7 +169,7 @@ impl Stage {
         Cost { seconds: median(seconds), steps: steps as f64, elements: elements as f64 }
     }
 
-    /// Shakes before an observer until `end_time` (s).
+    /// Simulates with an observer until `end_time` (s).
     fn shaken(
         &self,
         state: &mut State<Planar>,
@@ -183,7 +183,7 @@ impl Stage {
             .map_or(0, |totals| totals.steps)
     }
 
-    /// How many contacts touch until `end_time` (s), over all steps.
+    /// Returns the number of touching contacts until `end_time` (s), summed over all steps.
     fn touched(&self, end_time: f64) -> f64 {
         let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
         let mut count = 0;
@@ -196,7 +196,7 @@ impl Stage {
         count as f64
     }
 
-    /// Shakes as a run does, with all its watching, until `after` (s) from the collapse.
+    /// Simulates as a run does, with all its observers, until `after` (s) from the collapse.
     fn watched(
         &self,
         state: &mut State<Planar>,
@@ -224,7 +224,7 @@ impl Stage {
     }
 }
 
-/// The middle of an odd number of measurements.
+/// Returns the median of an odd number of measurements.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]

@@ -1,4 +1,4 @@
-//! Many cases together: how often a stack comes down, against the friction under its racks, and all else as a table.
+//! Many cases together: the share of collapses against the friction under the racks, and all results as a table.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use barrelstack::ensemble::{Ensemble, Prepared, table};

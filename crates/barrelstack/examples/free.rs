@@ -1,4 +1,4 @@
-//! A free scene: how far a block slides, against v²/(2 μ g).
+//! A free scene: the sliding distance of a block, against v²/(2 μ g).
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use barrelstack::Scenario;

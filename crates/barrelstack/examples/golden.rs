@@ -1,4 +1,4 @@
-//! Keeps the bits of results as they are now; refuses where they changed and their version did not.
+//! Stores the bits of present results as reference; refuses if they changed under the same version.
 #![expect(
     clippy::print_stdout,
     clippy::print_stderr,

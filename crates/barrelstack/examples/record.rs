@@ -1,4 +1,4 @@
-//! A stack under accelerations of your own, scaled, with a look at its way and its report as a page.
+//! A stack under user-supplied accelerations, scaled, with its response and its report as a page.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use std::ops::ControlFlow;
@@ -7,11 +7,11 @@ use barrelstack::motion::{AccelerationUnit, Stage, bundled};
 use barrelstack::{Record, Scenario, Summary, report};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Any samples will do; these are those of the record that comes with the program.
+    // Any samples will do; these are those of the bundled record.
     let own = &bundled("napa-college-2014").ok_or("it is bundled")?.channels[0];
     let (samples, unit) = (&own.acceleration[..], AccelerationUnit::MetersPerSecondSquared);
     let mut record = Record::of_samples("my site", &[("E", samples)], own.time_step, unit)?;
-    // As recorded, so that the drift is taken out of it.
+    // As recorded, so that the baseline drift is removed.
     record.stage = Stage::Raw;
     let changes = ["motion.scale.pgv=80 cm/s", "run.duration=20 s"].map(str::to_owned);
     let scenario = Scenario::builtin("candia-8-barrels", &changes)?.with_record(&record)?;

@@ -1,4 +1,4 @@
-//! Two or more runs side by side: what differs in what was asked for, and in what came of it.
+//! Comparison of two or more runs: inputs and results that differ.
 
 mod labels;
 mod page;
@@ -28,18 +28,17 @@ pub struct Side {
     pub run: Run,
     /// Its summary.
     pub summary: Summary,
-    /// What all variants of the other plane say, where the scenario looks at both.
+    /// Statistics of the variants in the other plane, where the scenario has both.
     pub other: Option<Spread>,
-    /// Whether each variant collapses, by their numbers, in each plane, the one that is shown first; none of those
+    /// For each plane, the shown one first, `true` for every variant that collapses, by its number; `None` for variants
     /// without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
 }
 
-/// Has all answers show the same variant, under the same component of their motion: the one that is most like all
-/// others of all of them.
+/// Makes all answers show the same variant, under the same component of their motion: the medoid over all of them.
 ///
-/// Runs that show another one are run anew, before an observer, who may stop them. Answers without variants stay as they
-/// are.
+/// Answers that show another variant run this one, with progress reported to an observer, which may cancel. Answers
+/// without variants stay as they are.
 ///
 /// # Errors
 /// When one of them cannot be run.
@@ -58,8 +57,8 @@ pub fn aligned(
     answers.into_iter().map(align).collect()
 }
 
-/// Runs of answers with their names, all in one plane where all have it: the one in which the worst of them
-/// is worst.
+/// Returns the runs of answers with their names, all in one plane where all have it: that of the worst result
+/// of any.
 pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     let share = |answer: &Answer| {
         answer.decides.summary.ensemble.as_ref().and_then(|spread| spread.share).unwrap_or(0.0)
@@ -87,21 +86,21 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
     answers.into_iter().map(side).collect()
 }
 
-/// Why runs cannot be compared.
+/// Error of a comparison.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CompareError {
-    /// One run has nothing to stand beside.
+    /// A single run has no counterpart.
     #[error("a comparison needs at least two runs, found {0}")]
     TooFew(usize),
     /// More runs than a page can show.
     #[error("a comparison shows at most {most} runs side by side, found {found}: leave some out")]
     TooMany {
-        /// Runs asked for.
+        /// Number of runs requested.
         found: usize,
-        /// Runs that fit.
+        /// Maximum number of runs.
         most: usize,
     },
-    /// Nothing to compare.
+    /// Two runs are equal.
     #[error("{first} and {second} ask for the same run: every input is equal")]
     Identical {
         /// One of them.
@@ -111,13 +110,13 @@ pub enum CompareError {
     },
 }
 
-/// Most runs of one comparison; a seventh would repeat a color.
+/// Maximum number of runs in a comparison; a seventh would repeat a color.
 pub const MOST: usize = 6;
 
-/// Checks what is to be compared before any work is done.
+/// Checks a comparison before any work is done.
 ///
 /// # Errors
-/// When there are too few or too many, or two of them are the same run.
+/// When there are too few or too many runs, or two of them are equal.
 pub fn check(scenarios: &[(String, Scenario)]) -> Result<(), CompareError> {
     match scenarios.len() {
         found @ 0..=1 => return Err(CompareError::TooFew(found)),
@@ -172,7 +171,7 @@ described! {
     }
 }
 
-/// The inputs that differ, in the order of the file.
+/// Returns the inputs that differ, in the order of the file.
 pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec<Difference> {
     let all: Vec<_> = scenarios.into_iter().map(Scenario::settings).collect();
     let mut list: Vec<Difference> = Vec::new();
@@ -193,13 +192,13 @@ pub fn differences<'a>(scenarios: impl IntoIterator<Item = &'a Scenario>) -> Vec
     list
 }
 
-/// The first run beside each other one, in every plane.
+/// Compares the first run with each other one, in every plane.
 fn pairs(sides: &[Side]) -> Vec<Paired> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     others.iter().flat_map(|other| Paired::of(first, other)).collect()
 }
 
-/// The letter of a run: A for the first.
+/// Returns the letter of a run: A for the first.
 fn letter(at: usize) -> char {
     char::from(b'A' + u8::try_from(at).unwrap_or(0))
 }

@@ -19,7 +19,7 @@ use crate::variants::{Answer, Shown};
 use crate::verify::Verification;
 use barrelstack_input::system;
 
-/// The names of the files that every run writes, those of the run itself also with its plane before them.
+/// Names of the files that every run writes; those of the run itself may have its plane as a prefix.
 const FILES: [&str; 4] = ["summary.json", "scenario.toml", "variants.csv", "report.html"];
 const FILES_OF_PLANE: [&str; 5] =
     ["histories.csv", "histories.npz", "forces.csv", "envelopes.csv", "frames.csv"];
@@ -27,21 +27,21 @@ const FILES_OF_PLANE: [&str; 5] =
 /// Largest summary (bytes) that is read.
 const SUMMARY_LIMIT: usize = 256 << 20;
 
-/// Longest time between the first and the last file of a run; what was changed later was changed by another.
+/// Longest time between the first and the last file of a run; later changes are somebody else's.
 const AT_ONCE: Duration = Duration::from_secs(10);
 
-/// Why files could not be written.
+/// Error of writing files.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// Something is there already.
+    /// The folder is not empty.
     #[error("{folder} is not empty (it holds {file})", folder = folder.display())]
     Occupied {
         /// The folder.
         folder: PathBuf,
-        /// A file that is there.
+        /// A file in it.
         file: String,
     },
-    /// What would be replaced belongs to somebody else.
+    /// A file to be replaced was not written by a run.
     #[error(
         "{file} in {folder} was not written by an earlier run, or was changed since",
         folder = folder.display()
@@ -52,44 +52,44 @@ pub enum ExportError {
         /// The file.
         file: String,
     },
-    /// The system refused.
+    /// A system call failed.
     #[error("cannot write {path}: {reason}", path = path.display())]
     Write {
         /// The path.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the system.
         reason: String,
     },
 }
 
 impl ExportError {
-    /// A path that cannot be written, and why.
+    /// Returns the error for a path that cannot be written, with the reason.
     pub(crate) fn write(path: &Path, reason: impl Into<String>) -> Self {
         Self::Write { path: path.to_owned(), reason: reason.into() }
     }
 
-    /// A path that the system refuses.
+    /// Returns the error for a path that the system refuses.
     pub(crate) fn refused(path: &Path, error: &std::io::Error) -> Self {
         Self::write(path, system::words(error))
     }
 }
 
-/// A folder that is ready to take the files of a run.
+/// A folder that is ready for the files of a run.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
 }
 
 impl Folder {
-    /// Checks a folder before the work is done; makes nothing yet.
+    /// Checks a folder before the work is done; creates nothing yet.
     ///
     /// # Errors
-    /// When it holds anything and `overwrite` is not set, or is no folder.
+    /// When it is not empty and `overwrite` is not set, or is not a folder.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ExportError> {
         if path.as_os_str().is_empty() {
             return Err(ExportError::write(path, "the name is empty"));
         }
-        // A folder that is to be made needs one above it that is there.
+        // The nearest existing ancestor must be a folder.
         let there = path.ancestors().find(|folder| folder.exists());
         if let Some(file) = there.filter(|there| !there.is_dir()) {
             let reason = format!("{} is a file, not a folder", file.display());
@@ -106,10 +106,10 @@ impl Folder {
         Ok(Self { path: path.to_owned() })
     }
 
-    /// As [`Folder::prepare`], for a folder in which what an earlier run wrote is replaced, and nothing else.
+    /// Checks a folder like [`Folder::prepare`]; files of an earlier run are replaced, and no others.
     ///
     /// # Errors
-    /// When one of the files that would be replaced is none that a run wrote, or was changed since.
+    /// When a file to be replaced was not written by a run, or was changed since.
     pub fn prepare_again(path: &Path) -> Result<Self, ExportError> {
         let folder = Self::prepare(path, true)?;
         let changed =
@@ -133,17 +133,17 @@ impl Folder {
         }
     }
 
-    /// Where it is.
+    /// Returns its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Where the report is.
+    /// Returns the path of the report.
     pub fn report(&self) -> PathBuf {
         self.path.join("report.html")
     }
 
-    /// Writes all [`files`]: under temporary names first and renamed together, so that none is ever half there and
+    /// Writes all [`files`]: under temporary names first and renamed together, so that none is ever incomplete and
     /// a full disk leaves an earlier run as it was.
     ///
     /// # Errors
@@ -157,8 +157,7 @@ impl Folder {
         self.put(&files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())))
     }
 
-    /// Writes a page as `report.html`, and as `report.md` with the figures and
-    /// tables of it in `figures/`.
+    /// Writes a page as `report.html`, and as `report.md` with its figures and tables in `figures/`.
     ///
     /// # Errors
     /// When the system refuses.
@@ -202,14 +201,14 @@ impl Folder {
             });
         if written.is_err() {
             for name in names() {
-                // Those that were never made cannot be removed, and that is well.
+                // Ignore: a file that was never created cannot be removed.
                 let _ = std::fs::remove_file(self.temporary(name));
             }
         }
         written
     }
 
-    /// Writes the report once more, with a page in it that holds the program and starts with this scenario.
+    /// Writes the report again, with an embedded page that holds the program and starts with this scenario.
     ///
     /// # Errors
     /// When the system refuses.
@@ -226,7 +225,7 @@ impl Folder {
         self.put(&std::iter::once(("report.html", bytes.as_slice())))
     }
 
-    /// Writes the report on paper, `report.pdf`, beside the other files.
+    /// Writes the report for printing, `report.pdf`, beside the other files.
     ///
     /// # Errors
     /// When the system refuses.
@@ -250,11 +249,11 @@ impl Folder {
     }
 }
 
-/// The files of an answer by their names, those of a run with the name of its plane before theirs where there are
-/// two, and the report last.
+/// Returns the files of an answer by their names, with the name of their plane as a prefix where there are two, and the
+/// report last.
 ///
 /// # Errors
-/// When the histories make no archive.
+/// When the archive of histories cannot be written.
 pub fn files(
     answer: &Answer,
     verification: Option<&Verification>,
@@ -269,7 +268,7 @@ pub fn files(
     ];
     let both = answer.other.is_some();
     for run in std::iter::once(run).chain(answer.other.as_ref().map(|other| &other.run)) {
-        // Of both planes each has its own files.
+        // With two planes each has its own files.
         let view = run.assembly.view.filter(|_| both);
         let plane = view.map_or_else(String::new, |view| format!("{}-", view.name()));
         let npz = format!("{plane}histories.npz");
@@ -287,8 +286,8 @@ pub fn files(
     Ok(files)
 }
 
-/// What a page that holds the program starts with: the scenario as text, and its records by their names and in
-/// base64, wherever they lie here.
+/// Returns the start data of a page that holds the program: the scenario as text, and its records by name in
+/// base64, independent of their paths.
 fn start_of(scenario: &Scenario) -> Value {
     let mut told = scenario.clone();
     let mut records = Vec::new();
@@ -310,7 +309,7 @@ fn start_of(scenario: &Scenario) -> Value {
     json!({ "name": "scenario.toml", "text": told.to_resolved_toml(), "records": records })
 }
 
-/// All channels as arrays, named like the columns of the CSV, and "time".
+/// Writes all channels as arrays, named like the columns of the CSV, and "time".
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
@@ -331,13 +330,13 @@ fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     barrelstack_motion::write::archive(&arrays)
 }
 
-/// A name as a file of the archive: it stays in the folder in which it is unpacked.
+/// Converts a name to one of a file in the archive, without separators, so that it unpacks into its own folder.
 fn array_name(name: &str) -> String {
     let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
     name.chars().map(kept).collect()
 }
 
-/// Columns side by side, `time (s)` first: their names, and the values of a row, which may lack some.
+/// Writes columns, `time (s)` first: their names, and the values of a row, which may be missing.
 fn csv<R: Iterator<Item = Option<f64>>>(
     times: &[f64],
     names: impl Iterator<Item = String>,
@@ -358,7 +357,7 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// One row for the case as it is stated and for every variant, in every plane.
+/// Writes one row for the nominal case and for every variant, in every plane.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "plane,variant,outcome,mode,first body,collapse (s),first fall (s),barrels fallen,barrels\n",
@@ -369,7 +368,7 @@ fn variants_csv(answer: &Answer) -> String {
         let results = variants.as_ref().map(|found| &found.results).or(stopped.as_ref());
         for (number, result) in results.into_iter().flatten().enumerate() {
             let (kind, collapse) = match &result.outcome {
-                // What was not done has no row.
+                // Interrupted cases have no row.
                 Ok(Outcome::Interrupted) => continue,
                 Ok(Outcome::Collapse { mode, time, first, .. }) => {
                     ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))

@@ -5,7 +5,7 @@ use barrelstack_dynamics::Motion;
 use crate::assemble::{Assembly, PartKind};
 use crate::run::Run;
 
-/// The rigid block that a stack would be if nothing in it moved.
+/// Rigid block equivalent to a stack without internal motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidBlock {
     /// Distance (m) from the edge about which it rocks to the center of mass.
@@ -16,12 +16,12 @@ pub struct RigidBlock {
     pub frequency: f64,
 }
 
-/// How far (share of the height) above the lowest point of the scene still counts as its foot.
+/// Height above the lowest point, as a share of the total, up to which a point belongs to the foot.
 const FOOT: f64 = 1e-3;
 
 impl RigidBlock {
-    /// The block of all free bodies as they are assembled, under gravity (m/s²); none where nothing
-    /// stands.
+    /// Returns the block of all free bodies as assembled, under gravity (m/s²); `None` if there are no such
+    /// bodies.
     pub fn of(assembly: &Assembly, gravity: f64) -> Option<Self> {
         let bodies =
             || assembly.model.bodies().iter().enumerate().filter(|(_, b)| b.motion == Motion::Free);
@@ -55,7 +55,7 @@ impl RigidBlock {
         (half > 0.0 && frequency.is_finite()).then_some(block)
     }
 
-    /// Period (s) of free rocking between tilts of `±tilt` (rad), no energy lost:
+    /// Returns the period (s) of free rocking between tilts of `±tilt` (rad) without energy loss:
     ///
     /// ```text
     /// T = (4/p) arcosh( 1 / (1 − θ₀/α) )
@@ -68,24 +68,24 @@ impl RigidBlock {
     }
 }
 
-/// One swing of a history to one side and back.
+/// One half-cycle of a history: a swing to one side and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
-    /// When (s) it begins.
+    /// Start (s).
     pub start: f64,
-    /// Period (s) of a motion made of such swings: twice as long as it takes.
+    /// Period (s) of a motion of such swings: twice its duration.
     pub period: f64,
-    /// Its largest value without the sign, in the unit of the history.
+    /// Its largest absolute value, in the unit of the history.
     pub amplitude: f64,
 }
 
-/// Smallest swing that counts, as a share of the largest.
+/// Smallest amplitude of a swing, as a share of the largest.
 const SMALLEST: f64 = 0.1;
 
-/// The swings of a history, each from one zero crossing to the next; crossings lie between samples
-/// on a straight line.
+/// Returns the swings of a history, each from one zero crossing to the next; crossings are interpolated
+/// linearly between samples.
 ///
-/// Swings below a tenth of the largest are left out: there small impacts cross zero at random.
+/// Swings below a tenth of the largest are left out: there small impacts cause random zero crossings.
 pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     let count = times.len().min(values.len());
     let mut crossings: Vec<(usize, f64)> = Vec::new();
@@ -109,18 +109,18 @@ pub fn swings(times: &[f64], values: &[f64]) -> Vec<Swing> {
     swings
 }
 
-/// How the top of a stack moved against its foot while it stood.
+/// Drift of the top of a stack against its foot while it stood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drift {
-    /// Height (m) of the point that is followed: the center of the top left barrel, at rest.
+    /// Height (m) of the tracked point: the center of the top left barrel, at rest.
     pub height: f64,
-    /// Largest drift (m), without the sign.
+    /// Largest absolute drift (m).
     pub largest: f64,
     /// Its swings, amplitudes in m.
     pub swings: Vec<Swing>,
 }
 
-/// The drift of a stack: the displacement of its top left barrel less that of its bottom rack. None
+/// Returns the drift of a stack: the displacement of its top left barrel less that of its bottom rack; `None`
 /// for a free scene.
 pub fn drift(run: &Run) -> Option<Drift> {
     let (recording, assembly) = (&run.recording, &run.assembly);

@@ -1,4 +1,4 @@
-//! The report of a run: which sections, in which order, with which words.
+//! The report of a run: its sections, their order and their wording.
 
 mod drawing;
 mod glossary;
@@ -30,7 +30,7 @@ pub use tables::{demand_table, device_table, interface_table};
 pub use words::{device as device_sentence, fine, stopped};
 pub(crate) use words::{headline, provenance};
 
-/// What happened, in three plain sentences: the verdict, the why, and how far to trust it.
+/// Summarizes the result in three plain sentences: the verdict, its cause, and its reliability.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = vec![headline(run, summary)];
     sentences.extend(summary.remedy.as_ref().map(Remedy::sentence));
@@ -38,30 +38,30 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// The whole report as a document, free of any output format.
+/// Builds the whole report as a document, free of any output format.
 pub fn document(run: &Run, summary: &Summary) -> Document {
     page(run, summary, (None, None), None)
 }
 
-/// The report of an answer: of the plane that decides with the stage of the other beside its own, and with
-/// what repeats of the run that is shown say about it.
+/// Builds the report of an answer: of the governing plane, with the stage of the other one beside its own, and
+/// with the repeats of the shown run.
 pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
     let Answer { decides, other, .. } = answer;
     let seen = (decides.variants.as_ref(), other.as_ref());
     page(&decides.run, &decides.summary, seen, verification)
 }
 
-/// What moves of an answer, alone: its run in motion, in each plane that it looks at.
+/// Returns the stage of an answer alone: the moving run, in each of its planes.
 pub fn stage(answer: &Answer) -> Block {
     let Answer { decides: Shown { run, summary, variants, .. }, other, .. } = answer;
     let scene = drawing::scene_among(run, variants.as_ref());
     sections::stage(run, summary, other.as_ref(), &scene)
 }
 
-/// The same before anything moves: the stack as it is put up, in each of its planes.
+/// Returns the stage before any motion: the stack as assembled, in each of its planes.
 ///
 /// # Errors
-/// When it cannot be put up.
+/// When it cannot be assembled.
 pub fn still(planes: &[Plane]) -> Result<Block, AssembleError> {
     let assemblies: Result<Vec<Assembly>, _> =
         planes.iter().map(|plane| assemble(&plane.scenario)).collect();
@@ -95,7 +95,7 @@ fn page(
     }
 }
 
-/// The kind of verdict.
+/// Returns the kind of verdict.
 pub(crate) fn tone(run: &Run, summary: &Summary) -> Tone {
     let spreads = summary.spreads();
     if !spreads.is_empty() {

@@ -246,7 +246,7 @@ described! {
 }
 
 impl Unfinished {
-    /// What the reader of a result should know of it.
+    /// Returns a caveat for the reader of a result.
     pub fn warning(&self) -> String {
         let Self { done, of } = self;
         format!(
@@ -257,7 +257,7 @@ impl Unfinished {
 }
 
 impl Summary {
-    /// What all variants say in each plane in which they were run, across the barrels first.
+    /// Returns the statistics of variants in each plane in which they were run, across the barrels first.
     pub fn spreads(&self) -> Vec<(View, &Spread)> {
         let own = std::iter::once(self).chain(self.other_plane.as_deref());
         let known = |one: &Self| View::ALL.into_iter().find(|view| Some(view.name()) == one.view);
@@ -267,7 +267,7 @@ impl Summary {
         all
     }
 
-    /// The summary as JSON text, indented.
+    /// Returns the summary as JSON text, indented.
     ///
     /// ```
     /// use barrelstack::{Scenario, Summary};
@@ -277,18 +277,18 @@ impl Summary {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are not text could fail, and there is none.
+        // Only maps with non-text keys could fail, and there are none.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
 
-/// Whether the numbers of a run are results; those of one that broke down look like results and are none.
+/// `true` if the numbers of a run are valid; those of a failed computation merely look like results.
 fn sound(run: &Run) -> bool {
     !matches!(run.outcome, Outcome::Invalid { .. })
 }
 
 fn outcome(run: &Run) -> OutcomeSummary {
-    // What had happened until a stop stands with the bodies.
+    // Events before an interruption are reported with the bodies.
     let ended = sound(run) && run.outcome != Outcome::Interrupted;
     let barrels: Vec<usize> = run.assembly.of_kind(PartKind::Barrel).collect();
     let summary = OutcomeSummary {
@@ -330,7 +330,7 @@ fn demands(run: &Run, span: Span) -> Demands {
 }
 
 impl JointSummary {
-    /// That of a joint with its name; none where its bodies never pressed on each other.
+    /// Returns the summary of a joint under its name; `None` if its bodies never touched.
     pub fn of(name: String, joint: &Joint) -> Option<Self> {
         let PeakForces { vertical, horizontal } = joint.until_loss;
         let whole = joint.whole_run;

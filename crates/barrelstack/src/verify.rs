@@ -1,8 +1,8 @@
-//! How far a run can be trusted: repeats with a finer step, finer nodes and tiny disturbances.
+//! Reliability of a run: repeats with a finer step, finer nodes and tiny perturbations.
 //!
-//! Contact is chaotic: after enough impacts two runs that differ in the last digit go different ways.
-//! What a run says before they part is predicted; what it says later is one possible course.
-//! A verdict that all repeats share is robust even so.
+//! Contact is chaotic: after enough impacts two runs that differ in the last digit diverge.
+//! Results before that are predictions; later ones are one possible course.
+//! A verdict that all repeats share is robust nevertheless.
 
 mod robust;
 
@@ -21,13 +21,13 @@ use crate::variants::run_together;
 
 pub use robust::Robust;
 
-/// Distance (m at full scale) between two runs at which a body counts as gone another way.
+/// Distance (m at full scale) between two runs from which a body counts as diverged.
 pub const APART: f64 = 0.01;
 
-/// Largest displacement (m at full scale) of a body at the start of a disturbed repeat.
+/// Largest displacement (m at full scale) of a body at the start of a perturbed repeat.
 pub const DISTURBANCE: f64 = 1e-9;
 
-/// How many disturbed repeats there are.
+/// Number of perturbed repeats.
 pub const DISTURBED: u64 = 4;
 
 described! {
@@ -75,11 +75,11 @@ described! {
     }
 }
 
-/// Repeats a run: with half the step, with nodes at half the spacing, and with every barrel displaced
-/// by up to a nanometer, in four ways.
+/// Repeats a run: with half the step, with nodes at half the spacing, and four times with every barrel
+/// displaced by up to a nanometer.
 ///
-/// `progress` is told how far all repeats are, in sum, and may stop them; those that were stopped are
-/// named as skipped.
+/// `progress` receives the progress of all repeats, in aggregate, and may cancel; cancelled ones are
+/// listed as skipped.
 ///
 /// # Errors
 /// When a repeat cannot be built or does not stand.
@@ -102,7 +102,7 @@ pub fn verify(
         add(change, disturbed(&base.scenario, seed));
     }
     let mut repeats = Vec::new();
-    // None where one was stopped.
+    // `None` for a cancelled repeat.
     let repeat =
         |at: usize, run: Run| (!run.interrupted).then(|| Repeat::of(base, &run, &changes[at]));
     let done = run_together(&scenarios, base.simulation.end_time, progress, &repeat)?;
@@ -118,7 +118,7 @@ pub fn verify(
     Ok(judge(base, repeats, skipped))
 }
 
-/// The run with half its step; with an adaptive method, with a tenth of its tolerance.
+/// Returns the run with half its step; with an adaptive method, with a tenth of its tolerance.
 fn finer_step(base: &Run) -> (String, Scenario) {
     let mut scenario = base.scenario.clone();
     if let Method::BogackiShampine { tolerance } = &mut scenario.run.method {
@@ -129,7 +129,7 @@ fn finer_step(base: &Run) -> (String, Scenario) {
     ("half the step".into(), scenario)
 }
 
-/// The scenario with nodes at half the spacing, or why that would be another stack.
+/// Returns the scenario with nodes at half the spacing, or the reason why that would be another stack.
 fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     const PER_NODE: &str = "constants are per node, so the number of nodes is part of the physics";
     let mut finer = scenario.clone();
@@ -177,7 +177,7 @@ fn finer_nodes(scenario: &Scenario) -> Result<Scenario, String> {
     Ok(finer)
 }
 
-/// The scenario with every barrel (every body of a free scene) displaced by up to a nanometer.
+/// Returns the scenario with every barrel (every body of a free scene) displaced by up to a nanometer.
 fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     let mut changed = scenario.clone();
     let mut state = seed;
@@ -211,7 +211,7 @@ fn disturbed(scenario: &Scenario, seed: u64) -> Scenario {
     changed
 }
 
-/// A number between −1 and 1 from a generator with one word of state (`SplitMix64` of Steele, Lea and
+/// Returns a number between −1 and 1 from a generator with one word of state (`SplitMix64` of Steele, Lea and
 /// Flood 2014).
 fn noise(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -219,22 +219,22 @@ fn noise(state: &mut u64) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^= z >> 31;
-    // The upper 53 bits as a whole number below 2⁵³.
+    // The upper 53 bits as an integer below 2⁵³.
     (z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// Whether kind, mode and first body of two runs are the same.
+/// `true` if kind, mode and first body of two runs are the same.
 fn same_outcome(base: &Run, other: &Run) -> bool {
     let [own, outcome] = [base, other].map(|run| Summary::of(run, None).outcome);
     (outcome.kind, outcome.mode, outcome.first) == (own.kind, own.mode, own.first)
 }
 
-/// When each barrel had fallen (s).
+/// Returns the time at which each barrel had fallen (s).
 fn falls(run: &Run) -> Vec<Option<f64>> {
     run.assembly.of_kind(PartKind::Barrel).map(|body| run.fates.fate(body).fell_at).collect()
 }
 
-/// The first sample time (s) at which some body is too far from where the run has it.
+/// Returns the first sample time (s) at which some body has diverged from its place in the run.
 fn apart_at(base: &Run, other: &Run) -> Option<f64> {
     let limit = APART * base.scenario.run.similitude;
     let pairs: Vec<_> = base
@@ -258,14 +258,14 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
             break;
         }
         let share = ((time - from) / (to - from)).clamp(0.0, 1.0);
-        // Displacements come as x and z of one body after the other.
+        // Displacements are x and z of one body after the other.
         for body in pairs.chunks_exact(2) {
             let [x, z] = [0, 1].map(|axis| {
                 let (mine, theirs) = body[axis];
                 let (a, b) = (theirs.values[before], theirs.values[before + 1]);
                 a + (b - a) * share - mine.values[at]
             });
-            // A number that is not finite is apart too.
+            // A number that is not finite counts as diverged.
             let distance = libm::hypot(x, z);
             if distance > limit || distance.is_nan() {
                 return Some(*time);
@@ -275,7 +275,7 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
     None
 }
 
-/// Puts the repeats together.
+/// Combines the repeats.
 fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verification {
     let predictable_until = repeats.iter().filter_map(|repeat| repeat.apart_at).reduce(f64::min);
     let until = predictable_until.unwrap_or(f64::INFINITY);
@@ -283,7 +283,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     let own = falls(base);
     for repeat in &mut repeats {
         let pairs = own.iter().zip(&repeat.falls);
-        // What one run still has standing where the other has it down differs without end.
+        // A barrel that stands in one run and falls in the other differs infinitely.
         let differences = pairs.filter_map(|pair| match pair {
             (Some(mine), Some(theirs)) if mine.min(*theirs) < until => Some((mine - theirs).abs()),
             (Some(one), None) | (None, Some(one)) if *one < until => Some(f64::INFINITY),
@@ -295,13 +295,13 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
-/// A short time (s) for people.
+/// Formats a short time (s) for people.
 fn shortly(time: f64) -> String {
     if time < 1.0 { format!("{:.1} ms", 1e3 * time) } else { format!("{time:.1} s") }
 }
 
 impl Verification {
-    /// The summary of the run as JSON text with this as its field `verification`.
+    /// Returns the summary of the run as JSON text with this as its field `verification`.
     pub fn with_summary(&self, summary: &Summary) -> String {
         Summary { verification: Some(self.clone()), ..summary.clone() }.to_json()
     }
@@ -310,13 +310,13 @@ impl Verification {
         self.repeats.iter().any(|repeat| repeat.outcome.kind != "not-judged")
     }
 
-    /// What there is of an outcome: of a stack that stands its kind alone.
+    /// Returns the comparable parts of an outcome: of a standing stack its kind alone.
     fn parts(&self) -> &'static [&'static str] {
         let collapses = self.repeats.iter().any(|repeat| repeat.outcome.mode.is_some());
         if collapses { &["kind", "mode", "first body"] } else { &["kind"] }
     }
 
-    /// What was found, in plain sentences.
+    /// Describes the findings in plain sentences.
     pub fn sentences(&self) -> Vec<String> {
         if self.repeats.is_empty() {
             return vec![
@@ -362,7 +362,7 @@ impl Verification {
         sentences
     }
 
-    /// What was found, as pairs of name and value for people.
+    /// Returns the findings as pairs of name and value for people.
     pub fn rows(&self) -> Vec<(String, String)> {
         const UNKNOWN: &str = "not known: no repeat reached its end";
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);
@@ -393,7 +393,7 @@ impl Verification {
         if let Some(late) = self.robust.first_fall_within {
             row("first fall", format!("within {} in all", shortly(late)));
         }
-        // Without repeats nothing is judged.
+        // Without repeats there is no judgment.
         match self.robust.barrels_fallen {
             _ if !self.judged() => {}
             [least, most] if least == most => row("barrels fallen", format!("{most} in all")),

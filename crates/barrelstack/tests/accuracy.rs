@@ -1,4 +1,4 @@
-//! How near the three accuracies come to steps that are ten times shorter than the standard ones.
+//! Errors of the three accuracies against steps that are ten times shorter than the standard ones.
 //!
 //! ```sh
 //! cargo test --release -p barrelstack --test accuracy -- --ignored --nocapture
@@ -31,7 +31,7 @@ fn grounds(count: u64) -> Vec<Arc<Ground>> {
     motions.map(|motion| Arc::new(Ground::from(motion))).collect()
 }
 
-/// All stacks under all motions until their collapse, with a setting of the run.
+/// Runs all stacks under all motions until their collapse, with a setting of the run.
 fn results(grounds: &[Arc<Ground>], setting: &str) -> Vec<CaseResult> {
     let cases = STACKS.iter().flat_map(|stack| {
         let mut settings = vec![setting.to_owned(), "run.stop_after_collapse=\"0.5 s\"".to_owned()];
@@ -51,14 +51,14 @@ fn falls(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Collapse { .. }))
 }
 
-/// The median and the 95th of a hundred of sizes.
+/// Returns the median and the 95th percentile.
 fn middle_and_most(mut sizes: Vec<f64>) -> [f64; 2] {
     sizes.sort_by(f64::total_cmp);
     [0.5, 0.95].map(|share| quantile(&sizes, share))
 }
 
-/// How a setting differs from the exact results: verdicts, and median and 95th of a hundred of the errors
-/// of drifts and largest forces and stresses (of what stands, as a share) and of the times of the first fall (s).
+/// Deviations of a setting from the exact results: number of verdicts, and median and 95th percentile of the errors of
+/// drifts and largest forces and stresses (of standing stacks, relative) and of the times of the first fall (s).
 struct Errors {
     verdicts: usize,
     drift: [f64; 2],
@@ -150,7 +150,7 @@ fn accuracies_against_ten_times_shorter_steps() {
     }
 }
 
-/// The arcs of such staves have their centers hundreds of meters away, and are pressed within the barrel all the same.
+/// The arcs of such staves have their centers hundreds of meters away, and still deform within the barrel.
 #[test]
 fn steps_along_nearly_straight_barrels_are_no_shorter_than_along_others() {
     let step = |head: &str| {

@@ -1,4 +1,4 @@
-//! Results have the bits that are kept of them, or another version.
+//! Results have the stored reference bits, or another version.
 
 mod common;
 mod golden;

@@ -1,4 +1,4 @@
-//! Comparisons: what differs, what is refused, what the page says.
+//! Comparisons: their differences, refusals and page.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -23,7 +23,7 @@ fn side(name: &str, scenario: &Scenario) -> Side {
     Side { name: name.into(), run, summary, other: None, collapsed: Vec::new() }
 }
 
-/// The rows of the table under a heading, as text.
+/// Returns the rows of the table under a heading, as text.
 fn table<'a>(document: &'a Document, heading: &str) -> &'a Table {
     let at = document
         .blocks
@@ -35,7 +35,7 @@ fn table<'a>(document: &'a Document, heading: &str) -> &'a Table {
     table
 }
 
-/// The plot of a name.
+/// Returns the plot of a name.
 fn plot(document: &Document, id: &str) -> Plot {
     let found = figures(document).into_iter().find(|(name, _)| name == id);
     let Some(FigureKind::Plot(plot)) = found.map(|(_, figure)| figure.kind) else {
@@ -44,7 +44,7 @@ fn plot(document: &Document, id: &str) -> Plot {
     plot
 }
 
-/// The names of the histories under the players.
+/// Returns the names of the histories under the players.
 fn lanes(document: &Document) -> Vec<&str> {
     let Block::Players(players) = &document.blocks[0] else { panic!("players come first") };
     players.ground.iter().map(|history| history.label.as_str()).collect()
@@ -70,7 +70,7 @@ fn an_input_that_one_run_has_not_is_absent_there() {
     let found = differences([&pulse, &record]);
     let bundled = found.iter().find(|one| one.path == "motion.bundled").unwrap();
     assert_eq!(bundled.values, [None, Some("napa-college-2014".to_owned())]);
-    // The title says nothing about the physics.
+    // The title does not concern the physics.
     assert!(found.iter().all(|one| one.path != "title"));
 }
 
@@ -133,7 +133,7 @@ fn what_falls_leaves_the_picture_whichever_run_comes_first() {
     let orders = [vec![disc.clone(), stack.clone()], vec![stack, disc]];
     let [first, second] = orders.each_ref().map(|sides| range(sides, "top-displacements"));
     assert!(first.is_some() && first == second, "{first:?} {second:?}");
-    // What shook the ground after the collapse is no less worth seeing.
+    // Ground motion after the collapse stays in the plot.
     for sides in &orders {
         assert_eq!(range(sides, "ground-accelerations"), None);
     }
@@ -189,7 +189,7 @@ fn runs_are_called_by_what_differs_between_them_in_words() {
         assert_eq!(found, names);
         assert!(found.iter().all(|name| !name.contains(['=', '{', '"'])));
     }
-    // What differs in more than a name can tell keeps the name of its file.
+    // Runs with more differences than a name can state keep the names of their files.
     let many = ["stack.levels=3", "stack.columns=4", "run.gravity=9 m/s^2"];
     assert_eq!(named(&[&[], &many]), ["file", "file (2)"]);
 }

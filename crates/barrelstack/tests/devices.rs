@@ -1,4 +1,4 @@
-//! Devices on a stack: what they must not do where they are out of reach, what they do, and where they do not go.
+//! Devices on a stack: no effect out of reach, their effects, and stacks that they do not fit.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
@@ -15,7 +15,7 @@ fn run(name: &str, changes: &[&str]) -> Run {
     scenario(name, changes).run().unwrap_or_else(|error| panic!("{changes:?}: {error}"))
 }
 
-/// Eight barrels under a sine that moves them and fells none, with a step of its own for no device.
+/// Runs eight barrels under a sine that moves them but fells none, with a step that no device shortens.
 fn small(name: &str, changes: &[&str]) -> Run {
     shaken(name, "5 cm", changes)
 }
@@ -29,7 +29,7 @@ fn shaken(name: &str, amplitude: &str, changes: &[&str]) -> Run {
 const ACROSS: &str = "candia-8-barrels";
 const ALONG: &str = "candia-8-barrels-longitudinal";
 
-/// The bits of the ways of barrels and racks.
+/// Returns the bits of the trajectories of barrels and racks.
 fn bits(run: &Run) -> Vec<u64> {
     let parts = run.assembly.parts.iter().enumerate();
     let of = |kind: PartKind| matches!(kind, PartKind::Barrel | PartKind::Rack);
@@ -61,7 +61,7 @@ fn every_device_at_zero_strength_or_out_of_reach_gives_the_bits_of_the_stack_wit
 
 #[test]
 fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
-    // So that bits which are the same without it say something.
+    // Otherwise equal bits without a device would prove nothing.
     for words in DEVICES {
         let changes = |name: &str| {
             // Strong enough to throw the barrels at the top against their lids.
@@ -75,7 +75,7 @@ fn every_device_as_it_is_worth_trying_changes_the_bits_of_a_stack() {
 
 #[test]
 fn a_lid_lets_go_of_a_barrel_that_is_out_from_under_it() {
-    // Lids that pressed on barrels wherever these lay broke both runs down.
+    // Lids that pressed on barrels wherever these lay made both runs invalid.
     for (levels, velocity) in [(1, 60), (3, 100)] {
         let run = run(
             "demo-napa",
@@ -118,7 +118,7 @@ fn a_tuned_mass_that_weighs_nothing_and_an_isolator_that_is_seized_change_next_t
     }
 }
 
-/// What is said of every device, put on the demo.
+/// Returns all stated settings of every device.
 fn settings() -> impl Iterator<Item = (&'static str, &'static Setting)> {
     DEVICES.iter().flat_map(|words| {
         let degraded = words.degraded.iter().map(|setting| (words.one, setting));
@@ -207,7 +207,7 @@ fn a_stack_of_a_quarter_of_the_size_with_all_devices_is_the_full_one_in_another_
             "{name}: {count} elements, {worst:e} apart, residual {:e}",
             books.residual_ratio()
         );
-        // Bodies without a boundary come to rest on other ways, to within rounding: measured 3.8e-4.
+        // Bodies without a boundary settle along other paths, to within rounding: measured 3.8e-4.
         assert!(worst < 2e-3, "{worst:e}");
         let touching: Vec<&str> = ALL
             .iter()
@@ -269,6 +269,6 @@ fn a_report_lists_the_inputs_of_a_device_where_it_is_on_the_stack_or_stated() {
     };
     assert!(!lists(&[], "stack.chock.gap"));
     assert!(lists(&["stack.chock.levels=1"], "stack.chock.gap"));
-    // What is stated of one that is not there is said, since somebody thought that it was.
+    // An input stated for an absent device is listed, since its author expected the device.
     assert!(lists(&["stack.chock.gap=\"7 mm\""], "stack.chock.gap"));
 }

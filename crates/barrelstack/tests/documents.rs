@@ -1,4 +1,4 @@
-//! The documents name only what is there, and libraries only what is theirs.
+//! Documents name only existing paths, and libraries no options of the command.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -8,7 +8,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Words in back quotes or link targets that look like paths of this repository.
+/// Returns words in back quotes or link targets that look like paths of this repository.
 fn paths_named_in(text: &str) -> Vec<String> {
     let quoted = text.split('`').skip(1).step_by(2);
     let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
@@ -48,7 +48,7 @@ fn the_words_that_pages_explain_are_those_of_the_glossary() {
     assert_eq!(rows.collect::<Vec<_>>(), own.collect::<Vec<_>>());
 }
 
-/// Every Rust file of a folder and of those in it, with its text.
+/// Collects every Rust file of a folder and of those in it, with its text.
 fn texts_of(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -61,7 +61,7 @@ fn texts_of(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
     }
 }
 
-/// Lines of code of a crate, with the file they stand in; comments are left out.
+/// Collects lines of code of a crate, with their files, without comments.
 fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
     let mut texts = Vec::new();
     texts_of(folder, &mut texts);
@@ -94,7 +94,7 @@ fn libraries_name_no_option_and_no_subcommand_of_the_command() {
     let mut lines = Vec::new();
     for entry in std::fs::read_dir(root().join("crates")).unwrap() {
         let path = entry.unwrap().path();
-        // The command has its words; the checker of all others is a command too.
+        // The command has these words; the validation is a command too.
         if !path.ends_with("cli") && !path.ends_with("validation") {
             code_of(&path.join("src"), &mut lines);
         }

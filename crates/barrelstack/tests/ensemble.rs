@@ -1,4 +1,4 @@
-//! Cases in lanes come to the same bits as alone.
+//! Cases in lanes have the same bits as alone.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
 
@@ -14,7 +14,7 @@ use common::Random;
 /// Number of random cases.
 const CASES: u64 = 1000;
 
-/// Devices of all kinds, or wine that sloshes; for every other stack nothing.
+/// Devices of all kinds, or sloshing wine; every other stack has none.
 const DEVICES: [&[&str]; 14] = [
     &[
         "stack.walking_stop.levels=12",
@@ -87,7 +87,7 @@ fn cases_in_lanes_come_to_the_bits_of_single_runs_collapses_included() {
             println!("this machine has no {} lanes: not checked", width.name());
             continue;
         }
-        // All cases in the lanes that are used here, a tenth of them in the others.
+        // All cases in the lanes of this machine, a tenth of them in the others.
         let count = if width == Width::widest() { cases.len() } else { cases.len() / 10 };
         let together = results(width, &cases[..count]);
         for (index, (one, many)) in alone.iter().zip(&together).enumerate() {
@@ -112,7 +112,7 @@ fn a_case_of_an_ensemble_is_a_run() {
     }
 }
 
-/// A random case in a plane of its own, which is watched as closely in lanes as alone.
+/// A random case in one of both planes, recorded in lanes as fully as alone.
 fn random_case_of_a_plane(seed: u64) -> Prepared {
     let mut random = Random(seed);
     let name = ["candia-8-barrels", "candia-8-barrels-longitudinal"][usize::from(seed % 2 == 1)];
@@ -128,7 +128,7 @@ fn random_case_of_a_plane(seed: u64) -> Prepared {
     Prepared::new(Scenario::builtin(name, &settings).unwrap()).unwrap()
 }
 
-/// Pairs of bodies that met without leaning on each other by design.
+/// Returns the number of pairs of bodies that met without leaning on each other by design.
 fn joints_met(run: &Run) -> usize {
     run.recording.forces().listed().iter().filter(|joint| !joint.by_design).count()
 }
@@ -198,7 +198,7 @@ fn a_broken_case_is_told_and_leaves_its_neighbors_alone() {
 
 #[test]
 fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
-    // Violent, so that the short one is over at once; 3605 s are 1.03e9 of these steps.
+    // Strong, so that the short one is over at once; 3605 s are 1.03e9 of these steps.
     let shaken = |cycles: u32| {
         let text = format!(
             "schema = 1\n[stack]\nlevels = 2\ncolumns = 2\nbarrel = \"bordeaux-225\"\nrack = \"two-barrel\"\n\

@@ -17,7 +17,7 @@ fn scene(elements: &str, position: [f64; 2], run: &str) -> String {
 fn run(elements: &str, position: [f64; 2], duration: f64) -> (Run, Summary) {
     let text = scene(elements, position, &format!("duration = \"{duration} s\""));
     let scenario = Scenario::parse("elements", &text, &[]).unwrap();
-    // What is written is read back.
+    // Written text reads back.
     let written = scenario.to_resolved_toml();
     let again = Scenario::parse("again", &written, &[]).unwrap();
     assert_eq!(again.to_resolved_toml(), written);
@@ -26,7 +26,7 @@ fn run(elements: &str, position: [f64; 2], duration: f64) -> (Run, Summary) {
     (run, summary)
 }
 
-/// Largest force (N) of the only element, when it was (s), and when it broke (s).
+/// Returns the largest force (N) of the only element, its time (s), and the time of its failure (s).
 fn force(summary: &Summary) -> (f64, f64, Option<f64>) {
     let [element] = summary.devices.named("elements") else { panic!("one element") };
     (element.peak, element.peak_at, element.broken_at)
@@ -34,7 +34,7 @@ fn force(summary: &Summary) -> (f64, f64, Option<f64>) {
 
 #[test]
 fn a_pendulum_on_a_rod_has_its_period() {
-    // Let go 0.02 rad from below; the rod turns about the middle of the ball, which does not spin.
+    // Released 0.02 rad from the lowest point; the rod turns about the middle of the ball, which does not spin.
     let (length, stiffness, mass, angle) = (1.0, 1e6, 20.0, 0.02_f64);
     let rod = "[[element]]\nname = \"rod\"\nkind = \"rod\"\nbetween = [\"ground\", \"ball\"]\nat = [\"0 m\", \"2 m\"]\n\
                stiffness = \"1 MN/m\"\nlength = \"1 m\"";
@@ -74,7 +74,7 @@ fn a_weight_put_on_a_spring_presses_with_twice_its_weight() {
     );
     // Measured: 6e-7.
     assert!((peak.abs() / (2.0 * weight) - 1.0).abs() < 1e-5, "{peak}");
-    // All peaks are equal, to the error of the step, and the first is told; measured 5e-4.
+    // All peaks are equal within the error of the step, and the first is reported; measured 5e-4.
     let halves = at * omega / std::f64::consts::PI;
     assert!((halves - halves.round()).abs() < 5e-3 && halves.round() % 2.0 == 1.0, "{at}");
     assert_eq!(broken, None);
@@ -98,7 +98,7 @@ fn a_strap_catches_what_falls_or_tears() {
     assert!((peak / exact - 1.0).abs() < 1e-3 && broken.is_none());
     let (_, summary) = run(&strap("strength = \"2 kN\""), [0.0, 2.5], 0.6);
     let (peak, _, broken) = force(&summary);
-    // It is found after a step of 1 ms in which the tension grows by some 120 N.
+    // Failure is detected after a step of 1 ms in which the tension grows by some 120 N.
     assert!((2000.0..2125.0).contains(&peak), "{peak}");
     // It falls 0.3 m freely and then some 4 cm against the spring.
     assert!(broken.is_some_and(|at| (0.247..0.27).contains(&at)), "{broken:?}");

@@ -51,7 +51,7 @@ fn a_compound_has_the_mass_properties_of_what_it_is_made_of() {
     let of = |shape: &str| {
         let text = body("one", shape, "\"exact\"", [0.0, 0.1], 0.0);
         let scenario = scene(&text, ["box", "box"]);
-        // What is written is read back.
+        // Written text reads back.
         let again = Scenario::parse("again", &scenario.to_resolved_toml(), &[]).unwrap();
         assert_eq!(again.to_resolved_toml(), scenario.to_resolved_toml());
         let Scene::Free(free) = scenario.scene else { panic!() };
@@ -105,7 +105,7 @@ fn a_ball_rolls_off_an_exact_box_round_its_corner() {
         let mut scenario = scene(&format!("{low}{ball}"), between);
         scenario.run.settle = false;
         let at = last(&run(&scenario));
-        // It leaves the box, and nothing is in its way to fall for ever but the box it has left.
+        // It leaves the box and then falls freely.
         assert!(at[2][0] > 0.4 && at[2][1] < 0.1, "{:?}", at[2]);
     }
 }
@@ -157,7 +157,7 @@ fn a_restitution_holds_for_its_speed_under_the_law_of_hunt_and_crossley() {
     assert!((top / 0.16 - 1.0).abs() < 5e-3, "{top}");
 }
 
-/// A hexagonal heap of discs, 20 cm in radius, on the ground.
+/// Returns a hexagonal heap of discs, 20 cm in radius, on the ground.
 fn heap(count: usize, across: usize) -> String {
     let mut bodies = String::new();
     for at in 0..count {
@@ -178,8 +178,8 @@ fn five_thousand_bodies_run_and_the_next_one_is_refused_in_words() {
     let settings = ["run.settle=false".to_owned(), "run.duration=\"2 ms\"".to_owned()];
     let scenario = Scenario::parse("heap", &heap(5000, 71), &settings).unwrap();
     let run = run(&scenario);
-    // Six neighbors each but at the border, half of them counted at the other: 14,500 contacts, and nothing else
-    // is looked at.
+    // Six neighbors each except at the border, half of them counted at the other: 14,500 contacts, and nothing else
+    // is tested.
     let tested = run.work.contact_evaluations as f64 / run.work.evaluations as f64;
     assert!((14_000.0..16_000.0).contains(&tested), "{tested} contact elements a step");
     let error = Scenario::parse("heap", &heap(5001, 71), &[]).unwrap_err().to_string();

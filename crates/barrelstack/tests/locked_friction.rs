@@ -1,4 +1,4 @@
-//! What friction locks in depends on how a stack came to rest: by how much, and what that moves.
+//! Dependence of locked friction on the settling history, and its effects.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "the table that validation/README.md shows")]
 
@@ -12,22 +12,22 @@ use barrelstack_dynamics::{
     settle, simulate,
 };
 
-/// A way to come to rest.
+/// A method of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// As runs do it: gravity acts on all at once, and nothing overshoots for long.
+    /// As in runs: full gravity acts on all bodies at once, with heavy damping.
     AtOnce,
-    /// Gravity grows in so many parts, each brought to rest.
+    /// Gravity grows in a number of parts, each brought to rest.
     Growing(u32),
-    /// Level by level, those above without weight until their turn.
+    /// Level by level; those above have no weight until then.
     LevelByLevel,
     /// As real motion, damped at a rate of 5 1/s.
     Swinging,
-    /// Without friction, which is there from then on.
+    /// Without friction, which acts afterwards.
     Smooth,
 }
 
-/// The same model with other masses, friction and gravity.
+/// Returns the model with other masses, friction and gravity.
 fn changed(
     assembly: &Assembly,
     body: impl Fn(usize, &Body<Planar>) -> Body<Planar>,
@@ -100,7 +100,7 @@ fn drop_of(
     from.position.z - to.position.z
 }
 
-/// When (s) the first body falls.
+/// Returns the time (s) at which the first body falls.
 fn first_fall(scenario: &Scenario, assembly: &Assembly, rest: &State<Planar>) -> f64 {
     let ground = scenario.ground().unwrap();
     let simulation =
@@ -122,14 +122,14 @@ fn node_forces(scratch: &Scratch<Planar>) -> NodeForces {
     scratch.contacts.iter().map(|c| ((c.pair, c.node), c.normal_force)).collect()
 }
 
-/// The largest difference of a node's force, as a share of the largest of all.
+/// Returns the largest difference of a node's force, as a share of the largest of all.
 fn farthest(a: &NodeForces, b: &NodeForces) -> f64 {
     let of = |forces: &NodeForces, key| forces.get(key).copied().unwrap_or(0.0);
     let apart = a.keys().chain(b.keys()).map(|key| (of(a, key) - of(b, key)).abs());
     apart.fold(0.0, f64::max) / a.values().copied().fold(0.0, f64::max)
 }
 
-/// Friction as a share of the normal forces.
+/// Returns friction as a share of the normal forces.
 fn locked(scratch: &Scratch<Planar>) -> f64 {
     let (friction, normal) = scratch
         .contacts

@@ -1,4 +1,4 @@
-//! What a player opens on, and what can be laid over it: facts of the run, and of its variants.
+//! The initial instant of a player and its overlays: properties of the run and of its variants.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use std::ops::ControlFlow;
@@ -63,7 +63,7 @@ fn a_scene_without_seats_has_no_moment() {
 
 #[test]
 fn a_barrel_is_tinted_by_the_stress_that_its_envelope_holds() {
-    // A motion that starts at rest, so that the first frame does.
+    // The motion starts at rest, and so does the first frame.
     let gentle = ["run.duration='3 s'", "motion.scale.factor=0.2", "motion.sine.ramp_cycles=1"];
     let run = run("candia-8-barrels", &gentle);
     let tint = scene(&run).tint.clone().unwrap();
@@ -76,7 +76,7 @@ fn a_barrel_is_tinted_by_the_stress_that_its_envelope_holds() {
         let at_rest = envelope.at_rest.iter().copied().fold(0.0, f64::max);
         let peak = envelope.peak.iter().copied().fold(0.0, f64::max);
         let seen: Vec<f64> = seen.collect();
-        // The first frame is at rest, and no frame presses harder than the hardest step.
+        // The first frame is at rest, and no frame exceeds the peak over all steps.
         assert!((seen[0] - at_rest).abs() <= 1e-2 * at_rest, "{} of {at_rest} N/m", seen[0]);
         assert!(seen.iter().all(|stress| *stress <= peak * (1.0 + 1e-9)));
     }
@@ -97,7 +97,7 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
     for (body, end) in trail.barrels.iter().zip(&trail.last) {
         for axis in 0..2 {
             let due = last[*body][axis] - last[0][axis];
-            // What still moves at the end may do so for a sixteenth of a second: measured 3 mm.
+            // A body that still moves at the end may do so for a sixteenth of a second: measured 3 mm.
             assert!((f64::from(end[axis]) - due).abs() < 0.05, "{end:?} {due}");
         }
     }
@@ -110,7 +110,7 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
         let mut compared = 0;
         for (at, place) in way.iter().enumerate() {
             let time = at as f64 / RATE;
-            // Histories hold every eighth of a second.
+            // Histories have a sample every eighth of a second.
             if let Some(sample) = times.iter().position(|sample| (sample - time).abs() < 1e-9) {
                 let due = rest + channel.values[sample];
                 assert!((f64::from(place[0]) - due).abs() < 1e-6 * due.abs().max(1.0));

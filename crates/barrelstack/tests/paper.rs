@@ -1,10 +1,8 @@
-//! The cases of Candia, de la Llera and Almazán (2008): what the paper reports, and what must hold of
-//! any run of them.
+//! The cases of Candia, de la Llera and Almazán (2008): results of the paper, and invariants of every run.
 //!
 //! The paper gives neither the barrels nor the racks in full, and its cases are chaotic after the first
 //! impacts; so the bands are those in which a faithful model must fall, not its decimals.
-//! The six-barrel cases need a record that may not be passed on; without it they say that they are
-//! skipped.
+//! The six-barrel cases need a record that may not be redistributed; without it they are reported as skipped.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
@@ -19,8 +17,8 @@ use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::overlap::{Boundaries, Overlap};
 use barrelstack::{Run, Scenario, Summary};
 
-/// Share of the energy that went through a run, its heap at rest included, which may be missing from its
-/// books; measured 3.4e-5 with steps of 0.25 ms and 4e-6 with 0.1 ms.
+/// Largest residual of the energy balance, as a share of the energy that went through a run, its heap at rest
+/// included; measured 3.4e-5 with steps of 0.25 ms and 4e-6 with 0.1 ms.
 const ENERGY: f64 = 1e-4;
 
 fn run(name: &str, overrides: &[&str]) -> Run {
@@ -29,13 +27,13 @@ fn run(name: &str, overrides: &[&str]) -> Run {
     scenario.run().unwrap()
 }
 
-/// The benchmark, which most tests compare with; run once.
+/// Returns the benchmark, with which most tests compare; run once.
 fn eight() -> &'static Run {
     static RUN: LazyLock<Run> = LazyLock::new(|| run("candia-8-barrels", &[]));
     &RUN
 }
 
-/// How a stack collapsed: mode, time (s), level of the first body.
+/// Returns the collapse of a stack: mode, time (s), level of the first body.
 fn collapse(run: &Run) -> (CollapseMode, f64, u32) {
     let Outcome::Collapse { mode, time, first, .. } = &run.outcome else {
         panic!("no collapse: {:?}", run.outcome)
@@ -44,7 +42,7 @@ fn collapse(run: &Run) -> (CollapseMode, f64, u32) {
     (*mode, *time, part.level.unwrap())
 }
 
-/// When (s) the barrels of a level had fallen, the first first.
+/// Returns the times (s) at which the barrels of a level had fallen, sorted.
 fn falls(run: &Run, level: u32) -> Vec<f64> {
     let barrels = run.assembly.of_kind(PartKind::Barrel);
     let mut times: Vec<f64> = barrels
@@ -55,7 +53,7 @@ fn falls(run: &Run, level: u32) -> Vec<f64> {
     times
 }
 
-/// The histories of displacement, of the ground and of all bodies.
+/// Returns the histories of displacement, of the ground and of all bodies.
 fn histories(run: &Run) -> impl Iterator<Item = &barrelstack::watch::Channel> {
     run.recording.channels.iter().filter(|channel| channel.name.contains("displacement"))
 }
@@ -177,7 +175,7 @@ fn two_runs_are_the_same_to_the_last_bit() {
     assert_eq!(eight().recording.channels, again.recording.channels);
 }
 
-/// The record of the six-barrel cases, where it is.
+/// Returns the record of the six-barrel cases, if present.
 fn hollywood() -> Option<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     let file = folder.join("RSN995_NORTHR_PEL360.AT2");
@@ -209,8 +207,8 @@ fn six_barrels_rock_off_above_the_first_level() {
     for fell in fallen {
         within("fall", fell, 9.5, 12.5);
     }
-    // The beam comes down on the crown beside its foot before the seat is lost: one place bears 7.5 times
-    // its stress at rest (paper: 2.9 on average), while the whole seat of barrel 1 bears 2.5 times.
+    // The beam lands on the crown beside its foot before the seat is lost: one point bears 7.5 times its stress
+    // at rest (paper: 2.9 on average), while the whole seat of barrel 1 bears 2.5 times.
     within("amplification", amplification, 2.5, 9.0);
     within("residual slip", slip.abs(), 0.0, 0.05);
     books_close(&run);
@@ -237,7 +235,7 @@ fn nothing_stands_in_anything_while_it_falls() {
     let frames = &run.recording.frames;
     for (index, poses) in frames.all_poses().enumerate() {
         for Overlap { bodies: [a, b], depth } in boundaries.overlaps(&poses) {
-            // A foot sinks into its crown and a barrel into its cradle, as soft as the paper has them.
+            // Feet sink into crowns and barrels into cradles, which the paper has this soft.
             let seat = parts[b].carrier == Some(a)
                 || parts[b].supports.contains(&a)
                 || (a == 0 && parts[b].kind == PartKind::Rack && parts[b].supports.is_empty());

@@ -115,7 +115,7 @@ fn every_device_goes_on_racks_on_posts_along_the_barrels_or_says_why_not() {
         }
     }
     println!("run: {ran:?}; refused: {refused:?}; books {worst:e}");
-    // Posts leave a walking rack nowhere to go.
+    // On posts a rack has no room to walk.
     assert_eq!(refused, BTreeSet::from(["walking stops"]));
     assert_eq!(ran.len(), DEVICES.len() - 1);
     assert!(worst < 1e-10); // measured 3e-13

@@ -1,4 +1,4 @@
-//! What would have kept a stack up: whether it does, and what is said of it.
+//! The remedy of a stack: whether it suffices, and its wording.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -9,7 +9,7 @@ use barrelstack::Scenario;
 use barrelstack::variants::{self, Answer, Asked, Remedy, Tried, answer};
 
 fn scenario(changes: &[&str]) -> Scenario {
-    // Brief, and of few variants; of three levels one or two may stand.
+    // Short, with few variants; of three levels one or two may stand.
     let own = [
         "stack.levels=3",
         "motion.sine.cycles=4",
@@ -30,7 +30,7 @@ fn remedy(answer: &Answer) -> Option<Remedy> {
     variants::remedy(answer, &|_| ControlFlow::Continue(())).unwrap()
 }
 
-/// The share that collapses of a change that was tried, run by itself.
+/// Returns the number of collapses and of runs of a tried change, run by itself.
 fn alone(base: &[&str], tried: &Tried) -> (u32, u32) {
     let changes: Vec<&str> =
         base.iter().copied().chain(tried.changes.iter().map(String::as_str)).collect();
@@ -49,7 +49,7 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
             let (failed, run) = alone(base, one);
             assert_eq!((failed, run), (one.failed, one.variants), "{one:?}");
             assert!(one.suffices && run == 8 && failed == 0, "{one:?}");
-            // Of two levels and five pretensions, in one plane, at 1 − 0.05/7: 1 − (0.025/7)^(1/8).
+            // For two levels and five pretensions, in one plane, at 1 − 0.05/7: 1 − (0.025/7)^(1/8).
             assert_eq!((one.share, found.candidates), (Some(0.0), 7));
             let [low, high] = one.interval.unwrap();
             assert!(low == 0.0 && (high - 0.505_6).abs() < 1e-3, "{high}");
@@ -59,7 +59,7 @@ fn what_is_said_to_suffice_is_what_its_command_makes_and_stands_in_as_many_varia
         for one in found.tried.iter().filter(|one| one.variants < 8) {
             assert!(!one.suffices && one.share.is_none() && one.interval.is_none(), "{one:?}");
         }
-        // What does not suffice was not dropped for less than it may fail.
+        // Insufficient changes with all variants failed more often than admissible.
         for one in found.tried.iter().filter(|one| !one.suffices && one.variants == 8) {
             assert_eq!(alone(base, one), (one.failed, 8), "{one:?}");
         }

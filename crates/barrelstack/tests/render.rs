@@ -1,4 +1,4 @@
-//! Rendering: the files of a run hold its recording, and never those of an earlier one.
+//! Rendering: the files of a run hold its recording, and none of an earlier one.
 #![allow(clippy::unwrap_used, reason = "a file that cannot be read fails the test")]
 
 use std::path::Path;
@@ -50,8 +50,8 @@ fn at_rate(rate: f64) -> Rendering {
     Rendering { rate, ..Rendering::default() }
 }
 
-/// Points and the named vectors at them, read from the XML alone: the array of the points, and the
-/// array of that name among the data of points, with as many triples as the piece says it has points.
+/// Reads points and the named vectors at them from the XML alone: the array of the points, and the array of that
+/// name among the point data, with as many triples as the piece states points.
 fn vtk(path: &Path, vectors: &str) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     let text = std::fs::read_to_string(path).unwrap();
     let tree = roxmltree::Document::parse(&text).unwrap();
@@ -105,7 +105,7 @@ fn the_paraview_series_holds_the_recorded_poses_and_forces() {
         let (places, forces) = read("forces", "force");
         assert_eq!(forces.len(), frames.forces[frame].len());
         for (at, [x, z, fx, fz]) in frames.forces[frame].iter().enumerate() {
-            // Of the two that push each other, the one that is pushed up.
+            // The force on the body that is pushed up, of the two in contact.
             let sign = if *fz < 0.0 { -1.0 } else { 1.0 };
             assert_eq!(places[at], [*x, 0.0, *z]);
             assert_eq!(forces[at], [sign * fx, 0.0, sign * fz]);
@@ -237,7 +237,7 @@ fn a_collapsed_stack_and_its_drift_fit_a_terminal() {
         assert!(until <= collapse && collapse - until < 0.006, "{until} {collapse}");
         let top = if characters == Characters::Unicode { '█' } else { '#' };
         let column = line.chars().position(|c| c == top).unwrap() as f64;
-        // The tallest column is that of the peak, within two columns of the first so tall.
+        // The tallest column is that of the peak, within two columns of the first of that height.
         assert!((column - peak / until * 40.0).abs() < 6.0, "{line} {peak}");
     }
     let block = rocking_block().0;

@@ -1,4 +1,4 @@
-//! A run goes on until what moves has come to rest, and no further.
+//! A run ends when all moving bodies have come to rest, and not later.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
 
@@ -17,11 +17,11 @@ fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
     simulate_in(width, cases, &mut audience).unwrap()
 }
 
-/// The demo in the plane in which it is weaker.
+/// The weaker plane of the demo.
 const ALONG: &str = "stack.view=longitudinal";
 
-/// Stacks from unharmed to ruined: under the record of Napa, which fades away, and under sines that
-/// break off at their strongest; `seconds` at the most.
+/// Stacks from undamaged to collapsed: under the record of Napa, which fades away, and under sines that
+/// stop abruptly at full strength; `seconds` at most.
 fn shaken(seconds: u32, more: &[&str]) -> Vec<Prepared> {
     let mut cases = Vec::new();
     let duration = format!("run.duration=\"{seconds} s\"");

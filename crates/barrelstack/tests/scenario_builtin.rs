@@ -1,4 +1,4 @@
-//! The scenarios shipped with the program, and what every scenario can do.
+//! The scenarios shipped with the program, and properties of every scenario.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -131,7 +131,7 @@ fn a_record_counts_by_its_bytes_wherever_it_lies() {
     assert_eq!(here, hash(&named("there.txt")));
     assert_ne!(here, hash(&named("other.txt")));
 
-    // At hand, no file is opened, and nothing is another.
+    // With records in memory no file is opened, and the result is the same.
     let mut asked = Vec::new();
     let held = named("nowhere.txt")
         .with_records(&mut |path| {
@@ -171,7 +171,7 @@ fn a_record_at_hand_shakes_as_the_one_that_is_read() {
     assert_eq!(names(&given).len(), 2);
     assert_ne!(names(&given)[0], names(&given)[1]);
 
-    // Out of samples: the same numbers, in another unit.
+    // From samples: the same numbers, in another unit.
     let own = &record.channels[0];
     let in_gal: Vec<f64> = own.acceleration.iter().map(|a| 100.0 * a).collect();
     let channels = [(own.name.as_str(), in_gal.as_slice())];

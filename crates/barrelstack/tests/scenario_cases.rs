@@ -1,5 +1,4 @@
-//! Literate cases: `tests/cases/*.md` hold prose, a scenario, and what the reader must say about
-//! it.
+//! Literate cases: `tests/cases/*.md` hold prose, a scenario, and the expected result of the reader.
 //!
 //! Each `##` section of a file is a case. Its `toml` block is the scenario, its `override` block
 //! has one override a line, and it ends with either an `error` block, the whole error, or a
@@ -118,7 +117,7 @@ fn every_error_is_one_sentence_with_a_place() {
     }
 }
 
-/// Writes the present errors into the cases that expect nothing yet; read them before committing.
+/// Writes the present errors into cases without an expectation; review them before committing.
 #[test]
 #[ignore = "changes files of the repository; run by hand after adding a case or changing a message"]
 fn fill_in_errors() {

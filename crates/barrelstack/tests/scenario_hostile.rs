@@ -1,5 +1,4 @@
-//! Bytes that are no scenario, files that are not there, and scenarios cut anywhere: one error,
-//! never a panic.
+//! Bytes that are not a scenario, missing files, and truncated scenarios: one error, never a panic.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -102,7 +101,7 @@ fn every_value_replaced_by_nonsense_is_refused_at_its_place() {
                 let error =
                     result.map(|_| ()).expect_err(&format!("{name}: {key} = {value} was accepted"));
                 assert!(!error.to_string().contains('\0'), "{error}");
-                // A renamed kind is first missed by the interface that uses it.
+                // An unknown kind is first reported by the interface that uses it.
                 if !["name", "kind", "between"].contains(&key) {
                     let at_line =
                         matches!(error.place(), Place::File { line, .. } if *line == i + 1);

@@ -6,8 +6,8 @@ use barrelstack::scenario::field::{Default, Field, Kind, Section};
 use barrelstack::scenario::{ROOT, Scenario, builtin, reference, schema};
 use serde_json::{Value, json};
 
-/// Checks a value against the part of JSON Schema that the generator uses; a keyword it does not
-/// know fails.
+/// Checks a value against the part of JSON Schema that the generator uses; an unsupported keyword
+/// fails.
 fn check(root: &Value, schema: &Value, value: &Value, path: &str) -> Result<(), String> {
     let fail = |what: &str| Err(format!("{path}: {value} breaks {what}"));
     for (keyword, rule) in schema.as_object().unwrap() {
@@ -100,8 +100,8 @@ fn check(root: &Value, schema: &Value, value: &Value, path: &str) -> Result<(), 
     Ok(())
 }
 
-/// What the one pattern of the schema says, by hand: a number, then something that starts no
-/// number.
+/// `true` if a text matches the one pattern of the schema, parsed by hand: a number, then anything that does not
+/// continue a number.
 fn is_quantity(text: &str) -> bool {
     fn digits(text: &str) -> &str {
         text.trim_start_matches(|c: char| c.is_ascii_digit())
@@ -153,7 +153,7 @@ fn the_schema_refuses_what_the_reader_refuses_by_form() {
     }
 }
 
-/// Every field with its section, variants included, each section once.
+/// Returns every field with its section, variants included, each section once.
 fn all_fields() -> Vec<(&'static Section, &'static Field)> {
     fn collect(section: &'static Section, seen: &mut Vec<&'static Section>) {
         if seen.iter().any(|known| std::ptr::eq(*known, section)) {
@@ -216,7 +216,7 @@ fn definitions_are_well_formed() {
     }
 }
 
-/// Whether any property of this name in the schema accepts the value.
+/// `true` if any property of this name in the schema accepts the value.
 fn finds(root: &Value, schema: &Value, name: &str, value: &Value) -> bool {
     match schema {
         Value::Object(object) => {

@@ -1,4 +1,4 @@
-//! What a seat is divided into changes where it presses, and not how stiff, how damped or how rough it is.
+//! The division of a seat changes the distribution of its pressure, not its stiffness, damping or friction.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "the table of refinement")]
 
@@ -6,7 +6,7 @@ use barrelstack::Scenario;
 use barrelstack::check::check;
 use barrelstack::run::Run;
 
-/// Elements that bear a seat at rest, by what the rack says of its contact.
+/// Divisions of a seat into elements, as fields of the rack.
 const DIVISIONS: [(&str, &[&str]); 4] = [
     ("one element", &["stack.rack.contact=element"]),
     ("two rails", &["stack.rack.contact=rails"]),
@@ -19,7 +19,7 @@ fn scenario(division: &[&str], changes: &[&str]) -> Scenario {
     Scenario::builtin("demo-napa", &all.collect::<Vec<_>>()).unwrap()
 }
 
-/// How far (m) the top sinks as the stack comes to rest.
+/// Returns the settlement (m) of the top as the stack comes to rest.
 fn settlement(division: &[&str], changes: &[&str]) -> f64 {
     check(&scenario(division, changes)).unwrap().rest.unwrap().deepest_sinking
 }
@@ -28,7 +28,7 @@ fn run(division: &[&str], changes: &[&str]) -> Run {
     scenario(division, changes).run().unwrap()
 }
 
-/// Mean time (s) between the zeros that the history of a body passes upward, after a time (s).
+/// Returns the mean time (s) between upward zero crossings of the history of a body, after a time (s).
 fn period(run: &Run, body: &str, after: f64) -> f64 {
     let values = &run.recording.displacement(body).unwrap().values;
     let times = &run.recording.times;
@@ -44,7 +44,7 @@ fn period(run: &Run, body: &str, after: f64) -> f64 {
 
 #[test]
 fn refining_a_seat_changes_neither_rest_nor_period() {
-    // A push that makes nothing slip, and one that makes the upper level walk.
+    // A push without slip, and one under which the upper level walks.
     let push = "motion={ sine = { amplitude = \"2 mm\", period = \"0.4 s\", cycles = 1 } }";
     let shake = "motion={ sine = { amplitude = \"5 cm\", period = \"0.8 s\", cycles = 5 } }";
     for (view, columns, top) in [("transverse", 2, "R2"), ("longitudinal", 1, "R2")] {
@@ -75,10 +75,10 @@ fn refining_a_seat_changes_neither_rest_nor_period() {
             })
             .collect();
         for (row, (name, _)) in rows.iter().zip(DIVISIONS) {
-            // Walk is printed, not held: rows of nodes walk up to a fifth less across the barrels.
+            // Walking distances are printed, not tested: rows of nodes walk up to a fifth less across the barrels.
             for (at, value) in row.iter().enumerate().take(2) {
-                // Along the barrels a rail touches with its round, on which a row has one node a corner: the stack
-                // starts from there 0.15 mm higher at every seat, which counts as sinking.
+                // Along the barrels a rail touches with its rounding, on which a row has one node a corner: the stack
+                // starts 0.15 mm higher at every seat, which counts as sinking.
                 if at == 0 && view == "longitudinal" {
                     continue;
                 }

@@ -1,4 +1,4 @@
-//! Every stack that stands comes to rest, whatever its dampers, and what does not stand is refused.
+//! Every stack that stands comes to rest, whatever its dampers, and every other one is refused.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was tried, and what it cost")]
 
@@ -94,8 +94,8 @@ fn tried(name: &str, settings: &[String]) -> Tried {
     Tried { assembly, state, scratch, result, milliseconds }
 }
 
-/// The largest force (of its weight) and moment (of its weight at its reach) that the contacts leave
-/// unbalanced on any body, added up here from the single contacts, each held in its friction cone.
+/// Returns the largest unbalanced force (over the weight) and moment (over the weight at its reach) of the contacts
+/// of any body, summed here over the single contacts, each within its friction cone.
 fn out_of_balance(tried: &Tried) -> f64 {
     let Tried { assembly, state, scratch, .. } = tried;
     let model = &assembly.model;
@@ -125,7 +125,7 @@ fn out_of_balance(tried: &Tried) -> f64 {
     .fold(0.0, f64::max)
 }
 
-/// How far (m) any body goes sideways, or sinks beyond those of lower number, which lie below it.
+/// Returns the largest displacement (m) of a body sideways, or down relative to those of lower number, which lie below.
 fn strayed(start: &[Pose<Planar>], state: &State<Planar>) -> f64 {
     let (mut most, mut sunk) = (0.0_f64, 0.0_f64);
     for (from, to) in start.iter().zip(&state.poses) {
@@ -136,8 +136,8 @@ fn strayed(start: &[Pose<Planar>], state: &State<Planar>) -> f64 {
     most
 }
 
-/// How far (m) any body goes under the real laws of motion within a time (s), with velocities damped at
-/// a rate (1/s) and all bodies pushed at first (m/s).
+/// Returns the largest displacement (m) of a body under the real laws of motion within a time (s), with velocities
+/// damped at a rate (1/s) and an initial velocity of all bodies (m/s).
 fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push: f64) -> f64 {
     let model = &assembly.model;
     let damped = |body: &Body<Planar>| Body {
@@ -159,8 +159,8 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
             twist.linear.x = push;
         }
     }
-    // Where seats are so soft that the solids bear, their law for impacts damps too much for the usual
-    // step: what it damps grows with the load.
+    // Where seats are so soft that the solids bear, the solids' law for impacts damps too much for the usual
+    // step, since its damping grows with the load.
     let mut scratch = Scratch::new(&model);
     evaluate(&model, &state, &mut scratch);
     let meets_solid = |c: &Contact<Planar>| {
@@ -185,7 +185,7 @@ fn motion(assembly: &Assembly, state: &State<Planar>, time: f64, rate: f64, push
     strayed(&start, &state)
 }
 
-/// What became of many random stacks.
+/// Settles many random stacks and compares the results with their real motion.
 fn settle_random(seeds: std::ops::Range<u64>, stays: u64) {
     let (mut steps, mut milliseconds, mut refused) = (Vec::new(), 0.0, 0);
     let mut wrong = Vec::new();
@@ -202,7 +202,7 @@ fn settle_random(seeds: std::ops::Range<u64>, stays: u64) {
                 }
                 if seed < stays {
                     let way = motion(&tried.assembly, &tried.state, 1.0, 0.0, 1e-6);
-                    // Measured 1.1e-4 m, where solids bear: it falls with the step.
+                    // Measured 1.1e-4 m, where solids bear: it decreases with the step.
                     if way > 1e-3 {
                         wrong.push(format!("{seed}: settled, and moves {way:.1e} m"));
                     }
@@ -260,7 +260,7 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
         (&["damping=\"0 N s/cm\""], &["damping=\"0 N s/cm\""]),
         (&["restitution=0.5", "reference_mass=\"137 kg\""], &["damping=\"1 kN s/cm\""]),
     ] {
-        // The file gives dampings, which a restitution would contradict.
+        // The file states dampings, which a restitution would contradict.
         let law = |pair: &str, fields: &[&str], friction: f64| {
             format!(
                 "interface.{pair}={{ law=\"speed-gap\", basis=\"node\", stiffness=\"9.8 kN/cm\", {}, \
@@ -275,7 +275,7 @@ fn dampers_do_not_decide_whether_a_stack_comes_to_rest_nor_where() {
     }
 }
 
-/// Everything at rest, to the last bit, but for how the contacts are listed.
+/// Prints the state at rest, bit for bit, independent of the order of contacts.
 fn at_rest(tried: &Tried) -> String {
     let Tried { state, scratch, result, .. } = tried;
     let sticks: Vec<_> = scratch
@@ -289,7 +289,7 @@ fn at_rest(tried: &Tried) -> String {
     format!("{result:?} {poses:?} {twists:?} {memory:?} {sticks:?} {:?}", scratch.pair_forces)
 }
 
-/// Stacks settle side by side.
+/// Settles stacks side by side.
 struct Together<'a>(&'a mut [Tried]);
 
 impl Task for Together<'_> {

@@ -9,7 +9,7 @@ fn run_of(name: &str, overrides: &[&str]) -> Run {
     scenario.run().unwrap()
 }
 
-/// Lengths times 4, times times 2, and not a bit more: every factor is a power of two.
+/// Lengths scale by 4 and times by 2, bit for bit: every factor is a power of two.
 fn assert_four_times_the_size(name: &str, overrides: &[&str]) {
     let full = run_of(name, overrides);
     let large = run_of(name, &[overrides, &["run.similitude=4"]].concat());

@@ -1,4 +1,4 @@
-//! Straps on a stack: what they hold, what they bear, and what they must not depend on.
+//! Straps on a stack: their effect, their forces, and independence of step and scale.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
@@ -18,23 +18,23 @@ fn run(name: &str, changes: &[&str]) -> Run {
     scenario(name, changes).run().unwrap()
 }
 
-/// What every strap bore.
+/// Returns the summary of every strap.
 fn straps(run: &Run) -> Vec<ElementSummary> {
     Summary::of(run, None).devices.named("straps").to_vec()
 }
 
-/// A stack of two levels under a small sine, with straps that tie both together.
+/// Runs a stack of two levels under a small sine, with straps that tie both together.
 fn small(changes: &[&str]) -> Run {
     unstrapped(&[&["stack.strap.levels=2", TOGETHER][..], changes].concat())
 }
 
-/// The same without straps, but for what is changed.
+/// Runs it without straps, except for the changes.
 fn unstrapped(changes: &[&str]) -> Run {
     let all = ["stack.levels=2", "run.duration=\"1 s\"", "motion.sine.amplitude=\"5 cm\""];
     run("candia-8-barrels", &[&all[..], changes].concat())
 }
 
-/// The demo in the plane in which it is weaker.
+/// The weaker plane of the demo.
 const ALONG: &str = "stack.view=longitudinal";
 
 #[test]
@@ -68,7 +68,7 @@ fn straps_without_slack_bear_nothing_at_rest_and_leave_the_weight_where_it_is() 
     assert_eq!(base(&bare), base(&loose));
     // They pull inside the stack only.
     assert!((base(&tight) / base(&bare) - 1.0).abs() < 1e-6);
-    // The stack gives: some of the pretension is lost, and none is gained.
+    // The stack is compliant: some of the pretension is lost, and none is gained.
     let still = run(
         "candia-8-barrels",
         &[

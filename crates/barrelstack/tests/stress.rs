@@ -20,7 +20,7 @@ const RACKS: [&str; 7] = [
     "candia-2008",
 ];
 
-/// Stacks of three levels with every rack in both planes, and the cases of the paper, under no motion.
+/// Stacks of three levels with every rack in both planes, and the cases of the paper, without motion.
 fn stacks() -> Vec<(String, Scenario)> {
     let mut stacks = Vec::new();
     for rack in RACKS {
@@ -56,7 +56,7 @@ fn envelopes_at_rest_add_up_to_the_contact_forces_and_the_weight_of_every_body()
     let mut bodies = 0;
     for (name, scenario) in stacks() {
         let run = scenario.run().unwrap();
-        // The contact forces at rest, once more and without anything that watches a run.
+        // The contact forces at rest, computed independently of all observers.
         let assembly = assemble(&scenario).unwrap();
         let mut state = State::initial(&assembly.model);
         let mut scratch = Scratch::new(&assembly.model);
@@ -78,7 +78,7 @@ fn envelopes_at_rest_add_up_to_the_contact_forces_and_the_weight_of_every_body()
             let envelope = run.stresses.of(body).unwrap();
             let (force, due) = (envelope.force_at_rest(), contacts[body]);
             let error = (force / due - 1.0).abs();
-            // What is below bears the body and all that it bears; wine goes with its barrel.
+            // The bodies below bear the body and its load; wine is part of its barrel.
             let load = |own: bool| -> f64 {
                 let on = |joint: &&&barrelstack::watch::Joint| {
                     body == if own { joint.upper } else { joint.lower }
@@ -101,7 +101,7 @@ fn envelopes_at_rest_add_up_to_the_contact_forces_and_the_weight_of_every_body()
             // Measured at most 5e-9 and 2e-10.
             assert!(error < 1e-6 && off < 1e-6, "{name}, {}: {error:e} {off:e}", part.name);
             assert!((envelope.total.at_rest / due - 1.0).abs() < 1e-6);
-            // Every barrel but those on top bears above and below, every rack likewise.
+            // Every barrel except those on top bears above and below, every rack likewise.
             let sides = |up: bool| {
                 let side = |at: &usize| (envelope.points[*at].normal.z > 0.0) == up;
                 let loaded = |at: &usize| envelope.at_rest[*at] > 0.0;
@@ -117,7 +117,7 @@ fn envelopes_at_rest_add_up_to_the_contact_forces_and_the_weight_of_every_body()
     assert!(bodies > 100);
 }
 
-/// Whether the figure of an envelope shows anything at rest.
+/// `true` if the figure of an envelope has stresses at rest.
 fn is_drawn(run: &Run, envelope: &StressEnvelope) -> bool {
     let FigureKind::Envelope(picture) = stress_figure(run, envelope).kind else { return false };
     picture.static_stress.iter().any(|stress| *stress > 0.0)

@@ -1,4 +1,4 @@
-//! Nothing is so thin, or falls so fast, that it could be passed through within a step.
+//! No body is so thin, or falls so fast, that another could pass through it within a step.
 #![allow(clippy::unwrap_used, reason = "a stack that cannot be built fails its test")]
 #![expect(clippy::print_stdout, reason = "how near the nearest comes")]
 
@@ -6,7 +6,7 @@ use barrelstack::Scenario;
 use barrelstack::assemble::{Outline, PartKind, assemble};
 use barrelstack::scenario::catalog;
 
-/// Least width (m) of a convex outline over all directions: that across one of its sides.
+/// Returns the least width (m) of a convex outline over all directions: that across one of its sides.
 fn least_width(outline: &Outline) -> f64 {
     let points = &outline.points;
     let across = |i: usize| {
@@ -36,7 +36,7 @@ fn what_falls_from_six_levels_passes_through_nothing() {
             let solids = assembly.parts.iter().filter(|part| part.kind != PartKind::Ground);
             let thinnest = solids.flat_map(|part| &part.outlines).map(least_width);
             let thinnest = thinnest.fold(f64::INFINITY, f64::min);
-            // What falls all the way, against what leaves the floor with the restitution of a fall.
+            // A body in free fall from full height against one that rebounds from the floor with its restitution.
             let speed = 1.3 * (2.0 * 9.80665 * assembly.height).sqrt();
             let way = speed * assembly.step / assembly.model.substepping().substeps;
             println!(

@@ -1,4 +1,4 @@
-//! A stack and its variants: which they are, what becomes of them, and what is said of them.
+//! A stack and its variants: their draws, their results, and the wording of these.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "the shares at every step")]
@@ -15,7 +15,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
     Scenario::builtin(name, &changes).unwrap()
 }
 
-/// Two levels that collapse under the paper's sine, brief.
+/// Two levels that collapse under the paper's sine, shortened.
 fn two_levels(changes: &[&str]) -> Scenario {
     let own = [
         "stack.levels=2",
@@ -70,7 +70,7 @@ fn the_share_counts_what_became_of_the_variants_and_of_nothing_else() {
 
 #[test]
 fn variants_that_cannot_be_built_are_counted_and_widen_the_interval() {
-    // A barrel 20 mm beside its place stands in its cradle; the stated one is not that far.
+    // A barrel 20 mm off its place stands in its cradle; the stated one is less far off.
     let mut stated = two_levels(&["imperfections.placement=5 mm"]);
     let Scene::Stack { stack, .. } = &mut stated.scene else { panic!("no stack") };
     stack.overrides.push(BodyOverride {
@@ -125,7 +125,7 @@ fn what_falls_under_its_own_weight_counts_as_fallen_and_is_said_first() {
     assert!(headline.starts_with("Along the barrels, "), "{headline}");
     assert!(headline.contains("under their own weight, before they are shaken."), "{headline}");
     assert!(!headline.contains("it stands."), "{headline}");
-    // What is shown was shaken.
+    // The shown run was shaken.
     let results = answer.decides.variants.unwrap().results;
     assert!(!results[spread.typical as usize].fell_at_rest());
     for fallen in results.iter().filter(|one| one.fell_at_rest()) {
@@ -155,7 +155,7 @@ fn each_plane_has_its_component_and_half_of_the_variants_have_them_exchanged() {
     assert_eq!(names(&along), [north, north, north, east, east]);
     let columns = |plane: &Plane| plane.scenario.stack().map(|stack| stack.columns);
     assert_eq!([columns(&across), columns(&along)], [Some(2), Some(1)]);
-    // It is the same stack that is shaken in both.
+    // The same stack is shaken in both.
     let laws = |plane: &Plane| plane.variant(7).stack().unwrap().interfaces.clone();
     assert_eq!(laws(&across), laws(&along));
 }

@@ -1,5 +1,4 @@
-//! What a verification says: of a run that is robust, of one on a knife-edge, and of what it cannot
-//! repeat.
+//! Verifications: of a robust run, of one at the threshold, and of one that cannot be repeated in full.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

@@ -1,14 +1,14 @@
-//! What people call the runs of a comparison: by what differs between them.
+//! Names of the runs of a comparison, made from their differences.
 
 use super::{Difference, differences};
 use crate::report::shown;
 use crate::scenario::Scenario;
 use crate::scenario::title::{counted, shakes};
 
-/// Most differences that a name tells; runs that differ in more keep the name of their file.
+/// Maximum number of differences in a name; runs with more keep the name of their file.
 const MOST: usize = 2;
 
-/// What runs differ in, of what a name can tell.
+/// Kinds of differences that a name can state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Topic {
     Levels,
@@ -18,12 +18,12 @@ enum Topic {
     Other,
 }
 
-/// A name for every run, in words: "five levels", "with straps"; the one at hand where runs differ in more than
-/// a name can tell.
+/// Names every run by its differences, in words: "five levels", "with straps"; keeps the given names where runs differ
+/// in more than a name can state.
 pub fn labels(runs: &[(String, Scenario)]) -> Vec<String> {
     let differing = differences(runs.iter().map(|(_, scenario)| scenario));
     let mut topics: Vec<(Topic, &Difference)> = Vec::new();
-    // A static coefficient that is not stated is the other one.
+    // A static coefficient that is not stated equals the kinetic one.
     let follows = |one: &Difference| {
         one.path.strip_suffix("static_coefficient").is_some_and(|of| {
             let led = |other: &Difference| other.path == format!("{of}coefficient");
@@ -74,7 +74,7 @@ fn topic(path: &str) -> Topic {
     }
 }
 
-/// Straps, told as far as those of others are otherwise.
+/// Describes straps, in the properties that differ from those of other runs.
 fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     let of = |scenario: &Scenario| scenario.stack().map(|stack| stack.devices.strap);
     let Some(own) = of(scenario).filter(|straps| straps.levels > 0) else {
@@ -91,9 +91,9 @@ fn straps(scenario: &Scenario, runs: &[(String, Scenario)]) -> String {
     said.join(" ")
 }
 
-/// An input in words: "rack-ground friction 0.1".
+/// Describes an input: "rack-ground friction 0.1".
 fn other(one: &Difference, at: usize) -> String {
-    // What every field of a kind has in its path says nothing.
+    // Parts that all paths of a kind share carry no information.
     let empty = ["interface", "coefficient", "stack", "run"];
     let parts: Vec<&str> = one.path.split('.').filter(|part| !empty.contains(part)).collect();
     let name = parts.join(" ").replace('_', " ");

@@ -1,4 +1,4 @@
-//! The page of a comparison: verdict, players on one clock, tables, histories over each other.
+//! The page of a comparison: verdict, players on one clock, tables, superimposed histories.
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
@@ -58,7 +58,7 @@ fn fate(side: &Side) -> String {
     }
 }
 
-/// What is compared, and what all of them share: their height and columns where those are the same.
+/// Returns the names of the runs, and the title where all have the same.
 fn heading(sides: &[Side]) -> String {
     let names = format!("Comparison of {}", listed(sides.iter().map(|side| side.name.clone())));
     let first = sides.first().map(|side| &side.run.stated.title);
@@ -68,7 +68,7 @@ fn heading(sides: &[Side]) -> String {
     }
 }
 
-/// The share that falls of the worse plane, with its interval and how many were run; none for a single run.
+/// Returns the statistics of the plane with the larger share of collapse; `None` for a single run.
 fn share(side: &Side) -> Option<&Spread> {
     let all = side.summary.ensemble.iter().chain(&side.other);
     all.filter(|spread| spread.share.is_some())
@@ -82,10 +82,10 @@ fn stands(side: &Side) -> bool {
     }
 }
 
-/// The cause of a difference where the first run has straps and the other has none.
+/// Cause of a difference where the first run has straps and the other has none.
 const WITHOUT: &str = "Leaving straps off";
 
-/// The effect on the share that collapses, variant by variant; none where one of them has no variants.
+/// Describes the effect on the share that collapses, variant by variant; `None` where a run has no variants.
 fn effect(sides: &[Side]) -> Option<String> {
     let (first, others) = sides.split_first()?;
     let pairs: Vec<Vec<Paired>> = others.iter().map(|other| Paired::of(first, other)).collect();
@@ -135,21 +135,21 @@ fn effect(sides: &[Side]) -> Option<String> {
             format!("{verb} collapse{place} from {from} to {to} of {of} variants{unproven}")
         }
     };
-    // The other plane is named where something collapses in it.
+    // The other plane is named if any variant collapses in it.
     let told =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
     let clauses: Vec<String> = told.map(|(_, pair)| clause(pair)).collect();
     Some(format!("{cause}{}.", clauses.join(";")))
 }
 
-/// The plane of a pair, where the stacks are looked at in both: " across the barrels".
+/// Returns the plane of a pair, where both are analyzed: " across the barrels".
 fn place(side: &Side, pair: &Paired) -> String {
     let view = View::ALL.into_iter().find(|view| Some(view.name()) == pair.view);
     let both = view.filter(|_| side.other.is_some());
     both.map_or_else(String::new, |view| format!(" {}", view.words()))
 }
 
-/// The differences behind the headline, with their intervals.
+/// Describes the differences behind the headline, with their intervals.
 fn differences_in(sides: &[Side]) -> Vec<String> {
     let Some((first, others)) = sides.split_first() else { return Vec::new() };
     let of = |(at, other): (usize, &Side)| {
@@ -180,7 +180,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     others.iter().enumerate().flat_map(of).collect()
 }
 
-/// What the difference comes to, in one sentence.
+/// Describes the result of the comparison in one sentence.
 fn headline(sides: &[Side]) -> String {
     if let Some(effect) = effect(sides) {
         return by_themselves(sides) + &effect;
@@ -220,7 +220,7 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
-/// Those whose variants fall under their own weight, before they are shaken.
+/// Describes the runs whose variants fall under their own weight, before they are shaken.
 fn by_themselves(sides: &[Side]) -> String {
     let fallen = |side: &Side| {
         let spreads = side.summary.ensemble.iter().chain(&side.other);
@@ -235,7 +235,7 @@ fn by_themselves(sides: &[Side]) -> String {
     capital(&format!("{} fall before being shaken, under their own weight. ", listed(all)))
 }
 
-/// What became of one of them, with the interval of its share, and how far what stands still sways.
+/// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
 fn told(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
     let Some(spread) = &side.summary.ensemble else { return format!("{name}: {}.", fate(side)) };
@@ -334,7 +334,7 @@ fn players(sides: &[Side]) -> Players {
     }
 }
 
-/// Whether one motion shakes all; a length scale of the run stretches its time.
+/// `true` if one motion shakes all; the length scale of a run stretches its time.
 fn one_motion(sides: &[Side]) -> bool {
     let asked = |side: &Side| {
         let scenario = &side.run.scenario;
@@ -343,7 +343,7 @@ fn one_motion(sides: &[Side]) -> bool {
     sides.iter().all(|side| asked(side) == asked(&sides[0]))
 }
 
-/// The motion under the stages: that of the longest run where all share it, else one of each.
+/// Returns the motion under the stages: that of the longest run where all share it, else one of each.
 fn lanes(sides: &[Side]) -> Vec<History> {
     if one_motion(sides) {
         let longest = sides.iter().max_by(|a, b| a.run.end_time.total_cmp(&b.run.end_time));
@@ -356,7 +356,7 @@ fn lanes(sides: &[Side]) -> Vec<History> {
     sides.iter().map(|side| &side.run).enumerate().filter_map(own).collect()
 }
 
-/// Histories of all runs over each other, a color and a dash for each run.
+/// Plots histories of all runs superimposed, a color and a dash for each run.
 fn histories(sides: &[Side]) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut add = |id: &str, caption: &str, y: Axis, values: &dyn Fn(&Side) -> Option<Vec<f64>>| {
@@ -410,7 +410,7 @@ fn histories(sides: &[Side]) -> Vec<Block> {
     blocks
 }
 
-/// Displacement (cm) along x of the first body of a kind on a level.
+/// Returns the displacement (cm) along x of the first body of a kind on a level.
 fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
     let assembly = &side.run.assembly;
     let body = assembly.of_kind(kind).find(|b| assembly.parts[*b].level == Some(level))?;
@@ -418,7 +418,7 @@ fn displacement(side: &Side, kind: PartKind, level: u32) -> Option<Vec<f64>> {
     Some(channel.values.iter().map(|v| 100.0 * v).collect())
 }
 
-/// The figure of lines over time, each beside the run that it is of.
+/// Plots lines over time, each given with its run.
 fn history(
     sides: &[Side],
     id: &str,
@@ -430,8 +430,8 @@ fn history(
         let at_time = side.run.fates.collapse_time()?;
         Some(Mark { at: at_time, label: format!("{} gives way", letter(at)) })
     });
-    // What falls leaves the picture, so that what stands can be read; forces and accelerations are
-    // shown whole.
+    // Falling bodies leave the plot, so that standing ones can be read; forces and accelerations are
+    // plotted in full.
     let ranges: Vec<Option<[f64; 2]>> = lines
         .iter()
         .map(|(side, one)| report::standing_range(&side.run, std::slice::from_ref(one)))
@@ -449,7 +449,7 @@ fn history(
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// What made the results: once where it is the same for all, else for each run.
+/// Returns the provenance of the results: once where it is the same for all, else for each run.
 fn provenance(sides: &[Side]) -> Vec<(String, String)> {
     let all: Vec<_> =
         sides.iter().map(|side| report::provenance(&side.run, &side.summary)).collect();

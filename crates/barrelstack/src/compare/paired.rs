@@ -1,4 +1,4 @@
-//! What one run differs by from another: the same variants of both, pair by pair.
+//! Paired comparison of two runs: the same variants of both.
 
 use barrelstack_fragility::wilson;
 use barrelstack_report::described;
@@ -35,7 +35,7 @@ described! {
 }
 
 impl Paired {
-    /// Of two sides in every plane that both have.
+    /// Compares two runs in every plane that both have.
     pub(super) fn of(first: &Side, second: &Side) -> Vec<Self> {
         let pair = |(view, own): &(Option<View>, Vec<Option<bool>>)| {
             let (_, other) = second.collapsed.iter().find(|(known, _)| known == view)?;
@@ -75,24 +75,24 @@ impl Paired {
         })
     }
 
-    /// Variants with a verdict in both.
+    /// Returns the number of variants with a verdict in both.
     pub fn pairs(&self) -> u32 {
         self.both + self.only_first + self.only_second + self.neither
     }
 
-    /// How many of them collapse in the first run and in the other.
+    /// Returns the number of them that collapse in the first run and in the other.
     pub fn collapsed(&self) -> [u32; 2] {
         [self.both + self.only_first, self.both + self.only_second]
     }
 
-    /// Whether the interval leaves out that there is no difference.
+    /// `true` if the interval excludes zero.
     pub fn is_clear(&self) -> bool {
         self.interval[0] > 0.0 || self.interval[1] < 0.0
     }
 }
 
-/// Difference of two shares of the same cases, and its interval: squares of Wilson's half-intervals, less what goes
-/// together (method 10 of Newcombe 1998, with his correction for continuity); none without cases.
+/// Returns the difference of two shares of the same cases and its interval: Wilson's half-intervals, corrected for
+/// their correlation (method 10 of Newcombe 1998, with his correction for continuity); `None` without cases.
 fn newcombe([a, b, c, d]: [u32; 4]) -> Option<(f64, [f64; 2])> {
     let n = a + b + c + d;
     if n == 0 {
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_paired_shares_covers_their_difference() {
-        // Chances of the four outcomes of a pair, and 4,000 samples of 32 pairs of each.
+        // Probabilities of the four outcomes of a pair, with 4,000 samples of 32 pairs each.
         for chances in [[0.4, 0.5, 0.0, 0.1], [0.3, 0.2, 0.1, 0.4], [0.1, 0.05, 0.05, 0.8]] {
             let truth = chances[1] - chances[2];
             let mut random = barrelstack_motion::Random::new(7);
@@ -138,10 +138,10 @@ mod tests {
                 let (_, [low, high]) = newcombe(counts).unwrap_or_default();
                 covered += u32::from(low <= truth && truth <= high);
             }
-            // Of 4,000 samples a share of 95 % has a standard deviation of 0.3 %.
+            // A share of 95 % of 4,000 samples has a standard deviation of 0.3 %.
             assert!(f64::from(covered) >= 0.94 * 4000.0, "{chances:?}: {covered}");
         }
-        // All the same: no difference, and the interval is symmetric about it.
+        // Equal runs: no difference, and the interval is symmetric about zero.
         let (difference, [low, high]) = newcombe([5, 0, 0, 5]).unwrap_or_default();
         assert!(difference == 0.0 && low < 0.0 && (low + high).abs() < 1e-12, "{low} {high}");
         assert_eq!(newcombe([0; 4]), None);

@@ -8,7 +8,7 @@ use crate::report;
 use crate::variants::Spread;
 use crate::variants::words::{course, percent};
 
-/// An empty table: first columns, then one for each run.
+/// Creates an empty table: the first columns, then one for each run.
 fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &str)]) -> Table {
     let mut table = Table::new(caption, first);
     let letters = sides.iter().enumerate().map(|(at, _)| Column::new(letter(at), ""));
@@ -17,7 +17,7 @@ fn table(caption: &str, first: &[(&str, &str)], sides: &[Side], last: &[(&str, &
     table
 }
 
-/// The inputs that differ.
+/// Tabulates the inputs that differ.
 pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     let mut table = table(
         "Inputs that differ. All others are equal.",
@@ -35,7 +35,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
     table
 }
 
-/// The inputs that are the same in all runs.
+/// Tabulates the inputs that are the same in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
     let mut settings: Vec<_> =
         sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
@@ -43,7 +43,7 @@ pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
     report::settings_table("Inputs that all runs share.", &settings)
 }
 
-/// What became of each run.
+/// Tabulates the outcome of each run.
 pub(super) fn outcomes(sides: &[Side]) -> Table {
     let mut table = table("Outcomes.", &[("", "")], sides, &[]);
     let mut row = |name: &str, cell: &dyn Fn(&Side) -> Cell| {
@@ -89,7 +89,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
     table
 }
 
-/// Demands on each stack until its first loss of seat.
+/// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
         "Until the first loss of seat of each stack; what the whole run adds is in the summary of each.",

@@ -1,4 +1,4 @@
-//! A run as files for papers, films and ParaView, in one folder.
+//! Renders a run to files for papers, films and ParaView, in one folder.
 
 mod terminal;
 
@@ -21,7 +21,7 @@ use barrelstack_input::system;
 
 pub use terminal::{drift_line, final_picture};
 
-/// What can be rendered; each part has a place of its own.
+/// Part of a rendering; each has a folder or file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// `figures/`: every figure of the report with its numbers as CSV; `report.md` beside it.
@@ -41,12 +41,12 @@ impl Part {
     pub const ALL: [Self; 5] =
         [Self::Figures, Self::Report, Self::Animation, Self::Frames, Self::Paraview];
 
-    /// Its name, as it is asked for.
+    /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         if self == Self::Report { "report" } else { self.place() }
     }
 
-    /// The name of its folder, or of its file.
+    /// Returns the name of its folder, or of its file.
     pub fn place(self) -> &'static str {
         match self {
             Self::Figures => "figures",
@@ -58,7 +58,7 @@ impl Part {
     }
 }
 
-/// How parts are rendered.
+/// Options of rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering {
     /// Formats of figures besides SVG, which is always written. Frames are PNG where that is among
@@ -68,9 +68,9 @@ pub struct Rendering {
     pub dpi: f64,
     /// Paper of the report.
     pub paper: Paper,
-    /// Pictures, and ParaView times, for every second of the run (1/s).
+    /// Pictures, and ParaView times, per second of the run (1/s).
     pub rate: f64,
-    /// The part of the run that is filmed (s); None for all of it.
+    /// Time interval to be filmed (s); `None` for all of it.
     pub between: Option<[f64; 2]>,
     /// Longer side of animations (pixels).
     pub largest: u32,
@@ -90,10 +90,10 @@ impl Default for Rendering {
 }
 
 impl Rendering {
-    /// Checks that a run can be rendered so, in a sentence where it cannot.
+    /// Checks that a run can be rendered with these options; the error is a sentence.
     ///
     /// # Errors
-    /// When a number is out of range, or the run ends before it is to be filmed.
+    /// When a number is out of range, or the run ends before the interval.
     pub fn check(&self, run: &Run) -> Result<(), String> {
         let expected =
             |what: &str, found: &dyn Display| Err(format!("expected {what}, found {found}"));
@@ -119,32 +119,32 @@ impl Rendering {
     }
 }
 
-/// Kinds of files that rendering writes into its folders, and may remove from them.
+/// Extensions of files that rendering writes into its folders, and may remove from them.
 const KINDS: [&str; 7] = ["svg", "png", "pdf", "gif", "csv", "vtp", "pvd"];
 
-/// Most pictures in a second that viewers of animations show.
+/// Maximum number of pictures per second that viewers of animations show.
 const FASTEST: f64 = 50.0;
 
-/// A folder that is ready to take rendered parts.
+/// A folder that is ready for rendered parts.
 #[derive(Clone, Debug)]
 pub struct RenderFolder {
     path: PathBuf,
     parts: Vec<Part>,
 }
 
-/// What was written.
+/// Written files of a part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rendered {
     /// The part.
     pub part: Part,
     /// Its folder or file.
     pub place: PathBuf,
-    /// Count of its files.
+    /// Number of its files.
     pub files: usize,
 }
 
 impl RenderFolder {
-    /// Checks a folder before the work is done; makes and removes nothing yet.
+    /// Checks a folder before the work is done; creates and removes nothing yet.
     ///
     /// # Errors
     /// When a part's place holds files of an earlier rendering and `overwrite` is not set, or
@@ -207,8 +207,8 @@ impl RenderFolder {
         Ok(written)
     }
 
-    /// Writes the ParaView series that `make` hands over file by file: long series of bodies in space need not be in
-    /// memory as a whole.
+    /// Writes the ParaView series that `make` produces file by file, so that long series of bodies in space need not be
+    /// in memory as a whole.
     ///
     /// # Errors
     /// When the system refuses.
@@ -227,7 +227,7 @@ impl RenderFolder {
         Ok(Rendered { part: Part::Paraview, place, files })
     }
 
-    /// The place of a part, made, and free of what an earlier rendering wrote there.
+    /// Creates the place of a part and removes the files of an earlier rendering from it.
     fn cleared(&self, part: Part) -> Result<PathBuf, ExportError> {
         let place = self.path.join(part.place());
         let folder = if part == Part::Report { "" } else { part.place() };
@@ -239,7 +239,7 @@ impl RenderFolder {
         Ok(place)
     }
 
-    /// What an earlier rendering wrote in the place of a part, sorted.
+    /// Returns the files of an earlier rendering in the place of a part, sorted.
     fn earlier(&self, part: Part) -> Result<Vec<PathBuf>, ExportError> {
         let place = self.path.join(part.place());
         let alone = match part {
@@ -268,8 +268,8 @@ impl RenderFolder {
     }
 }
 
-/// Writes the figures of a document in formats besides SVG, named as the SVG files are; `dpi` (dots
-/// per inch) is that of pixels. Gives the count of files.
+/// Writes the figures of a document in formats besides SVG, named as the SVG files; `dpi` (dots per inch)
+/// applies to pixels. Returns the number of files.
 ///
 /// # Errors
 /// When the system refuses.
@@ -289,7 +289,7 @@ pub fn write_figures(
     Ok(count)
 }
 
-/// Both kinds of animations, from the same pictures.
+/// Writes both kinds of animations, from the same pictures.
 fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize, ExportError> {
     let film = Film::of_run(Arc::clone(scene), how.rate.min(FASTEST));
     let Some(animation) = Animation::of(&film, how.largest) else { return Ok(0) };
@@ -297,8 +297,8 @@ fn animation(folder: &Path, scene: &Arc<Scene>, how: &Rendering) -> Result<usize
         + put(&folder.join("stack.png"), &animation.apng())?)
 }
 
-/// Numbered pictures, painted and written by all cores, each with one of them in memory, and the
-/// times of all.
+/// Writes numbered pictures, rendered on all cores with one of them per core in memory, and the times
+/// of all.
 fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportError> {
     let digits = film.len().to_string().len().max(4);
     let pixels = how.formats.contains(&Format::Png);
@@ -306,7 +306,7 @@ fn frames(folder: &Path, film: &Film, how: &Rendering) -> Result<usize, ExportEr
         let format = if pixels { Format::Png } else { Format::Svg };
         format!("frame-{:0digits$}.{}", at + 1, format.extension())
     };
-    // Where one picture is refused, the rest would be too, and are not painted.
+    // If one picture is refused the rest would be too; skip them.
     let refused = AtomicBool::new(false);
     let paint = |at: usize| {
         if refused.load(Ordering::Relaxed) {

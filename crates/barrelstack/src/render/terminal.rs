@@ -1,4 +1,4 @@
-//! A run in a few lines of a terminal: the stack at the end, and how far its top swayed.
+//! A run in a few lines of a terminal: the stack at the end, and the drift of its top.
 
 use barrelstack_report::{Characters, sparkline, terminal_picture};
 
@@ -7,7 +7,7 @@ use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
 
-/// The last frame of a run, at most 72 columns wide; nothing for numbers that broke down.
+/// Draws the last frame of a run, at most 72 columns wide; empty for an invalid run.
 pub fn final_picture(run: &Run, characters: Characters) -> Vec<String> {
     let broke_down = matches!(run.outcome, Outcome::Invalid { .. });
     match run.recording.frames.times.len().checked_sub(1) {
@@ -16,10 +16,10 @@ pub fn final_picture(run: &Run, characters: Characters) -> Vec<String> {
     }
 }
 
-/// The distance of the top barrels from their place over the ground, while the stack stands, as
-/// `columns` characters, with its last instant and the one when it is largest (s).
+/// Draws the displacement of the top barrels relative to the ground while the stack stands, as `columns`
+/// characters; also returns its last instant and that of its maximum (s).
 ///
-/// None without a stack, and for numbers that broke down.
+/// `None` without a stack, and for an invalid run.
 pub fn drift_line(run: &Run, columns: usize, characters: Characters) -> Option<(String, [f64; 2])> {
     if matches!(run.outcome, Outcome::Invalid { .. }) {
         return None;

@@ -1,4 +1,4 @@
-//! From bodies and frames to a scene that can be drawn.
+//! Converts bodies and frames to a scene that can be drawn.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use crate::run::Run;
 use crate::variants::Variants;
 use crate::watch::Loss;
 
-/// The scene of a run.
+/// Returns the scene of a run.
 pub fn scene(run: &Run) -> Arc<Scene> {
     scene_among(run, None)
 }
 
-/// The scene of a run, with what became of its variants.
+/// Returns the scene of a run, with the results of its variants.
 pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> {
     let frames = &run.recording.frames;
     Arc::new(Scene {
@@ -40,13 +40,13 @@ pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> 
     })
 }
 
-/// A contact force: of the two that push each other, the one that is pushed up.
+/// Returns a contact force on the body that is pushed up, of the two in contact.
 fn pushed(&[x, z, fx, fz]: &[f64; 4]) -> ContactForce {
     let sign = if fz < 0.0 { -1.0 } else { 1.0 };
     ContactForce { x, z, fx: sign * fx, fz: sign * fz }
 }
 
-/// The scene of bodies as they are put up, before they settle into their contacts.
+/// Returns the scene of bodies as assembled, before they settle into their contacts.
 pub(super) fn still(assembly: &Assembly) -> Scene {
     let poses = assembly.model.bodies().iter().map(|body| body.pose);
     Scene {
@@ -61,10 +61,10 @@ pub(super) fn still(assembly: &Assembly) -> Scene {
     }
 }
 
-/// Most variants whose ways are drawn; more would only be black.
+/// Maximum number of variants whose paths are drawn; more would merge to a black area.
 const DRAWN: usize = 128;
 
-/// The ways of the top barrels of all variants, and where their barrels came to lie.
+/// Returns the paths of the top barrels of all variants, and the final positions of their barrels.
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
@@ -81,7 +81,7 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
     })
 }
 
-/// What of a scene a caption has to explain: straps, devices, wine, and the ghosts of variants.
+/// Returns the part of the caption on straps, devices, wine, and ghosts of variants.
 pub fn legend(scene: &Scene) -> String {
     let mut legend = String::new();
     if !scene.ties.is_empty() {
@@ -107,11 +107,11 @@ pub fn legend(scene: &Scene) -> String {
     legend
 }
 
-/// Displacement (m) below which nothing is worth opening a page on.
+/// Displacement (m) below which the page does not open at the largest displacement.
 const STILL: f64 = 1e-3;
 
-/// The instant that says most about a run: the first loss of seat, or, of what kept its seats, the
-/// furthest that a body went to a side or up.
+/// Returns the instant on which a page opens: the first loss of seat, or, if all seats are kept, the largest
+/// displacement of a body sideways or upward.
 fn moment(run: &Run) -> Option<Moment> {
     match &run.outcome {
         Outcome::Collapse { time, first, .. } => {
@@ -130,7 +130,7 @@ fn moment(run: &Run) -> Option<Moment> {
     }
 }
 
-/// When which body was furthest from its place at rest, to a side or up.
+/// Returns time and body of the largest displacement from rest, sideways or upward.
 fn furthest(run: &Run) -> Option<Moment> {
     let mut furthest: Option<(f64, f64, usize, &str)> = None;
     for (body, part) in run.assembly.parts.iter().enumerate() {
@@ -151,7 +151,7 @@ fn furthest(run: &Run) -> Option<Moment> {
     Some(Moment { time, body, text, falls: false })
 }
 
-/// How hard every barrel is pressed where it touches another body.
+/// Returns the largest contact stress of every barrel as a color scale.
 fn tint(run: &Run) -> Tint {
     let parts = &run.assembly.parts;
     let of = |(part, stress): (&Part, &f64)| {
@@ -165,7 +165,7 @@ fn tint(run: &Run) -> Tint {
     }
 }
 
-/// The outlines of a body as lines in its own frame.
+/// Returns the outlines of a body as lines in its own frame.
 pub(super) fn outlines(assembly: &Assembly, body: usize) -> Vec<Polyline> {
     assembly.parts[body]
         .outlines
@@ -186,8 +186,8 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
         }
         (PartKind::Barrel, Some(Shape::BarrelProfile(profile))) => {
             let mut body = SceneBody::new(&part.name, Role::Barrel, outlines(assembly, index));
-            // The bung, at the top of the bilge, then hoops, where coopers drive them: at the heads
-            // and on both sides of the bilge.
+            // The bung, at the top of the bilge, then hoops at their usual places: at the heads and on both
+            // sides of the bilge.
             let bilge = profile.radius_at(0.0);
             body.marks.push(Polyline::open(vec![[0.0, 0.9 * bilge], [0.0, bilge]]));
             for share in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94] {
@@ -215,7 +215,7 @@ fn body(assembly: &Assembly, index: usize) -> SceneBody {
     }
 }
 
-/// What is drawn as a line between two bodies: straps, and all elements of a free scene.
+/// Returns the elements drawn as lines between two bodies: straps, and all elements of a free scene.
 fn ties(assembly: &Assembly, torn_at: impl Fn(usize) -> Option<f64>) -> Vec<Tie> {
     assembly
         .elements()
@@ -235,7 +235,7 @@ fn events(run: &Run) -> Vec<Event> {
     let mut events = Vec::new();
     for (i, part) in run.assembly.parts.iter().enumerate() {
         let fate = run.fates.fate(i);
-        // A barrel that leaves its seat by falling is one thing that happens, not two.
+        // A barrel that leaves its seat by falling is one event, not two.
         let falls_with_it = |time: f64| {
             part.kind == PartKind::Barrel && fate.fell_at.is_some_and(|fell| fell <= time)
         };
@@ -266,7 +266,7 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Acceleration and velocity of the ground; none where nothing shakes it.
+/// Returns acceleration and velocity of the ground; empty without a motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     if run.ground.motion.is_none() {
         return Vec::new();

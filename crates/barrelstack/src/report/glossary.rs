@@ -1,8 +1,8 @@
-//! The words of the pages that a winery manager need not know, in words that everybody knows.
+//! Technical terms of the pages, explained for winery managers.
 
 use barrelstack_report::Word;
 
-/// Each is explained where it stands; GLOSSARY.md has the same list.
+/// Each is explained where it occurs; GLOSSARY.md has the same list.
 pub const WORDS: &[Word] = &[
     word(
         "variant",

@@ -1,11 +1,11 @@
-//! The inputs of a run as a table: every value with its unit, its meaning and where it comes from.
+//! Table of the inputs of a run: every value with its unit, its meaning and its source.
 
 use barrelstack_report::{Block, Cell, Table, significant};
 
 use crate::run::Run;
 use crate::scenario::{Setting, Source, catalog};
 
-/// Settings as a table.
+/// Tabulates settings.
 pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
     Table::of(
         caption,
@@ -19,19 +19,19 @@ pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
     )
 }
 
-/// The value of an input as a page shows it: of a file its name, and not where it lies.
+/// Formats the value of an input for a page: of a file its name, not its path.
 pub(crate) fn shown(path: &str, value: &str) -> String {
     let file = ["motion.record", "motion.vertical_record"].contains(&path);
     let name = value.rsplit(['/', '\\']).next().filter(|_| file);
     name.map_or_else(|| readable(value), str::to_owned)
 }
 
-/// A value as people read it: numbers, also before a unit, to six significant digits.
+/// Formats a value for people: numbers, also before a unit, to six significant digits.
 pub(crate) fn readable(value: &str) -> String {
     let (first, rest) = value.split_once(' ').unwrap_or((value, ""));
     match first.parse::<f64>() {
         Ok(number) if first.len() > DIGITS && number != 0.0 => {
-            // Zeros behind the digits that count say nothing.
+            // Trailing zeros carry no information.
             let shown = significant(number, DIGITS);
             let end = shown.find('×').unwrap_or(shown.len());
             let (digits, power) = shown.split_at(end);
@@ -46,10 +46,10 @@ pub(crate) fn readable(value: &str) -> String {
     }
 }
 
-/// Significant digits of an input in print; the scenario beside the report has them all.
+/// Significant digits of a printed input; the scenario beside the report has all.
 const DIGITS: usize = 6;
 
-/// What was chosen, in sight; every value, folded.
+/// Tabulates the stated inputs, and, collapsed, all values.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
     let mut settings = run.stated.settings();
@@ -80,7 +80,7 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// Where the dimensions of the catalog come from.
+/// Returns the sources of the catalog's dimensions.
 fn dimensions(run: &Run) -> Option<Block> {
     let stack = run.scenario.stack()?;
     let barrel = catalog::barrel(stack.barrel.base);

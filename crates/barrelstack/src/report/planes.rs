@@ -1,4 +1,4 @@
-//! A stack in all its variants and in both its planes, on its page.
+//! The page sections of a stack in both planes and in all its variants.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::words::percent;
 use crate::variants::{Range, Shown, Spread};
 
-/// Both planes beside each other on one clock, the one across the barrels first.
+/// Returns both planes beside each other on one clock, the one across the barrels first.
 pub(super) fn players(
     (run, summary, scene): (&Run, &Summary, &Arc<Scene>),
     other: &Shown,
@@ -51,7 +51,7 @@ pub(super) fn players(
     }
 }
 
-/// What moves, before anything has moved: the stack in each plane as it is put up.
+/// Returns the stage before any motion: the stack in each plane as assembled.
 pub(super) fn still(assemblies: &[Assembly]) -> Block {
     let caption = "The stack as it is put up, to scale.".to_owned();
     if let [alone] = assemblies {
@@ -68,7 +68,7 @@ pub(super) fn still(assemblies: &[Assembly]) -> Block {
     })
 }
 
-/// A plane by its letter and its name, without a verdict.
+/// Returns the pane of a plane with its letter and name, without a verdict.
 fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     let (mark, name) = match assembly.view {
         Some(view @ View::Transverse) => ("X", capital(view.words())),
@@ -79,14 +79,14 @@ fn of(assembly: &Assembly, scene: Arc<Scene>) -> Pane {
     Pane { mark: mark.to_owned(), name, verdict, tone, scene, traces }
 }
 
-/// The acceleration of the ground in a plane.
+/// Returns the acceleration of the ground in a plane.
 fn ground(run: &Run) -> Option<History> {
     let first = drawing::ground_histories(run).into_iter().next()?;
     let view = run.assembly.view?;
     Some(History { label: format!("{}, {}", first.label, view.words()), ..first })
 }
 
-/// What all variants say, as a table with a column for every plane.
+/// Tabulates the statistics of all variants, with a column for every plane.
 pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     let planes = summary.spreads();
     if planes.is_empty() {
@@ -144,7 +144,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     blocks
 }
 
-/// From one number to another, once where they look the same.
+/// Formats a range, as one number where both ends are printed alike.
 fn span(from: f64, to: f64, decimals: usize) -> String {
     let [from, to] = [from, to].map(|value| format!("{value:.decimals$}"));
     if from == to { from } else { format!("{from} to {to}") }

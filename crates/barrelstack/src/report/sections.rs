@@ -18,7 +18,7 @@ use crate::variants::{Range, Shown, Variants};
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
-/// All sections.
+/// Builds all sections.
 pub(super) fn all(
     run: &Run,
     summary: &Summary,
@@ -41,7 +41,7 @@ pub(super) fn all(
     blocks
 }
 
-/// What moves: a plane, or both beside each other.
+/// Returns the moving picture: of one plane, or of both beside each other.
 pub(super) fn stage(
     run: &Run,
     summary: &Summary,
@@ -54,7 +54,7 @@ pub(super) fn stage(
     }
 }
 
-/// What only a reader who calculates asks for.
+/// Builds the sections for engineers.
 fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec<Block> {
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
@@ -93,7 +93,7 @@ fn player(run: &Run, scene: &Arc<Scene>) -> Player {
     }
 }
 
-/// The centers of the barrels of the top level.
+/// Returns the traces of the centers of the barrels on the top level.
 pub(crate) fn traces(run: &Run) -> Vec<Trace> {
     let parts = &run.assembly.parts;
     run.assembly
@@ -131,15 +131,15 @@ fn fates(summary: &Summary) -> Table {
     )
 }
 
-/// A figure of histories over time with the collapse marked.
+/// Plots histories over time with the collapse marked.
 fn history(run: &Run, id: &str, caption: &str, y: Axis, series: Vec<Series>) -> Block {
     let mark = run.fates.collapse_time().map(|at| Mark { at, label: "gives way".into() });
     let plot = Plot::over_time(y, series, mark.into_iter().collect());
     Block::Figure(Figure::new(id, caption, Plot { timeline: true, ..plot }))
 }
 
-/// The range that shows a stack while it stands and as it gives way; what falls leaves the picture, as
-/// in the paper's histories. None where nothing collapses: then everything is shown.
+/// Returns the range that shows a stack while it stands and as it collapses; falling bodies leave the plot, as in the
+/// paper's histories. `None` without a collapse: then everything is shown.
 pub fn standing_range(run: &Run, series: &[Series]) -> Option<[f64; 2]> {
     let until = run.fates.collapse_time()? + 0.5;
     let mut range = [0.0_f64; 2];
@@ -157,7 +157,7 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let mut series = Vec::new();
     let stack = run.assembly.levels > 0;
     for part in &run.assembly.parts {
-        // In a stack the left column tells the story, as in the paper: barrels 1, 4 and 7.
+        // In a stack plot the left column, as in the paper: barrels 1, 4 and 7.
         let shown = if stack {
             part.kind == PartKind::Barrel && part.column == Some(1)
         } else {
@@ -182,9 +182,9 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     vec![history(run, "displacements", &caption, axis, series)]
 }
 
-/// What 5 and 95 % of all variants stay below, of the displacement (cm) of the first barrel of the top level.
+/// Returns the 5 and 95 % fractiles over the variants of the displacement (cm) of the first barrel of the top level.
 ///
-/// A variant that has ended stays where it was.
+/// A variant that has ended keeps its last displacement.
 fn band(run: &Run, variants: &Variants) -> Vec<Series> {
     let trails = variants.results.iter().skip(1).map(|result| &result.trail);
     let ways: Vec<&[[f32; 2]]> =
@@ -242,7 +242,7 @@ fn stresses(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// The normal stress along the boundary of a body, at rest and at its largest.
+/// Plots the normal stress along the boundary of a body, at rest and at its largest.
 pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
     let name = &run.assembly.parts[envelope.body].name;
     let mut samples = Vec::new();
@@ -259,8 +259,8 @@ pub fn stress_figure(run: &Run, envelope: &StressEnvelope) -> Figure {
         peak.push(1e-3 * most);
     };
     if envelope.is_on_nodes() {
-        // Every node of a rack is a block as wide as the boundary it stands for; nodes that nothing
-        // ever pressed are left out, and a gap divides the rows.
+        // Every node of a rack is a block as wide as its tributary length; nodes without any contact are left
+        // out, and a gap separates the rows.
         let mut order: Vec<usize> =
             (0..envelope.points.len()).filter(|i| envelope.peak[*i] > 0.0).collect();
         order.sort_by(|a, b| {
@@ -343,12 +343,12 @@ fn motion(run: &Run) -> Vec<Block> {
     blocks
 }
 
-/// The energies of the books that change in a run, with what is stored and lost together, which must
-/// lie on the work of the ground.
+/// Plots the energies that change in a run, with the sum of the stored and dissipated ones, which must equal the
+/// work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
     let Some(books) = &summary.energy else { return Vec::new() };
-    // Each by what it has gained since the start, in kJ.
+    // Each as its increase since the start, in kJ.
     let gained = |names: &[&str]| -> Vec<f64> {
         let channels: Vec<&[f64]> = names
             .iter()
@@ -370,7 +370,7 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         ("lost to friction", &["friction"], 2),
         ("lost to damping", &["damped", "viscous"], 5),
     ];
-    // The shade of the work of the ground lies under everything, and all together on its edge.
+    // The area of the work of the ground lies behind all others, and their sum along its edge.
     let ground = SeriesStyle { area: true, ..color(4) };
     let mut series = vec![line("work of the ground", &["ground work"], ground)];
     series.extend(parts.iter().map(|(label, names, index)| line(label, names, color(*index))));

@@ -14,23 +14,23 @@ const DAMPING: f64 = 0.05;
 /// Points of the curve of a rigid block.
 const CURVE: u32 = 60;
 
-/// How a stack rocked, and the block that it would be if nothing in it moved.
+/// Rocking of a stack, and the equivalent rigid block.
 struct Rocking {
     drift: Drift,
     block: RigidBlock,
 }
 
 impl Rocking {
-    /// None where nothing rocked.
+    /// Returns the rocking of a run; `None` without drift.
     fn of(run: &Run) -> Option<Self> {
         let block = RigidBlock::of(&run.assembly, run.scenario.run.gravity)?;
         let mut drift = drift(run).filter(|drift| drift.largest > 0.0)?;
-        // Figures read from small to large.
+        // Figures are sorted by amplitude.
         drift.swings.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
         Some(Self { drift, block })
     }
 
-    /// Period (s) of the block where its top moves by `amplitude` (m) as that of the stack does.
+    /// Returns the period (s) of the block with a top displacement of `amplitude` (m), as that of the stack.
     fn rigid(&self, amplitude: f64) -> f64 {
         self.block.period(amplitude / self.drift.height)
     }
@@ -39,14 +39,14 @@ impl Rocking {
         self.drift.swings.last()
     }
 
-    /// Shortest and longest period (s) of the swings.
+    /// Returns the shortest and longest period (s) of the swings.
     fn range(&self) -> (f64, f64) {
         let periods = || self.drift.swings.iter().map(|swing| swing.period);
         (periods().fold(f64::INFINITY, f64::min), periods().fold(0.0, f64::max))
     }
 }
 
-/// The spectrum, and the periods of the stack where it rocked.
+/// Plots the spectrum, and the periods of a rocking stack.
 pub(super) fn figures(run: &Run, motion: &GroundMotion) -> Vec<Block> {
     let rocking = Rocking::of(run);
     let mut blocks = Vec::new();
@@ -101,7 +101,7 @@ fn words(rocking: &Rocking) -> String {
     )
 }
 
-/// The pseudo-acceleration spectrum of the horizontal component; none where it cannot be computed.
+/// Plots the pseudo-acceleration spectrum of the horizontal component; `None` where it cannot be computed.
 fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> {
     let step = motion.horizontal.natural_step();
     let sampled = motion.horizontal.sampled(step).ok()?;
@@ -148,7 +148,7 @@ fn spectrum(motion: &GroundMotion, rocking: Option<&Rocking>) -> Option<Figure> 
     Some(Figure::new("spectrum", caption, plot))
 }
 
-/// Period against amplitude: every swing of the run, and the rigid block.
+/// Plots period against amplitude: every swing of the run, and the rigid block.
 fn periods(rocking: &Rocking) -> Figure {
     let amplitudes: Vec<f64> = (0..=CURVE)
         .map(|k| 1.15 * rocking.drift.largest * f64::from(k) / f64::from(CURVE))

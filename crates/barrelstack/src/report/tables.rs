@@ -1,16 +1,16 @@
-//! Tables of what a stack and its devices bore, in a plane and in space.
+//! Tables of forces and demands on a stack and its devices, in a plane and in space.
 
 use barrelstack_report::{Block, Cell, Table};
 
 use crate::demand::{DEMANDS, Demands};
 use crate::summary::{Device, JointSummary};
 
-/// A force (N) in kilonewtons, to the weight of a kilogram.
+/// Returns a force (N) in kilonewtons, with two decimals.
 fn kilonewtons(value: f64) -> Cell {
     Cell::Measured(1e-3 * value, 2)
 }
 
-/// The demands on a stack until the first loss of seat, and over the whole run.
+/// Tabulates the demands on a stack until the first loss of seat, and over the whole run.
 pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     Table::of(
         "Until the first loss of seat, and over the whole run, falls included.",
@@ -26,12 +26,12 @@ pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
     )
 }
 
-/// When (s) a force (N) was largest; nothing where there was none.
+/// Returns the time (s) of the maximum of a force (N); empty for no force.
 fn at(force: f64, time: f64) -> Cell {
     Cell::measured((force != 0.0).then_some(time), 2)
 }
 
-/// The largest forces at interfaces.
+/// Tabulates the largest forces at interfaces.
 pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
     Table::of(
         caption,
@@ -55,7 +55,7 @@ pub fn interface_table(caption: &str, interfaces: &[JointSummary]) -> Table {
     )
 }
 
-/// What the elements of a device bore, as a table; none where it is not there.
+/// Tabulates the forces in the elements of a device; empty without any.
 pub fn device_table(Device { words, elements }: &Device) -> Vec<Block> {
     let table = Table::of(
         format!(

@@ -1,10 +1,10 @@
-//! How far a run can be trusted, where repeats of it were made.
+//! Reliability of a run, where repeats of it were made.
 
 use barrelstack_report::{Block, Cell, Table};
 
 use crate::verify::{Repeat, Verification};
 
-/// The section of a verification.
+/// Builds the section of a verification.
 pub(super) fn trust(found: &Verification) -> Vec<Block> {
     let mut blocks: Vec<Block> = found.sentences().into_iter().map(Block::Paragraph).collect();
     let table = Table::of(

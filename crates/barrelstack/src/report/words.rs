@@ -1,4 +1,4 @@
-//! The sentences of a report: what a person would say who had watched the run.
+//! The sentences of a report.
 
 use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{capital, significant};
@@ -11,7 +11,7 @@ use crate::summary::{Device, EnergyBooks, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
-/// The answer in one sentence: that of all variants, where they were run.
+/// Returns the answer in one sentence: of all variants, where they were run.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
     if !spreads.is_empty() {
@@ -20,7 +20,7 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     alone(run, summary)
 }
 
-/// What became of the run that is shown, in one sentence.
+/// Describes the result of the shown run in one sentence.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     match &run.outcome {
         Outcome::Stable => match crushed(summary) {
@@ -49,14 +49,13 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// The largest load on staves until the first loss of seat, of what they are stated to bear; none where that is less
-/// than all of it.
+/// Returns the largest utilization of staves until the first loss of seat; `None` up to 100 %.
 fn crushed(summary: &Summary) -> Option<String> {
     let load = summary.demands.stave_utilization.filter(|load| *load > 1.0)?;
     Some(format!("{:.0} %", 100.0 * load))
 }
 
-/// That work was stopped before its end, how far it had come, and that it says nothing.
+/// Describes an interruption: the progress so far, and that there is no verdict.
 pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     match variants {
         Some(Unfinished { done, of }) => format!(
@@ -66,7 +65,7 @@ pub fn stopped(variants: Option<&Unfinished>, time: f64) -> String {
     }
 }
 
-/// Levels in words: "level 3", "levels 2 and 3", "levels 2 to 4".
+/// Names levels: "level 3", "levels 2 and 3", "levels 2 to 4".
 fn levels(from: u32, to: u32) -> String {
     match to.saturating_sub(from) {
         0 => format!("level {from}"),
@@ -75,7 +74,7 @@ fn levels(from: u32, to: u32) -> String {
     }
 }
 
-/// How the stack came down.
+/// Describes the collapse.
 fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     let barrel = run.assembly.parts.iter().any(|p| p.name == first && p.kind == PartKind::Barrel);
     match mode {
@@ -99,11 +98,11 @@ fn course(run: &Run, mode: CollapseMode, first: &str, part: &str) -> String {
     }
 }
 
-/// What a device bore; none where it is not there.
+/// Describes the forces in a device; `None` without any elements.
 pub fn device(Device { words, elements }: &Device) -> Option<String> {
     let strained = elements.iter().max_by(|a, b| a.peak.abs().total_cmp(&b.peak.abs()))?;
     let kilonewtons = significant(1e-3 * strained.peak.abs(), 2);
-    // What falls may pull harder than what stands.
+    // Falling bodies may pull harder than standing ones.
     let most = elements.iter().map(|element| element.peak_whole_run.abs()).fold(0.0, f64::max);
     let until = if most > strained.peak.abs() {
         let later = significant(1e-3 * most, 2);
@@ -130,9 +129,9 @@ pub fn device(Device { words, elements }: &Device) -> Option<String> {
     })
 }
 
-/// What shook the ground.
+/// Describes the ground motion.
 fn shaking(motion: &MotionSummary) -> String {
-    // Formulas have common names: "a sine".
+    // Formulas have common nouns as names: "a sine".
     let formula = motion.name.chars().all(char::is_lowercase);
     let name = if formula { format!("a {}", motion.name) } else { motion.name.clone() };
     match (motion.pga == 0.0, motion.vertical) {
@@ -142,7 +141,7 @@ fn shaking(motion: &MotionSummary) -> String {
     }
 }
 
-/// The numbers behind the sentences: how strong the motion is, which variant is shown, how variants differ.
+/// Returns details behind the sentences: strength of the motion, number of the shown variant, differences of variants.
 pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let strength = |motion: &MotionSummary| {
         format!(
@@ -157,7 +156,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// The command that sets what would have helped beside the stack: of files their names, not where they lie.
+/// Returns the command that compares the remedy with the stack: of files their names, not their paths.
 pub(super) fn command(summary: &Summary) -> String {
     let command = summary.remedy.as_ref().and_then(|found| found.comparison.as_deref());
     let word = |word: &str| {
@@ -170,7 +169,7 @@ pub(super) fn command(summary: &Summary) -> String {
     command.map(|text| text.split(' ').map(word).collect::<Vec<_>>().join(" ")).unwrap_or_default()
 }
 
-/// Which of several runs a sentence is about: "Along the barrels, in the run that is shown, ".
+/// Returns words that identify the run of a sentence: "Along the barrels, in the run that is shown, ".
 fn shown(run: &Run, summary: &Summary) -> String {
     let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
     match (view, summary.ensemble.is_some()) {
@@ -181,7 +180,7 @@ fn shown(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// A sentence behind words that it begins with.
+/// Prefixes a sentence with introductory words.
 fn behind(begin: &str, sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().filter(|_| !begin.is_empty());
@@ -191,9 +190,9 @@ fn behind(begin: &str, sentence: &str) -> String {
     }
 }
 
-/// The sentences that back the headline.
+/// Returns the sentences that support the headline.
 ///
-/// What repeats of the run have shown takes the place of the general warning.
+/// Results of repeats replace the general warning.
 pub(super) fn details(
     run: &Run,
     summary: &Summary,
@@ -245,7 +244,7 @@ pub(super) fn details(
     sentences
 }
 
-/// What made the result, in pairs of name and value.
+/// Returns the provenance of the result, in pairs of name and value.
 pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     let mut pair = |name: &str, value: String| pairs.push((name.to_owned(), value));

@@ -1,4 +1,4 @@
-//! What every device bore, told in its own words.
+//! Forces in every device, under the names that it defines.
 
 use barrelstack_dynamics::{Element, Space};
 use barrelstack_report::described::{Described, Objects};
@@ -10,14 +10,14 @@ use crate::device::{DEVICES, FREE, Words};
 use crate::run::Run;
 use crate::watch::ElementFate;
 
-/// Every device with its force elements, and those of a free scene; a device that is not there has none.
+/// Every device with its force elements, and those of a free scene; an absent device has none.
 #[derive(Clone, Debug)]
 pub struct Devices(pub Vec<Device>);
 
 /// A device.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// Its words.
+    /// Its display strings.
     pub words: &'static Words,
     /// Its elements.
     pub elements: Vec<ElementSummary>,
@@ -31,25 +31,25 @@ pub struct ElementSummary {
     pub name: String,
     /// The force (N) that is largest in size until the first loss of seat.
     pub peak: f64,
-    /// When (s).
+    /// Its time (s).
     pub peak_at: f64,
     /// The force (N) that is largest in size over the whole run.
     pub peak_whole_run: f64,
-    /// When (s).
+    /// Its time (s).
     pub peak_whole_run_at: f64,
-    /// When it broke (s).
+    /// Time (s) of its failure.
     pub broken_at: Option<f64>,
 }
 
 impl Devices {
-    /// The devices of a run.
+    /// Returns the devices of a run.
     pub(super) fn of(run: &Run) -> Self {
         let assembly = &run.assembly;
         let devices = assembly.devices.iter().copied();
         Self::borne(&assembly.model.elements().iter().zip(devices).zip(&run.elements))
     }
 
-    /// What the elements of a run bore, each with the words of its device.
+    /// Returns the forces in the elements of a run, each given with the strings of its device.
     pub fn borne<'a, S: Space + 'a>(
         elements: &(impl Iterator<Item = ((&'a Element<S>, &'static Words), &'a ElementFate)> + Clone),
     ) -> Self {
@@ -72,14 +72,14 @@ impl Devices {
         Self(all_words().map(device).collect())
     }
 
-    /// The elements of a device by its word for more than one; none where there is no such device.
+    /// Returns the elements of a device by its plural name; empty if there is no such device.
     pub fn named(&self, many: &str) -> &[ElementSummary] {
         let device = self.0.iter().find(|device| device.words.many == many);
         device.map_or(&[], |device| &device.elements)
     }
 }
 
-/// A list for every device, by its words for more than one.
+/// Serializes a list for every device, under its plural name.
 impl Serialize for Devices {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let keyed = |device: &'_ Device| (key(device.words.many), device.elements.clone());
@@ -87,7 +87,7 @@ impl Serialize for Devices {
     }
 }
 
-/// Its numbers by the words of its device.
+/// Serializes its numbers under the names that its device defines.
 impl Serialize for ElementSummary {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Words { force, broken, .. } = self.words;
@@ -130,17 +130,17 @@ impl Described for Devices {
     }
 }
 
-/// The words of every device, and of the elements of free scenes.
+/// Returns the strings of every device, and of the elements of free scenes.
 fn all_words() -> impl Iterator<Item = &'static Words> {
     DEVICES.iter().copied().chain([&FREE])
 }
 
-/// Words as a key of a document.
+/// Converts words to a key of a document.
 fn key(words: &str) -> String {
     words.replace(' ', "_")
 }
 
-/// An object that has these properties, and no other.
+/// Returns the schema of an object that has exactly these properties.
 fn closed(meaning: &str, properties: &Value) -> Value {
     let required: Vec<&String> = properties.as_object().into_iter().flat_map(Map::keys).collect();
     json!({

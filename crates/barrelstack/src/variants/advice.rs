@@ -1,4 +1,4 @@
-//! What would have kept a stack up, in a sentence and as a table.
+//! The remedy in a sentence and as a table.
 
 use barrelstack_report::{Cell, Table, capital, listed};
 
@@ -7,7 +7,7 @@ use super::words::percent;
 use crate::scenario::title::{counted, number};
 
 impl Remedy {
-    /// What would have kept the stack up, or that nothing of what was tried would.
+    /// Describes the remedy, or states that no tried change suffices.
     pub fn sentence(&self) -> String {
         let any = |kind: &str| self.tried.iter().any(|one| one.kind == kind);
         let straps = self.pretensions();
@@ -59,7 +59,7 @@ impl Remedy {
         format!("{}.{}{stopped}", capital(&sentence), self.confidence())
     }
 
-    /// How sure what suffices is, the choice among all changes counted.
+    /// States the confidence in sufficient changes, adjusted for the number of candidates.
     fn confidence(&self) -> String {
         let at_most = |one: &Tried| one.interval.map(|[_, high]| percent(high));
         let most = match (&self.height, &self.straps) {
@@ -83,13 +83,13 @@ impl Remedy {
         format!(" At most {most} would fall (95 % confidence{choice}).")
     }
 
-    /// Pretensions of the straps that were tried: "3, 4 and 5 kN".
+    /// Returns the pretensions of the tried straps: "3, 4 and 5 kN".
     fn pretensions(&self) -> String {
         let tried = self.tried.iter().filter_map(|one| one.pretension);
         format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
     }
 
-    /// Every change that was tried.
+    /// Tabulates every change that was tried.
     pub(crate) fn table(&self) -> Table {
         let caption = format!(
             "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all stand \
@@ -121,7 +121,7 @@ impl Remedy {
     }
 }
 
-/// A change: "three levels", "five levels strapped together at 4 kN".
+/// Names a change: "three levels", "five levels strapped together at 4 kN".
 pub(super) fn name(tried: &Tried) -> String {
     let levels = counted(tried.levels, "level");
     match tried.pretension {
@@ -135,7 +135,7 @@ pub(super) fn name(tried: &Tried) -> String {
     }
 }
 
-/// How many fall: "1 of 64 variants", "at least 4 of the first 8 variants".
+/// Describes the failures: "1 of 64 variants", "at least 4 of the first 8 variants".
 fn falls(tried: &Tried) -> String {
     let Tried { variants, failed, share, suffices, .. } = tried;
     match share {
@@ -145,7 +145,7 @@ fn falls(tried: &Tried) -> String {
     }
 }
 
-/// The share that stands: "63 of 64 variants".
+/// Describes the share that stands: "63 of 64 variants".
 fn share(tried: &Tried) -> String {
     let Tried { variants, failed, .. } = tried;
     if *failed == 0 {

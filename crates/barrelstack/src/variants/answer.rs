@@ -1,4 +1,4 @@
-//! The answer to a scenario: what its variants say, and the run that shows it best.
+//! The answer to a scenario: statistics of its variants, and its most representative run.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -15,62 +15,62 @@ use crate::run::{Progress, Run, RunFailure};
 use crate::scenario::{Scenario, View};
 use crate::summary::{Summary, Unfinished};
 
-/// How far the work is.
+/// Progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advance {
-    /// So many of so many variants are done.
+    /// Finished variants.
     Variants {
-        /// Done.
+        /// Number of finished variants.
         done: usize,
-        /// Of so many.
+        /// Number of all variants.
         of: usize,
     },
-    /// The runs that are shown are this far, in sum.
+    /// Progress of the shown runs, in aggregate.
     Run(Progress),
 }
 
-/// Which run is shown.
+/// Selection of the run to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// The one that is most like all others.
+    /// The medoid of all runs.
     Typical,
-    /// That of a number; 0 is the case as it is stated.
+    /// The variant of this number; 0 is the nominal case.
     Number(u32),
-    /// The same, and no variant is run beside it.
+    /// The variant of this number, without running any others.
     Alone(u32),
 }
 
-/// What became of a scenario.
+/// Results of a scenario.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The scenario.
     pub scenario: Scenario,
-    /// The plane that decides: of both the one in which more variants collapse.
+    /// The governing plane: of both the one in which more variants collapse.
     pub decides: Shown,
-    /// The other plane, where the scenario looks at both.
+    /// The other plane, where the scenario has both.
     pub other: Option<Shown>,
 }
 
 impl Answer {
-    /// Whether any of its work was stopped before its end.
+    /// `true` if any of its work was interrupted.
     pub fn is_stopped(&self) -> bool {
         let mut planes = std::iter::once(&self.decides).chain(&self.other);
         planes.any(|shown| shown.run.interrupted || shown.summary.unfinished.is_some())
     }
 
-    /// The answer in one sentence.
+    /// Returns the answer in one sentence.
     pub fn headline(&self) -> String {
         headline(&self.decides.run, &self.decides.summary)
     }
 }
 
 impl Answer {
-    /// The planes, the one that decides first.
+    /// Returns the planes, the governing one first.
     fn shown(&self) -> impl Iterator<Item = &Shown> {
         std::iter::once(&self.decides).chain(&self.other)
     }
 
-    /// The same with another variant shown, which is run before an observer.
+    /// Shows another variant instead, which is run with progress reported to an observer.
     ///
     /// # Errors
     /// When it cannot be run.
@@ -88,8 +88,8 @@ impl Answer {
     }
 }
 
-/// The variant that is most like all others of all answers in all planes, of those that the same component of the motion
-/// shakes in all of them; none where one of them has no variants.
+/// Returns the medoid of the variants over all answers and planes, among those that the same component of the motion
+/// shakes in all of them; `None` where one of them has no variants.
 pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundError> {
     let results = |shown: &'_ Shown| Some(shown.variants.as_ref()?.results.clone());
     let all: Option<Vec<Vec<CaseResult>>> =
@@ -99,7 +99,7 @@ pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundEr
     for answer in answers {
         found.push(planes(&answer.scenario)?);
     }
-    // The component by number and view, of the scenarios that look at the plane.
+    // The component by number and view, of the scenarios that include the plane.
     let components = |number: u32, view: Option<View>| {
         let planes = found.iter().flatten().filter(move |plane| plane.view() == view);
         planes.map(move |plane| plane.component(number).map(str::to_owned))
@@ -110,29 +110,29 @@ pub(crate) fn common_number(answers: &[&Answer]) -> Result<Option<u32>, GroundEr
             all.next().is_none_or(|first| all.all(|other| other == first))
         })
     };
-    // Where the components themselves are compared no number is the same for all.
+    // If the comparison is of components, no number has the same in all.
     let differ = !same(0);
     let allowed = |at: usize| differ || u32::try_from(at).is_ok_and(same);
     let all: Vec<&[CaseResult]> = all.iter().map(Vec::as_slice).collect();
     Ok(Some(typical(&all, &allowed)))
 }
 
-/// One plane of an answer.
+/// Results of one plane of an answer.
 #[derive(Clone, Debug)]
 pub struct Shown {
     /// The run that is shown.
     pub run: Run,
-    /// Its summary, with what all variants say; that of the plane which decides with the other's in it.
+    /// Its summary, with the statistics of all variants; that of the governing plane includes the other's.
     pub summary: Summary,
-    /// What became of all variants; none where there are none, or they were stopped.
+    /// Results of all variants; `None` without variants, or if they were interrupted.
     pub variants: Option<Variants>,
-    /// What became of the case as it is stated and of its variants, in the order of their numbers, where they were
-    /// stopped before all were done; those that were not are interrupted.
+    /// Results of the nominal case and of its variants, in the order of their numbers, if they were interrupted;
+    /// unfinished ones have the outcome `Interrupted`.
     pub stopped: Option<Vec<CaseResult>>,
 }
 
-/// Runs all variants of a scenario and then, with everything that can be seen, the run to be shown, in one
-/// plane or in both, before an observer, who may stop it: what was seen until then is returned.
+/// Runs all variants of a scenario and then the run to be shown with all recordings, in one plane or in both;
+/// the observer receives progress and may cancel, which returns the results so far.
 ///
 /// # Errors
 /// As [`Scenario::run`].
@@ -144,8 +144,8 @@ pub fn answer(
     answered(scenario, asked, None, observer)
 }
 
-/// As [`answer`] of the most typical run, where others have run the variants ([`run_some`](super::run_some)): what
-/// became of all of them in each plane, in the order of their numbers.
+/// Computes an [`answer`] that shows the medoid, from results of variants that were run elsewhere
+/// ([`run_some`](super::run_some)): those of all of them in each plane, in the order of their numbers.
 ///
 /// # Errors
 /// As [`answer`].
@@ -168,12 +168,12 @@ fn answered(
     let observer = Mutex::new(observer);
     let tell = |reached: Advance| match observer.lock() {
         Ok(mut observer) => observer(reached),
-        // Another thread has panicked; this work is of no use any more.
+        // Another thread has panicked: cancel.
         Err(_) => ControlFlow::Break(()),
     };
     let alone = matches!(asked, Asked::Alone(_));
     let varied = !alone && planes.iter().any(|plane| plane.count() > 0);
-    // What cannot be run as it is stated, or not be kept, is told before the work.
+    // Fail early: check the nominal case and its memory before running variants.
     for plane in planes.iter().filter(|_| varied) {
         check(&plane.scenario)?;
     }
@@ -223,8 +223,8 @@ fn answered(
     Ok(Answer { scenario: scenario.clone(), decides, other })
 }
 
-/// The number of the run that is shown; the case as it is stated where that does not stand, so that it is
-/// told why.
+/// Returns the number of the run to show; the nominal case if that does not stand, so that the reason is
+/// reported.
 fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
     match (asked, variants) {
@@ -236,7 +236,7 @@ fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
     }
 }
 
-/// Runs what is shown, each on a core of its own.
+/// Runs the selected variants, each on a core of its own.
 fn seen(
     tasks: &[(&Plane, u32)],
     tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
@@ -247,8 +247,8 @@ fn seen(
     run_together(&scenarios, 0.0, &mut |now| tell(Advance::Run(now)), &stated)
 }
 
-/// Runs scenarios on all cores and gives what `seen` makes of each, by its place; the observer hears how far they are
-/// in sum, those that have not begun with an end (s) that is expected of them.
+/// Runs scenarios on all cores and maps each result by `seen`, given its index. The observer receives the progress in
+/// aggregate; runs that have not begun count with an expected end (s).
 pub(crate) fn run_together<T: Send>(
     scenarios: &[Scenario],
     end_time: f64,
@@ -259,7 +259,7 @@ pub(crate) fn run_together<T: Send>(
     let tasks: Vec<(usize, &Scenario)> = scenarios.iter().enumerate().collect();
     let run = |(at, scenario): &(usize, &Scenario)| {
         let run = scenario.run_watched(&mut |now| {
-            // Where another run has panicked, this one is of no use any more.
+            // Another run has panicked: cancel.
             let Ok(mut reached) = reached.lock() else { return ControlFlow::Break(()) };
             let (all, observer) = &mut *reached;
             all[*at] = now;
@@ -271,7 +271,7 @@ pub(crate) fn run_together<T: Send>(
     pool::map(&tasks, run, &|_| ()).into_iter().collect()
 }
 
-/// How bad a plane is: the share that collapses, or whether the one run does, and the share that falls.
+/// Returns the severity of a plane: the share that collapses, or 1 for a single collapse, then the share that falls.
 fn weight(shown: &Shown) -> (f64, f64) {
     let outcome = &shown.summary.outcome;
     let barrels = outcome.barrels.max(1) as f64;

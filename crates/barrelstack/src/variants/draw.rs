@@ -1,4 +1,4 @@
-//! One variant of a stack: the scenario with everything that is not known of it drawn.
+//! Draws one variant of a stack: the scenario with all uncertain parameters drawn.
 
 use barrelstack_fragility::{normal_quantile, sobol};
 
@@ -7,9 +7,9 @@ use crate::scenario::{
     StackInterfaces, StackSpec,
 };
 
-/// The quantities that a whole stack shares, in the order of their axes; bodies come after them, two axes
-/// each, and in space their places along the barrels after all of these, so that the first row is drawn as in the
-/// plane across the barrels.
+/// Quantities that a whole stack shares, in the order of their axes; bodies follow, two axes each, and in space after
+/// all of these their places along the barrels, so that the first row has the same draws as in the plane across the
+/// barrels.
 #[derive(Clone, Copy)]
 enum Shared {
     FrictionGround,
@@ -24,10 +24,10 @@ enum Shared {
     Count,
 }
 
-/// Largest deviate of what is normal, in standard deviations.
+/// Truncation of normal deviates, in standard deviations.
 const FARTHEST: f64 = 3.0;
 
-/// A point of the unit cube whose axes are all that is drawn.
+/// A point of the unit cube of all drawn quantities.
 struct Point {
     number: u32,
     seed: u64,
@@ -42,13 +42,13 @@ impl Point {
         normal_quantile(self.uniform(axis)).clamp(-FARTHEST, FARTHEST)
     }
 
-    /// A factor with the median 1 whose logarithm has a standard deviation.
+    /// Returns a lognormal factor with median 1 and a dispersion.
     fn lognormal(&self, axis: Shared, dispersion: f64) -> f64 {
         libm::exp(dispersion * self.normal(axis as usize))
     }
 }
 
-/// A variant by its number, from 1; a free scene has none and stays as it is.
+/// Returns a variant by its number, from 1; a free scene has none and stays as it is.
 pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, imperfections, .. } = &mut changed.scene else { return changed };
@@ -65,7 +65,7 @@ pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     changed
 }
 
-/// Friction and contact constants: one draw for what is of the same materials.
+/// Draws friction and contact constants: one draw for all pairs of the same materials.
 fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) {
     let roughen = |axis: Shared, dispersion: f64, interfaces: &mut [&mut Interface]| {
         let factor = point.lognormal(axis, dispersion);
@@ -103,7 +103,7 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     }
 }
 
-/// Place and mass of every rack and barrel.
+/// Draws place and mass of every rack and barrel.
 fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     let rows = |body: StackBody| {
         let many = match (body, stack.space) {
@@ -145,7 +145,7 @@ fn hair(stack: &mut StackSpec, spread: &Imperfections, point: &Point) {
     stack.overrides.extend(drawn);
 }
 
-/// The mass (kg) that the scenario states for a body.
+/// Returns the mass (kg) that the scenario states for a body.
 fn mass(stack: &StackSpec, body: StackBody, level: u32, column: u32, row: Option<u32>) -> f64 {
     let here = |change: &&BodyOverride| change.row.is_none() || change.row == row;
     let changes = stack.changes_of(body, level, column).filter(here);

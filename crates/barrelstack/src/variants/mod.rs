@@ -1,9 +1,8 @@
-//! Every answer a distribution: a stack and its variants, run together.
+//! Variants of a stack, run together: every answer is a distribution.
 //!
-//! Collapse is chaotic, and friction is hardly known: one run is an anecdote.
-//! A stack is therefore run as it is stated (number 0) and in variants (from number 1) that differ in what no
-//! cellar can exclude and nobody knows ([`Imperfections`](crate::scenario::Imperfections)), in one plane or
-//! in both.
+//! Collapse is chaotic, and friction is poorly known, so that a single run is an anecdote.
+//! A stack is therefore run as stated (number 0) and in variants (from number 1) that differ in unavoidable
+//! imperfections and unknown parameters ([`Imperfections`](crate::scenario::Imperfections)), in one plane or in both.
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -44,16 +43,16 @@ pub use spread::{LEVEL, Range, Spread};
 /// A scenario in one plane, with all its variants.
 #[derive(Clone, Debug)]
 pub struct Plane {
-    /// The case as it is stated.
+    /// The nominal case.
     pub scenario: Scenario,
-    /// The motion by the other horizontal component, which shakes the second half of the variants of a stack
-    /// that is looked at in both planes.
+    /// The motion with the other horizontal component, for the second half of the variants of a stack in both
+    /// planes.
     exchanged: Option<MotionSpec>,
 }
 
-/// A scenario in each plane in which it looks at its stack: across the barrels first.
+/// Returns a scenario in each plane that its stack has: across the barrels first.
 ///
-/// Of both planes each has its own horizontal component of the record, across the barrels that of the
+/// With both planes each has its own horizontal component of the record, across the barrels that of the
 /// scenario; in the second half of the variants they are exchanged, as in a stack turned by a right angle.
 ///
 /// # Errors
@@ -82,22 +81,22 @@ pub fn planes(scenario: &Scenario) -> Result<Vec<Plane>, GroundError> {
 }
 
 impl Plane {
-    /// The plane; none for a free scene.
+    /// Returns the plane; `None` for a free scene.
     pub fn view(&self) -> Option<View> {
         self.scenario.stack().map(|stack| stack.view)
     }
 
-    /// How many variants there are beside the case as it is stated.
+    /// Returns the number of variants besides the nominal case.
     pub fn count(&self) -> u32 {
         self.scenario.imperfections().map_or(0, |imperfections| imperfections.variants)
     }
 
-    /// The numbers of the case as it is stated and of all variants.
+    /// Returns the numbers of the nominal case and of all variants.
     pub fn numbers(&self) -> Vec<u32> {
         (0..=self.count()).collect()
     }
 
-    /// A variant by its number; the case as it is stated for 0.
+    /// Returns a variant by its number; the nominal case for 0.
     pub fn variant(&self, number: u32) -> Scenario {
         if number == 0 {
             return self.scenario.clone();
@@ -107,13 +106,13 @@ impl Plane {
         variant
     }
 
-    /// The motion of a variant.
+    /// Returns the motion of a variant.
     fn motion(&self, number: u32) -> &MotionSpec {
         let exchanged = self.exchanged.as_ref().filter(|_| self.is_exchanged(number));
         exchanged.unwrap_or(&self.scenario.motion)
     }
 
-    /// The horizontal component of the record that shakes a variant; none for the first, and for what is no record.
+    /// Returns the stated horizontal component of the record of a variant; `None` for the default and for formulas.
     fn component(&self, number: u32) -> Option<&str> {
         match &self.motion(number).source {
             MotionSource::Record(record) => record.component.as_deref(),
@@ -121,12 +120,12 @@ impl Plane {
         }
     }
 
-    /// Whether a variant is of the second half, whose components are exchanged.
+    /// `true` if a variant is in the second half, whose components are exchanged.
     fn is_exchanged(&self, number: u32) -> bool {
         number > self.count().div_ceil(2)
     }
 
-    /// What the reader of a result should know of its motion.
+    /// Returns a caveat on its motion for the reader of a result.
     fn warning(&self, planes: usize) -> Option<String> {
         let recorded = matches!(self.scenario.motion.source, MotionSource::Record(_));
         (planes > 1 && recorded && self.exchanged.is_none()).then(|| {
@@ -136,7 +135,7 @@ impl Plane {
         })
     }
 
-    /// Variants by their numbers, ready to run.
+    /// Prepares variants to run, by their numbers.
     fn prepared(&self, numbers: &[u32]) -> Result<Vec<Prepared>, GroundError> {
         let own = Arc::new(self.scenario.ground()?);
         let exchanged = match &self.exchanged {
@@ -158,19 +157,19 @@ impl Plane {
     }
 }
 
-/// What became of the variants of a stack in one plane.
+/// Results of the variants of a stack in one plane.
 #[derive(Clone, Debug)]
 pub struct Variants {
-    /// The plane; none for a free scene.
+    /// The plane; `None` for a free scene.
     pub view: Option<View>,
-    /// What became of the case as it is stated, which comes first, and of its variants.
+    /// Results of the nominal case, which comes first, and of its variants.
     pub results: Vec<CaseResult>,
-    /// What they say together.
+    /// Their statistics.
     pub spread: Spread,
 }
 
-/// Runs the case as it is stated and all variants in all planes on all cores, before an observer, who hears
-/// how many of how many are done, from several threads, and may stop them; then there is nothing.
+/// Runs the nominal case and all variants in all planes on all cores; the observer receives the numbers of
+/// finished and of all cases, from several threads, and may cancel, which returns `None`.
 ///
 /// # Errors
 /// When a motion cannot be read.
@@ -178,14 +177,14 @@ pub fn run(
     planes: &[Plane],
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Option<Vec<Variants>>, GroundError> {
-    // Planes of one scenario have as many.
+    // All planes of one scenario have the same number.
     let numbers = planes.first().map(Plane::numbers).unwrap_or_default();
     let results = run_some(planes, &numbers, observer)?;
     Ok(results.map(|results| together(planes, &numbers, results)))
 }
 
-/// As [`run`], of the variants of these numbers alone, 0 for the case as it is stated: what became of them in
-/// each plane, in the order of their numbers, so that others may do the rest ([`together`]).
+/// Runs only variants of these numbers, as [`run`] does, 0 for the nominal case: returns their results in each
+/// plane, in the order of their numbers, for use with results computed elsewhere ([`together`]).
 ///
 /// # Errors
 /// As [`run`].
@@ -199,7 +198,7 @@ pub fn run_some(
     Ok(whole.then_some(results))
 }
 
-/// As [`run_some`], and keeps what was done until it was stopped: all else is interrupted.
+/// Runs variants as [`run_some`], but keeps finished results when cancelled: all others are interrupted.
 ///
 /// # Errors
 /// As [`run`].
@@ -224,8 +223,8 @@ pub(crate) fn run_as_far(
     Ok(results.chunks(numbers.len().max(1)).map(<[CaseResult]>::to_vec).collect())
 }
 
-/// What results in each plane say together: of the case as it is stated, which comes first, and of variants,
-/// all with their numbers.
+/// Combines the results in each plane: of the nominal case, which comes first, and of variants, all with their
+/// numbers.
 pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
     for (plane, results) in planes.iter().zip(results) {

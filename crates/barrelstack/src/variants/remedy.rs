@@ -1,8 +1,8 @@
-//! What would have kept a stack up that falls: the smallest change among fewer levels and straps.
+//! Remedy of a stack that falls: the smallest sufficient change among fewer levels and straps.
 //!
 //! A change suffices when enough of its variants stand in every plane, of as many as the verdict has; these are the
 //! same variants by their numbers.
-//! Which are tried, and what their counts say, is in `remedy/search.rs`; here they are run.
+//! The order and the statistics of the search are in `remedy/search.rs`; this module runs it.
 
 mod search;
 
@@ -23,8 +23,8 @@ use crate::scenario::{Scenario, Scene, Setting, Source};
 
 pub use self::search::ENOUGH;
 
-/// Pretensions (N) of straps that are tried; by hand a ratchet for webbing of 50 mm tightens to no more than
-/// 5 kN, an assumption: some 500 daN stand on the labels of long-handled ratchets (their STF, EN 12195-2).
+/// Pretensions (N) of straps that are tried; a manual ratchet for webbing of 50 mm reaches no more than 5 kN,
+/// an assumption: labels of long-handled ratchets state about 500 daN (their STF, EN 12195-2).
 pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 
 /// Variants that a thread takes at once: those of one bundle of lanes.
@@ -80,12 +80,11 @@ described! {
 /// Progress callback: called from several threads with the count of finished runs of the change at hand; may cancel.
 type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Looks for the smallest change of height, and of straps, that would have kept a stack up which falls in more
-/// variants than may fall.
+/// Searches the smallest change of height, and of straps, that brings the failure rate of a stack below the limit.
 ///
 /// `observer` is called from several threads with the count of finished runs of the change at hand, and may cancel.
 ///
-/// There is none to look for where the stack stands, has no variants, or its runs end before the motion.
+/// `None` where the stack stands, has no variants, or its runs end before the motion.
 ///
 /// # Errors
 /// When a motion cannot be read.
@@ -109,7 +108,7 @@ pub fn remedy(
     Ok(Some(found))
 }
 
-/// Whether few enough fall, by their share.
+/// `true` if the share that fails is low enough.
 fn enough(share: f64) -> bool {
     100.0 * share <= f64::from(100 - ENOUGH)
 }
@@ -155,7 +154,7 @@ fn look(
     Ok(())
 }
 
-/// A change, and the scenario that it makes.
+/// A change, with its scenario.
 struct Change {
     kind: &'static str,
     levels: u32,
@@ -164,7 +163,7 @@ struct Change {
     scenario: Scenario,
 }
 
-/// The same with fewer levels, and straps on no more than those.
+/// Returns the scenario with fewer levels, and straps on no more than those.
 fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -183,7 +182,7 @@ fn lower(scenario: &Scenario, levels: u32) -> Option<Change> {
     Some(Change { kind: "height", levels, pretension: None, changes, scenario })
 }
 
-/// The same with all levels strapped together; none where its own straps are as tight, or would tear.
+/// Returns the scenario with all levels strapped together; `None` if its own straps are as tight, or would tear.
 fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     let mut scenario = scenario.clone();
     let Scene::Stack { stack, .. } = &mut scenario.scene else { return None };
@@ -202,7 +201,7 @@ fn strapped(scenario: &Scenario, pretension: f64) -> Option<Change> {
     Some(Change { kind: "straps", levels, pretension: Some(pretension), changes, scenario })
 }
 
-/// The fields of a table that are not as they would be by themselves.
+/// Returns the fields of a table that differ from their defaults.
 fn given(scenario: &Scenario, table: &str) -> Vec<String> {
     let settings = scenario.settings();
     let own = settings.iter().filter(|one| one.source == Source::Given);
@@ -219,7 +218,7 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
 }
 
 impl Change {
-    /// What its counts say.
+    /// Summarizes its counts.
     fn told(&self, counts: &Counts, plan: &Plan) -> Tried {
         let Self { kind, levels, pretension, changes, .. } = self;
         let whole = counts.whole(plan);
@@ -237,18 +236,18 @@ impl Change {
     }
 }
 
-/// A change that is being tried.
+/// A change under trial.
 struct Trial {
-    /// The stack and its variants in every plane, ready to run; the case as it is stated comes first.
+    /// The stack and its variants in every plane, ready to run; the nominal case comes first.
     cases: Vec<Vec<Prepared>>,
-    /// Runs that are done.
+    /// Number of finished runs.
     done: AtomicUsize,
 }
 
 impl Trial {
     fn new(change: &Change) -> Result<Self, GroundError> {
         let mut scenario = change.scenario.clone();
-        // What follows a collapse says nothing about whether there is one.
+        // The course after a collapse does not matter here.
         scenario.run.stop_after_collapse = Some(0.0);
         let planes = planes(&scenario)?;
         let cases = planes
@@ -258,7 +257,7 @@ impl Trial {
         Ok(Self { cases, done: AtomicUsize::new(0) })
     }
 
-    /// Runs a block of variants, counted from zero, in every plane; how many fail in each, once all are done.
+    /// Runs a block of variants, counted from zero, in every plane; returns the number of failures in each.
     fn run(&self, block: Range<u32>, observer: Observer<'_>) -> Failed {
         let stopped = AtomicBool::new(false);
         let asked = || {
@@ -285,7 +284,7 @@ impl Trial {
                 }
                 self.done.fetch_add(1, Ordering::Relaxed);
             };
-            // Where it is stopped nothing of the block counts.
+            // If it is cancelled, no variant of the block counts.
             let _ = simulate(cases, &mut Audience { tell: &mut tell, stop: &asked });
         };
         pool::map(&batches, work, &|_| ());

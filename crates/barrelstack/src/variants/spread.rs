@@ -1,4 +1,4 @@
-//! What all variants of a stack say together, in numbers.
+//! Statistics of all variants of a stack.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::outcome::Outcome;
 use crate::scenario::Imperfections;
 use crate::scenario::field::Named as _;
 
-/// Level of all intervals.
+/// Confidence level of all intervals.
 pub const LEVEL: f64 = 0.95;
 
 described! {
@@ -80,7 +80,7 @@ described! {
 }
 
 impl Range {
-    /// Of values; none where there are none.
+    /// Summarizes values; `None` without any.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
@@ -91,7 +91,7 @@ impl Range {
 }
 
 impl Spread {
-    /// Of the results of the case as it is stated and of its variants, in this order.
+    /// Summarizes the results of the nominal case and of its variants, in this order.
     pub fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
@@ -147,34 +147,34 @@ impl Spread {
         }
     }
 
-    /// The variants that were run, whatever became of them.
+    /// Returns the number of variants that were run, with or without a verdict.
     pub fn run(&self) -> u32 {
         self.variants + self.broken
     }
 
-    /// The share that collapses if every variant without a verdict does; none where none was run.
+    /// Returns the share that collapses if every variant without a verdict does; `None` if none was run.
     pub fn largest_share(&self) -> Option<f64> {
         let run = self.run();
         (run > 0).then(|| f64::from(self.collapsed + self.broken) / f64::from(run))
     }
 }
 
-/// Whether a case has a verdict.
+/// `true` if a case has a verdict.
 pub(super) fn judged(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
 }
 
-/// Whether a case has a verdict and was shaken, so that it can be shown.
+/// `true` if a case has a verdict and was shaken, so that it can be shown.
 pub(super) fn shown(result: &CaseResult) -> bool {
     judged(result) && !result.fell_at_rest()
 }
 
-/// Whether it collapsed.
+/// `true` if it collapsed.
 pub(super) fn collapsed(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Collapse { .. }))
 }
 
-/// How many barrels fell.
+/// Returns the number of barrels that fell.
 pub(super) fn fallen(result: &CaseResult) -> usize {
     result.falls.iter().filter(|(_, at)| at.is_some()).count()
 }

@@ -1,4 +1,4 @@
-//! Which of many runs to show: the one that is most like all others, the gentlest, the worst.
+//! Selection of runs to show: the medoid, the gentlest and the worst.
 
 use std::cmp::Ordering;
 
@@ -15,7 +15,7 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Of results, the case as it is stated first; that one where none was shaken and has a verdict.
+    /// Selects among results, the nominal case first; returns that one if no case was shaken with a verdict.
     pub(super) fn of(results: &[CaseResult]) -> Self {
         let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
         let number = |at: Option<&usize>| at.and_then(|at| u32::try_from(*at).ok()).unwrap_or(0);
@@ -29,7 +29,7 @@ impl Order {
     }
 }
 
-/// More barrels fall, sooner; of those that stand, the top drifts further.
+/// Orders by collapse, fallen barrels and earlier time; standing stacks by drift.
 fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
     let sooner = |result: &CaseResult| -collapse(result).map_or(f64::INFINITY, |(_, time)| time);
     let drift = |result: &CaseResult| result.demands.top_drift_ratio.unwrap_or(0.0);
@@ -40,8 +40,8 @@ fn severity(a: &CaseResult, b: &CaseResult) -> Ordering {
         .then(drift(a).total_cmp(&drift(b)))
 }
 
-/// The number of the run that is least far from all others (the medoid), summed over planes, since a variant
-/// is one stack in all of them; of equals the first, and 0 where none of those that are allowed has a verdict in all.
+/// Returns the number of the run with the smallest sum of distances to all others (the medoid) over all planes, since a
+/// variant is one stack in all of them; of equals the first, and 0 if no allowed one has a verdict in all planes.
 pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool) -> u32 {
     let sums: Vec<Vec<Option<f64>>> = planes.iter().map(|results| sums(results)).collect();
     let count = sums.iter().map(Vec::len).min().unwrap_or(0);
@@ -51,7 +51,7 @@ pub(super) fn typical(planes: &[&[CaseResult]], allowed: &dyn Fn(usize) -> bool)
     least.and_then(|(at, _)| u32::try_from(at).ok()).unwrap_or(0)
 }
 
-/// The sum of the distances of each run to all others; none where it has no verdict.
+/// Returns the sum of the distances of each run to all others; `None` without a verdict.
 fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     let shown: Vec<usize> = (0..results.len()).filter(|at| shown(&results[*at])).collect();
     let times = extent(shown.iter().filter_map(|at| Some(collapse(&results[*at])?.1)));
@@ -65,8 +65,8 @@ fn sums(results: &[CaseResult]) -> Vec<Option<f64>> {
     results.iter().map(sum).collect()
 }
 
-/// How unlike two runs are: 4 for another outcome, 1 for another mode, 1 for the whole extent of times of
-/// collapse or of drifts, 1 for each barrel that falls in one only over all barrels.
+/// Returns the distance of two runs: 4 for another outcome, 1 for another mode, 1 for the whole extent of times of
+/// collapse or of drifts, 1 for each barrel that falls in only one of them over all barrels.
 fn distance(a: &CaseResult, b: &CaseResult, times: f64, drifts: f64) -> f64 {
     let apart = |a: f64, b: f64, all: f64| if all > 0.0 { (a - b).abs() / all } else { 0.0 };
     match (collapse(a), collapse(b)) {
@@ -95,7 +95,7 @@ fn drift(result: &CaseResult) -> Option<f64> {
     result.demands.top_drift_ratio
 }
 
-/// From the least to the greatest of values; zero where there are none.
+/// Returns the difference of the largest and the smallest value; zero without values.
 fn extent(values: impl Iterator<Item = f64>) -> f64 {
     let ends = values.fold(None, |ends: Option<(f64, f64)>, value| {
         Some(ends.map_or((value, value), |(low, high)| (low.min(value), high.max(value))))
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(Order::of(&results), Order { typical: 3, gentlest: 6, worst: 2 });
         let standing = [stands(0.1), stands(0.2), stands(0.35), CaseResult::failed("no".into())];
         assert_eq!(Order::of(&standing), Order { typical: 1, gentlest: 0, worst: 2 });
-        // Together with another plane that has no verdict on the third.
+        // Combined with another plane, in which the third has no verdict.
         let mut other = vec![stands(0.1); 7];
         other[3] = CaseResult::failed("no".into());
         assert_eq!(typical(&[&results, &other], &|_| true), 2);

@@ -1,4 +1,4 @@
-//! What variants say, in sentences.
+//! Sentences on the results of variants.
 
 use barrelstack_report::{Tone, capital};
 
@@ -6,16 +6,16 @@ use super::{Range, Spread};
 use crate::scenario::{Imperfection, Imperfections, View};
 use crate::summary::Summary;
 
-/// Share of variants that collapse from which a stack is said to fall.
+/// Share of collapsing variants from which a stack is said to fall.
 const FALLS: f64 = 0.9;
 
 /// Share up to which it is said to stand.
 const STANDS: f64 = 0.05;
 
-/// What the reader of a verdict that is neither is told.
+/// Shown when the verdict is neither that it stands nor that it falls.
 const UNSAFE: &str = "treat it as not safe";
 
-/// The answer in one sentence: of one plane, or of both, the one across the barrels first.
+/// Returns the answer in one sentence: of one plane, or of both, the one across the barrels first.
 pub fn headline(planes: &[(View, &Spread)]) -> String {
     match planes {
         [] => String::new(),
@@ -33,7 +33,7 @@ pub fn headline(planes: &[(View, &Spread)]) -> String {
     }
 }
 
-/// What staves bear beyond what they are stated to bear, after the verdict; nothing where they do not.
+/// Describes stave overload, after the verdict; empty if there is none.
 fn overloaded(begin: &str, spread: &Spread) -> String {
     match (spread.staves_overloaded, spread.stave_utilization) {
         (0, _) | (_, None) => String::new(),
@@ -46,7 +46,7 @@ fn overloaded(begin: &str, spread: &Spread) -> String {
     }
 }
 
-/// The kind of the verdict: what is not safe counts as falling.
+/// Returns the kind of the verdict: anything but safe counts as falling.
 pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     match planes.iter().filter_map(|(_, spread)| judged_share(spread)).reduce(f64::max) {
         None => Tone::Invalid,
@@ -55,7 +55,7 @@ pub fn tone(planes: &[(View, &Spread)]) -> Tone {
     }
 }
 
-/// A number of variants of which none is left out.
+/// Returns words for all of a number of variants.
 fn all_of(variants: u32) -> String {
     match variants {
         1 => "the one variant".to_owned(),
@@ -64,12 +64,12 @@ fn all_of(variants: u32) -> String {
     }
 }
 
-/// The share by which a stack is judged, variants without a verdict counted as falling; none where none has a verdict.
+/// Returns the share by which a stack is judged, with variants without a verdict as collapsed; `None` if none has one.
 fn judged_share(spread: &Spread) -> Option<f64> {
     spread.share.and(spread.largest_share())
 }
 
-/// The verdict of one plane.
+/// Returns the verdict of one plane.
 fn alone(spread: &Spread) -> String {
     let Spread { variants, collapsed, interval, .. } = spread;
     let Some(share) = judged_share(spread) else {
@@ -77,7 +77,7 @@ fn alone(spread: &Spread) -> String {
     };
     let course = course(spread);
     let standing = variants - collapsed;
-    // What stands in the middle of a motion has not stood it.
+    // A stack that stands when its motion is cut has not passed it.
     if let Some(until) = spread.standing_until.filter(|_| share <= STANDS) {
         let share = if standing == *variants {
             all_of(*variants)
@@ -119,11 +119,11 @@ fn alone(spread: &Spread) -> String {
     }
 }
 
-/// The verdict of both planes, which is that of the worse.
+/// Returns the verdict of both planes, which is that of the worse.
 fn together(planes: [(View, &Spread); 2]) -> String {
     let mut parts = Vec::new();
     for (at, (view, spread)) in planes.into_iter().enumerate() {
-        // The barrels were named the first time.
+        // The first clause names the barrels.
         let place = if at == 0 {
             capital(view.words())
         } else {
@@ -149,7 +149,7 @@ fn together(planes: [(View, &Spread); 2]) -> String {
     format!("{}: {verdict}.", parts.join("; "))
 }
 
-/// The sentences that back the headline of a run and its variants.
+/// Returns the sentences that support the headline of a run and its variants.
 pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
     let planes = summary.spreads();
     if planes.len() < 2 {
@@ -162,7 +162,7 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
     falls.map(told).collect()
 }
 
-/// Which run is shown, and how variants differ: of the plane which decides.
+/// Describes the shown run, and the differences of variants, in the governing plane.
 pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> Vec<String> {
     let (Some(spread), Some(imperfections)) = (&summary.ensemble, imperfections) else {
         return Vec::new();
@@ -205,12 +205,12 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
     sentences
 }
 
-/// Whether a stack is said to stand.
+/// `true` if a stack is said to stand.
 pub(crate) fn stands(spread: &Spread) -> bool {
     judged_share(spread).is_some_and(|share| share <= STANDS)
 }
 
-/// What a stack does: "falls in 97 % of variants".
+/// Describes the result of a stack: "falls in 97 % of variants".
 pub fn fate(spread: &Spread) -> String {
     let variants = spread.variants;
     match (spread.share, spread.collapsed) {
@@ -222,7 +222,7 @@ pub fn fate(spread: &Spread) -> String {
     }
 }
 
-/// When the first barrel falls, and how many do: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
+/// Describes time and extent of the fall: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
 pub fn course(spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "before it is shaken".to_owned();
@@ -240,9 +240,9 @@ pub fn course(spread: &Spread) -> String {
     }
 }
 
-/// How many barrels fall: "4 to 8 of 10 barrels".
+/// Describes the number of fallen barrels: "4 to 8 of 10 barrels".
 fn barrels(fallen: Range, all: usize) -> String {
-    // As times are, and as the table says: of 5 to 95 % of the variants.
+    // As for times and in the table: 5 to 95 % of the variants.
     let [from, to] = [fallen.p05, fallen.p95].map(|count| format!("{count:.0}"));
     if from != to {
         format!("{from} to {to} of {all} barrels")
@@ -253,8 +253,8 @@ fn barrels(fallen: Range, all: usize) -> String {
     }
 }
 
-/// What comes before the verdict: variants that fall under their own weight, and those without a verdict; empty where
-/// there are none.
+/// Describes variants that fall under their own weight, and those without a verdict, to precede the verdict; empty
+/// if there are none.
 fn before(view: Option<View>, spread: &Spread) -> String {
     let place = view.map_or_else(String::new, |view| format!("{}, ", view.words()));
     let mut said = String::new();
@@ -283,12 +283,12 @@ fn before(view: Option<View>, spread: &Spread) -> String {
     said
 }
 
-/// A number to a tenth, in the shortest form.
+/// Rounds a number to a tenth.
 fn tenths(value: f64) -> f64 {
     (10.0 * value).round() / 10.0
 }
 
-/// A share in percent, with as many digits as mean something: whole ones, short of 0 and 100.
+/// Formats a share in whole percent, except that only exact values give 0 and 100.
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent < 1.0 && percent > 0.0 {
@@ -403,14 +403,14 @@ mod tests {
              they could not be built or their numbers broke down; the verdict counts them as falling. This stack falls \
              in 2 of 61 variants, before it is shaken: treat it as not safe."
         );
-        // As many of both planes.
+        // The same counts in both planes.
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
         assert!(
             both.starts_with("Along the barrels, 2 of 65 variants fall under their own weight"),
             "{both}"
         );
         assert!(both.ends_with("along them it stands in 97 %: treat it as not safe."), "{both}");
-        // What alone has no verdict is not taken as standing.
+        // Variants without a verdict do not count as standing.
         (one.cannot_stand, one.collapsed, one.share) = (0, 0, Some(0.0));
         let said = headline(&[(View::Transverse, &one)]);
         assert!(

@@ -1,4 +1,4 @@
-//! Of what an outcome is robust.
+//! Robustness of an outcome.
 
 use barrelstack_report::described;
 
@@ -23,7 +23,7 @@ described! {
 }
 
 impl Robust {
-    /// Whether kind, mode and first body are the same everywhere.
+    /// `true` if kind, mode and first body are the same everywhere.
     pub fn outcome(&self) -> bool {
         self.kind && self.mode && self.first
     }

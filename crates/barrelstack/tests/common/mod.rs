@@ -1,16 +1,16 @@
-//! What several suites share.
+//! Helpers shared by several suites.
 #![allow(dead_code, reason = "every suite uses its own share")]
 
 use std::io::Write as _;
 
-/// Says that a test has nothing to test here, past the runner, which keeps what a passing test prints, to
-/// where skipped tests are counted.
+/// Reports that a test had to be skipped; writes to standard output directly, since the runner captures the output of
+/// passing tests.
 pub(crate) fn skipped(why: &str) {
     let notice = format!("skipped: {why}\n");
     std::io::stdout().write_all(notice.as_bytes()).expect("a standard output");
 }
 
-/// Numbers between 0 and 1, the same on every machine (`SplitMix64`).
+/// Generates numbers between 0 and 1, the same on every machine (`SplitMix64`).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

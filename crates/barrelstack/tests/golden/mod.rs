@@ -1,4 +1,4 @@
-//! What a few cases come to, to the last bit, and how much work they are.
+//! Reference results of a few cases, bit for bit, and their work.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use barrelstack::run::Work;
 use barrelstack::{Run, Scenario};
 use barrelstack_dynamics::lanes::Width;
 
-/// What is typed to keep the bits as they are now.
+/// Command that stores the present bits as reference.
 pub(crate) const RENEW: &str = "cargo xtask golden bits";
 
-/// Built-in scenarios with what is changed in them.
+/// Built-in scenarios with changes.
 const RUNS: [(&str, &str, &[&str]); 12] = [
     ("paper-8-barrels", "candia-8-barrels", &[]),
     ("paper-8-barrels-longitudinal", "candia-8-barrels-longitudinal", &["run.duration='5 s'"]),
@@ -48,10 +48,10 @@ const RUNS: [(&str, &str, &[&str]); 12] = [
     ),
 ];
 
-/// How many cases run in lanes: more than two bundles of the widest.
+/// Number of cases in lanes: more than two bundles of the widest.
 const IN_LANES: u32 = 20;
 
-/// The bits of a case and the work that it was.
+/// The bits of a case and its work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Line {
     pub(crate) name: String,
@@ -67,7 +67,7 @@ impl fmt::Display for Line {
     }
 }
 
-/// All lines, and the version they were kept under.
+/// All lines, and the version of their results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Table {
     pub(crate) version: u32,
@@ -84,7 +84,7 @@ impl fmt::Display for Table {
 }
 
 impl Table {
-    /// What is kept; an error in words where a line cannot be read.
+    /// Reads stored references; the error describes a line that cannot be read.
     pub(crate) fn parse(text: &str) -> Result<Self, String> {
         let mut rows = text.lines().enumerate().filter(|(_, row)| !row.starts_with('#'));
         let version = rows.next().and_then(|(_, row)| row.strip_prefix("version ")?.parse().ok());
@@ -104,7 +104,7 @@ impl Table {
         Ok(Self { version, lines })
     }
 
-    /// What the cases come to now, those in lanes of every width that this machine has.
+    /// Computes the present results, those in lanes at every width of this machine.
     pub(crate) fn now() -> Self {
         let mut lines: Vec<Line> =
             RUNS.iter().map(|(name, scenario, changes)| of_run(name, scenario, changes)).collect();
@@ -119,7 +119,7 @@ impl Table {
         Self { version: VERSION, lines }
     }
 
-    /// What a change of bits asks for; none where everything is as it was kept.
+    /// Compares present results with the stored ones.
     pub(crate) fn verdict(&self, now: &Self) -> Verdict {
         let kept = |line: &&Line| self.lines.iter().find(|kept| kept.name == line.name).cloned();
         let mut changed = Vec::new();
@@ -149,9 +149,9 @@ impl Table {
     }
 }
 
-/// What the kept bits say of those of now.
+/// Result of a comparison with stored references.
 pub(crate) enum Verdict {
-    /// The same.
+    /// Equal.
     Kept,
     /// Other bits under the same version.
     Refused(String),
@@ -159,13 +159,13 @@ pub(crate) enum Verdict {
     Stale(String),
 }
 
-/// Where the bits are kept: results are a function of the platform too.
+/// Returns the file of the references; results depend on the platform, too.
 pub(crate) fn file() -> PathBuf {
     let name = format!("{}.txt", std::env::consts::ARCH);
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
 }
 
-/// A stack of two to four levels that one in two brings down, with straps that may tear in one of five.
+/// A stack of two to four levels, half of which collapse, with straps that may tear in one of five.
 fn small_case(at: u32) -> Prepared {
     let settings = [
         format!("stack.levels={}", 2 + at % 3),
@@ -222,7 +222,7 @@ impl Hash {
         self.bytes(&value.to_bits().to_le_bytes());
     }
 
-    /// A number that may be missing; none is told from every number.
+    /// Adds an optional number; `None` differs from every number.
     fn known(&mut self, value: Option<f64>) {
         self.bytes(&[u8::from(value.is_some())]);
         self.number(value.unwrap_or_default());
@@ -245,7 +245,7 @@ impl Hash {
         }
     }
 
-    /// The way of every body, the energies at the end, which hold the last velocities, and the outcome.
+    /// Adds the trajectory of every body, the final energies, which include the last velocities, and the outcome.
     fn run(&mut self, run: &Run) {
         self.outcome(&run.outcome);
         self.number(run.end_time);
@@ -261,7 +261,7 @@ impl Hash {
         }
     }
 
-    /// What is kept of a case in a lane.
+    /// Adds the results of a case in a lane.
     fn case(&mut self, case: &CaseResult) {
         self.outcome(case.outcome.as_ref().expect("a case runs"));
         self.known(case.first_fall);

@@ -1,12 +1,12 @@
-//! In which order changes are tried, and what their counts say: apart from the runs, so that whole searches can be
+//! Sequential search for a remedy: its order and its statistics, apart from the runs, so that whole searches can be
 //! simulated.
 //!
-//! Variants are counted in whole blocks, in the order of their numbers, whatever finishes first: runs that collapse end
-//! early, so a count of finished runs would hold too many of them.
-//! A change is rejected after the first block by which more have failed than may; its share is then unknown, since the
-//! search went on until they had.
-//! Of a change that ran all its variants the share is stated, with an interval that holds for all changes and planes of
-//! the search together (Bonferroni), so that choosing among them does not spoil it.
+//! Variants are counted in whole blocks, in the order of their numbers, whichever finish first: runs that collapse end
+//! early, so that a count of finished runs would be biased towards them.
+//! A change is rejected after the first block by which the admissible number of failures is exceeded; its share is then
+//! unknown, since the search stopped because of them.
+//! The share of a change that ran all its variants is stated with an interval that holds for all changes and planes of
+//! the search simultaneously (Bonferroni), so that selection among them does not invalidate it.
 
 use std::ops::{ControlFlow, Range};
 
@@ -23,43 +23,43 @@ const FIRST: u32 = 8;
 /// Variants of every later block.
 const BLOCK: u32 = 16;
 
-/// What a search may try, and in how many variants.
+/// Candidates of a search and the number of their variants.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
-    /// Changes of height, the highest first; of these the first that suffices ends the search.
+    /// Number of changes of height, the highest first; the first that suffices ends their search.
     pub(super) heights: usize,
-    /// Straps from loose to tight, numbered after the heights.
+    /// Number of pretensions, from loose to tight, numbered after the heights.
     pub(super) straps: usize,
-    /// Variants of every change.
+    /// Number of variants of every change.
     pub(super) variants: u32,
-    /// Planes in each of which enough have to stand.
+    /// Number of planes, in each of which enough variants have to stand.
     pub(super) planes: usize,
 }
 
 impl Plan {
-    /// Changes that may be tried.
+    /// Returns the number of changes that may be tried.
     pub(super) fn changes(&self) -> usize {
         self.heights + self.straps
     }
 
-    /// Level of each interval with which all of them hold together at [`LEVEL`].
+    /// Returns the level of each interval at which all hold simultaneously at [`LEVEL`].
     pub(super) fn level(&self) -> f64 {
         1.0 - (1.0 - LEVEL) / (self.changes() * self.planes).max(1) as f64
     }
 
-    /// The variants of the next block, counted from zero.
+    /// Returns the variants of the next block, counted from zero.
     fn block(&self, ran: u32) -> Range<u32> {
         let size = if ran == 0 { FIRST } else { BLOCK };
         ran..ran.saturating_add(size).min(self.variants)
     }
 }
 
-/// What is known of a change.
+/// Counts of a change.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Counts {
-    /// Variants that were counted: the first by their numbers.
+    /// Number of counted variants: the first by their numbers.
     pub(super) ran: u32,
-    /// Those of them that failed, in the plane in which most did.
+    /// Number of them that failed, in the plane with more failures.
     pub(super) failed: u32,
     by_plane: Vec<u32>,
 }
@@ -77,12 +77,12 @@ impl Counts {
         self.failed = self.by_plane.iter().copied().max().unwrap_or(0);
     }
 
-    /// Whether so many failed that no other variants can make up for them.
+    /// `true` if the failures so far exceed the admissible number for all variants.
     fn rejected(&self, plan: &Plan) -> bool {
         !may_fail(self.failed, plan.variants)
     }
 
-    /// Whether all variants were counted, so that their share is one of a sample that nobody chose.
+    /// `true` if all variants were counted, so that their share is that of an unselected sample.
     pub(super) fn whole(&self, plan: &Plan) -> bool {
         plan.variants > 0 && self.ran == plan.variants
     }
@@ -91,22 +91,23 @@ impl Counts {
         self.whole(plan) && !self.rejected(plan)
     }
 
-    /// The interval of the share that fails in the worse plane; none where the search stopped before all variants.
+    /// Returns the interval of the share that fails in the worse plane; `None` if the search stopped before all
+    /// variants.
     pub(super) fn interval(&self, plan: &Plan) -> Option<Interval> {
         self.whole(plan).then(|| clopper_pearson(self.failed, self.ran, plan.level()))
     }
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// What is known of every change of the plan; none of those that were not tried.
+    /// Counts of every change of the plan; `None` for changes that were not tried.
     pub(super) counts: Vec<Option<Counts>>,
-    /// Whether it went to its end.
+    /// `true` if it was not cancelled.
     pub(super) complete: bool,
 }
 
-/// How many variants of a block fail in each plane, or that the search is broken off.
+/// Number of failures of a block in each plane, or `Break` when cancelled.
 pub(super) type Failed = ControlFlow<(), Vec<u32>>;
 
 /// Runs a block of variants, counted from zero, of a change.
@@ -126,7 +127,7 @@ struct Search<'a, 'b, E> {
 }
 
 impl<E> Search<'_, '_, E> {
-    /// Runs blocks of a change until so many variants are counted or it is rejected.
+    /// Runs blocks of a change until a number of variants is counted or it is rejected.
     fn try_change(&mut self, change: usize, until: u32) -> Result<ControlFlow<(), Counts>, E> {
         let mut counts =
             self.counts[change].take().unwrap_or_else(|| Counts::new(self.plan.planes));
@@ -134,7 +135,7 @@ impl<E> Search<'_, '_, E> {
             let block = self.plan.block(counts.ran);
             match (self.run)(change, block.clone())? {
                 ControlFlow::Continue(failed) => counts.add(&block, &failed),
-                // What was begun of the block does not count.
+                // A cancelled block does not count.
                 ControlFlow::Break(()) => {
                     self.counts[change] = Some(counts);
                     return Ok(ControlFlow::Break(()));
@@ -161,7 +162,7 @@ impl<E> Search<'_, '_, E> {
         self.first_of(0..self.plan.heights)
     }
 
-    /// Tries straps from the loosest on whose first block does not reject them, which is found by halving.
+    /// Tries straps from the loosest whose first block does not reject them, found by bisection.
     fn straps(&mut self) -> Result<ControlFlow<()>, E> {
         let (mut from, mut to) = (self.plan.heights, self.plan.changes());
         while from < to {
@@ -175,7 +176,7 @@ impl<E> Search<'_, '_, E> {
     }
 }
 
-/// Whether so many of a number may fail.
+/// `true` if a number of failures is admissible among a number of variants.
 fn may_fail(failed: u32, of: u32) -> bool {
     u64::from(failed) * 100 <= u64::from(of) * u64::from(100 - ENOUGH)
 }
@@ -188,18 +189,18 @@ mod tests {
 
     use super::*;
 
-    /// Searches in which a variant of a change fails with a chance that is known.
+    /// Counts over searches in which variants of a change fail with a known probability.
     struct Simulated {
         stated: u32,
         covered: u32,
         searches_covered: u32,
         chosen: u32,
         chosen_covered: u32,
-        /// Changes that are said to suffice though of all such stacks more fall than may.
+        /// Changes reported as sufficient though their true failure probability exceeds the limit.
         too_many_fall: u32,
     }
 
-    /// Draws the chance with which a change fails in a plane.
+    /// Draws the failure probability of a change in a plane.
     type Chance = dyn Fn(&mut Random) -> f64;
 
     fn simulate(searches: u32, chance: &Chance) -> Simulated {
@@ -216,7 +217,7 @@ mod tests {
             let mut random = Random::new(u64::from(seed) + 1);
             let mut chances: Vec<[f64; 2]> =
                 (0..plan.changes()).map(|_| [chance(&mut random), chance(&mut random)]).collect();
-            // Lower stacks and tighter straps fall less.
+            // Lower stacks and tighter straps fail less.
             for part in [0..plan.heights, plan.heights..plan.changes()] {
                 chances[part].sort_by(|a, b| b[0].max(b[1]).total_cmp(&a[0].max(a[1])));
             }
