@@ -1,13 +1,13 @@
-//! Problems that are files: a scenario of bodies, and after it what is asked and the answer.
+//! Problems in files: a scenario of bodies, followed by the requested quantity and the exact answer.
 //!
-//! A case is a free-scene scenario followed by a table `[expect]`; no code belongs to it.
+//! A case is a free-scene scenario followed by a table `[expect]`; it needs no code.
 //!
 //! ```toml
 //! [expect]
 //! source = "Housner 1963"
 //! body = "block"
 //! quantity = "overturning-border"    # see Quantity
-//! vary = "motion.pulse.amplitude"    # what a border is looked for in
+//! vary = "motion.pulse.amplitude"    # the parameter of a border
 //! unit = "g"                         # its unit
 //! between = [0.5, 0.6]               # stands at the first, not at the second
 //! exact = 0.55
@@ -24,17 +24,17 @@ use crate::problem::border;
 use crate::swing::crossing;
 use crate::{Effort, Failure, Outcome, Problem, Tolerance};
 
-/// What a case may ask for.
+/// A quantity that a case may request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
-    /// When (s) the body is first upright.
+    /// Time (s) at which the body is first upright.
     FirstUpright,
-    /// How far (m) along `x` the body has moved on the ground at the end.
+    /// Displacement (m) along `x` of the body relative to the ground at the end.
     Way,
-    /// The value of `vary` from which the body turns over.
+    /// The value of `vary` above which the body overturns.
     OverturningBorder,
-    /// The value of `vary` from which the body lifts a corner.
+    /// The value of `vary` above which the body lifts a corner.
     UpliftBorder,
 }
 
@@ -48,7 +48,7 @@ impl Quantity {
         }
     }
 
-    /// Rotation (rad) beyond the border.
+    /// Rotation (rad) that marks the border as exceeded.
     fn beyond(self) -> Option<f64> {
         match self {
             Self::FirstUpright | Self::Way => None,
@@ -58,7 +58,7 @@ impl Quantity {
     }
 }
 
-/// The table at the end of a case.
+/// The table `[expect]` of a case.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Expect {
@@ -72,7 +72,7 @@ struct Expect {
     tolerance: f64,
 }
 
-/// Why a file is not a case.
+/// The reason why a file is not a case.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {problem}")]
 pub struct CaseError {
@@ -80,7 +80,7 @@ pub struct CaseError {
     problem: String,
 }
 
-/// The cases shipped with the crate.
+/// Returns the cases bundled with the crate.
 pub(crate) fn shipped() -> Vec<Problem> {
     let files = [
         ("housner-period", include_str!("../cases/housner-period.toml")),
@@ -99,7 +99,7 @@ pub(crate) fn shipped() -> Vec<Problem> {
         ("sliding-rectangular", include_str!("../cases/sliding-rectangular.toml")),
         ("sliding-half-sine", include_str!("../cases/sliding-half-sine.toml")),
     ];
-    // A case that cannot be read becomes a problem that fails, so that none is passed over.
+    // A case that cannot be read becomes a problem that fails, so that none is skipped.
     files
         .into_iter()
         .map(|(name, text)| read(name, text).unwrap_or_else(|error| broken(name, &error)))
@@ -121,10 +121,10 @@ fn broken(name: &str, error: &CaseError) -> Problem {
     }
 }
 
-/// Reads a case.
+/// Parses a case.
 ///
 /// # Errors
-/// When the scenario or the table of the answer is not one.
+/// If the scenario or the table `[expect]` is invalid.
 pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
     let file = format!("{name}.toml");
     let refuse =

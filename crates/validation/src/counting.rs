@@ -1,6 +1,6 @@
-//! A number that counts what is done with it, so that the work of a step can be held against what it was.
+//! A number type that counts operations, to compare the work of a step with earlier versions.
 //!
-//! Counts do not depend on the machine, its load, or the compiler: they are the instruction counts of the
+//! Counts are independent of the machine, its load and the compiler: they are the instruction counts of the
 //! physics.
 
 use std::cell::Cell;
@@ -14,21 +14,21 @@ thread_local! {
     static DONE: Cell<Operations> = const { Cell::new(Operations::NONE) };
 }
 
-/// How many operations were done.
+/// Number of operations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operations {
     /// Additions, subtractions and multiplications.
     pub plain: u64,
     /// Divisions and square roots.
     pub divisions: u64,
-    /// Comparisons, choices between two numbers, and changes of sign.
+    /// Comparisons, selections and changes of sign.
     pub choices: u64,
 }
 
 impl Operations {
     const NONE: Self = Self { plain: 0, divisions: 0, choices: 0 };
 
-    /// What this thread does in `work` with numbers that count.
+    /// Counts the operations of `work` with counting numbers on this thread.
     pub fn of(work: impl FnOnce()) -> Self {
         DONE.set(Self::NONE);
         work();
@@ -54,7 +54,7 @@ fn choice() {
     count(|done| &mut done.choices);
 }
 
-/// A number that counts what is done with it.
+/// A number that counts operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counting(f64);
 
@@ -129,14 +129,14 @@ impl SubAssign for Counting {
 pub struct Work {
     /// Accepted steps.
     pub steps: u64,
-    /// Nodes that touch, summed over the steps.
+    /// Number of touching nodes, summed over the steps.
     pub touching: u64,
-    /// All that was done, the start included.
+    /// All operations, including the start.
     pub operations: Operations,
 }
 
 impl Work {
-    /// Runs a case with numbers that count.
+    /// Runs a case with counting numbers.
     pub fn of<D: Drive<Planar>>(method: Method, case: Case<'_, D>) -> Self {
         let mut one = One { case: Some(case), touching: 0, steps: 0 };
         let operations = Operations::of(|| run_batch::<Counting, _>(method, &mut one));
@@ -144,7 +144,7 @@ impl Work {
     }
 }
 
-/// One case, whose touching nodes are counted.
+/// A batch of one case that counts touching nodes.
 struct One<'a, D> {
     case: Option<Case<'a, D>>,
     touching: u64,

@@ -1,5 +1,5 @@
-//! Runs problems on several threads and judges the answers; the order of the rows is that of the
-//! problems, whatever the number of threads.
+//! Runs problems on several threads and checks the answers; rows are in the order of the
+//! problems, independent of the number of threads.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,22 +7,22 @@ use std::time::Instant;
 
 use crate::{Effort, Failure, Outcome, Problem};
 
-/// A problem's answer, judged.
+/// The answer to a problem with its assessment.
 #[derive(Debug)]
 pub struct Row {
-    /// What the code answered, or why it did not.
+    /// The answer, or the reason why there is none.
     pub answer: Result<Outcome, Failure>,
-    /// The error in the measure of the tolerance; not a number without an answer.
+    /// The error as measured by the tolerance; NaN without an answer.
     pub error: f64,
-    /// Whether the answer is near enough.
+    /// `true` if the answer is within the tolerance.
     pub passed: bool,
-    /// Time on the clock (s).
+    /// Wall time (s).
     pub seconds: f64,
 }
 
-/// Runs all problems on a number of threads; one row a problem, in their order.
+/// Runs all problems on a number of threads and returns one row per problem, in their order.
 ///
-/// `done` is told each problem's place as it ends.
+/// `done` is called with the index of each problem when it ends.
 pub fn execute(
     problems: &[Problem],
     effort: Effort,
@@ -35,13 +35,13 @@ pub fn execute(
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 loop {
-                    // The longest stand at the end of the list and begin first.
+                    // The longest problems are at the end of the list and start first.
                     let taken = next.fetch_add(1, Ordering::Relaxed) + 1;
                     let Some(at) = problems.len().checked_sub(taken) else { break };
                     let problem = &problems[at];
                     let row = judge(problem, effort);
                     done(at, &row);
-                    // A thread that panicked left no half-written row behind.
+                    // A thread that panicked leaves no incomplete row.
                     rows.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[at] = Some(row);
                 }
             });

@@ -1,4 +1,4 @@
-//! Problems with exact answers, and how near the contact code comes to them.
+//! Problems with exact answers, and the error of the contact code on them.
 //!
 //! A [`Problem`] holds the scene, the exact or published answer with its source, and the tolerance,
 //! side by side. The crate's tests run all of them in a fast form, the program in full:
@@ -9,15 +9,15 @@
 //!
 //! # Order of convergence
 //!
-//! Penalty contact has two small numbers, the time step and the time of a contact.
+//! Penalty contact has two small parameters, the time step and the duration of a contact.
 //! A refinement halves both: the step is halved and the contact made four times as stiff, with the
-//! damping ratio kept, so that the limit is the rigid body of the closed form and the order is that
-//! of the error against the exact answer. Bisected thresholds have none to show.
+//! damping ratio kept, so that the limit is the rigid body of the closed form, and the order is that
+//! of the error against the exact answer. Thresholds found by bisection have no order.
 //!
 //! # Adding a problem
 //!
-//! A problem that needs only bodies, a motion and one of the known quantities is a file in `cases/`
-//! ([`cases`]); anything else is a function in one of the [`problems`].
+//! A problem that only needs bodies, a motion and one of the defined quantities is a file in `cases/`
+//! ([`cases`]); any other is a function in one of the [`problems`].
 
 pub mod cases;
 pub mod counting;

@@ -1,4 +1,4 @@
-//! Runs every problem in full, prints a table, and writes the report.
+//! Runs every problem at full effort, prints a table, and writes the report.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program's output")]
 
 use std::fs;
@@ -12,7 +12,7 @@ use barrelstack_validation::{Effort, Problem, Row, all, cases, execute, page};
 const USAGE: &str = "usage: barrelstack-validation [--out DIR] [--fast] [--only TEXT] [--threads N] \
                      [CASE.toml ...]";
 
-/// What was asked for.
+/// Parsed command line.
 struct Request {
     out: PathBuf,
     effort: Effort,
@@ -59,7 +59,7 @@ fn request(mut args: impl Iterator<Item = String>) -> Result<Request, String> {
     Ok(request)
 }
 
-/// Runs, prints and writes; whether every answer was near enough.
+/// Runs the problems, prints and writes the results; `true` if every answer is within its tolerance.
 fn validate(request: &Request) -> Result<bool, String> {
     let mut problems: Vec<Problem> = all();
     for path in &request.cases {

@@ -1,14 +1,14 @@
-//! Solutions of ordinary differential equations by a library that shares no code with the program.
+//! Solutions of ordinary differential equations by an independent library.
 //!
-//! The library looks for events with an interpolant of low order, so it is asked for smooth motions
-//! between known instants alone.
+//! The library locates events with an interpolant of low order, so it is used only for smooth motions
+//! between given times.
 
 use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 
-/// The solution at `until` of `y' = rates(t, y)` from `start` at `from` (s), by the method of order 8 of
-/// Dormand and Prince with errors of a step held to 10⁻¹³ of the numbers.
+/// Integrates `y' = rates(t, y)` from `start` at `from` (s) to `until` (s), by the method of order 8 of
+/// Dormand and Prince with a relative tolerance of 10⁻¹³ per step.
 ///
-/// Not a number where the library gives up, which no answer is near to.
+/// NaN if the integration fails, which no tolerance admits.
 pub fn solution<const N: usize>(
     rates: impl Fn(f64, &[f64; N]) -> [f64; N],
     start: [f64; N],
@@ -35,7 +35,7 @@ mod tests {
 
     #[test]
     fn the_library_keeps_its_tolerance_on_closed_forms() {
-        // A swing, damped and pushed in resonance: y'' + 2ζω y' + ω² y = sin ωt from rest.
+        // A damped oscillator driven at resonance: y'' + 2ζω y' + ω² y = sin ωt from rest.
         let (omega, zeta) = (60.0, 0.02_f64);
         let rates = |t: f64, y: &[f64; 2]| {
             [y[1], sin(omega * t) - 2.0 * zeta * omega * y[1] - omega * omega * y[0]]
@@ -47,7 +47,7 @@ mod tests {
             (exp(-zeta * omega * 2.0) * ring - cos(omega * 2.0)) / (2.0 * zeta * omega * omega);
         let error = (found / exact - 1.0).abs();
         assert!(error < 1e-11, "{found} for {exact}: {error:e}"); // measured 3.5e-13
-        // A pendulum let go at 1 rad keeps its energy.
+        // A pendulum released at 1 rad conserves its energy.
         let [angle, spin] = solution(|_, y| [y[1], -sin(y[0])], [1.0, 0.0], (0.0, 20.0));
         let missing = (0.5 * spin * spin - cos(angle) + cos(1.0)).abs();
         assert!(missing < 1e-12, "{missing:e}"); // measured 8.9e-16
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_solved_is_not_a_number() {
-        // y' = y² leaves the numbers after one second.
+        // y' = y² diverges after one second.
         assert!(!solution(|_, y| [y[0] * y[0]], [1.0], (0.0, 2.0))[0].is_finite());
     }
 }

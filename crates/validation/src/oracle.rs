@@ -1,9 +1,9 @@
-//! An integrator of its own for one rocking block: Housner's equation between impacts, restitution
+//! Independent integrator for one rocking block: Housner's equation between impacts, restitution
 //! at impacts.
 //!
-//! Nothing of the contact code is in it: classical Runge–Kutta steps, the instants of uplift and
+//! It shares no code with the contact: classical Runge–Kutta steps, with the times of uplift and
 //! impact by bisection.
-//! A library's integrator stands behind it where motion is smooth (the problems `ode/own-integrator-…`).
+//! A library's integrator verifies it where motion is smooth (the problems `ode/own-integrator-…`).
 
 use barrelstack_dynamics::math::{cos, sin, tan};
 
@@ -16,41 +16,41 @@ pub struct Rocker {
     pub alpha: f64,
     /// p = √(3g/4R) (rad/s).
     pub rate: f64,
-    /// Angular velocity after an impact over that before, η.
+    /// Ratio η of angular velocities after and before an impact.
     pub restitution: f64,
-    /// Whether angles are taken as small.
+    /// `true` for linearized equations of small angles.
     pub slender: bool,
 }
 
-/// What became of a block.
+/// Outcome of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ride {
-    /// Whether it turned over.
+    /// `true` if it overturned.
     pub overturned: bool,
     /// Largest rotation (rad), up to the angle that counts as overturned.
     pub peak: f64,
 }
 
-/// Rotation (rad) from which nothing brings a block back.
+/// Rotation (rad) beyond which a block cannot recover.
 pub const OVERTURNED: f64 = 1.2;
 
-/// Spin (rad/s) below which an impact brings the block to rest.
+/// Angular velocity (rad/s) below which an impact brings the block to rest.
 const REST: f64 = 1e-6;
 
 impl Rocker {
-    /// θ'' (rad/s²) at a rotation, on a side (±1), under a ground acceleration over g.
+    /// Returns θ'' (rad/s²) at a rotation, on a side (±1), under a ground acceleration over g.
     fn spin_rate(&self, theta: f64, side: f64, push: f64) -> f64 {
         let angle = self.alpha * side - theta;
         let moment = if self.slender { angle + push } else { sin(angle) + push * cos(angle) };
         -self.rate * self.rate * moment
     }
 
-    /// Ground acceleration over g that lifts a corner.
+    /// Returns the ground acceleration over g at uplift.
     pub fn uplift(&self) -> f64 {
         if self.slender { self.alpha } else { tan(self.alpha) }
     }
 
-    /// One Runge–Kutta step; ends are taken from inside, so that jumps of the push may lie on them.
+    /// Takes one Runge–Kutta step; the ends are evaluated slightly inside, so that the push may be discontinuous there.
     fn step(
         &self,
         (theta, spin): (f64, f64),
@@ -72,8 +72,8 @@ impl Rocker {
         )
     }
 
-    /// Lean (rad) and spin (rad/s) after a time (s) on one corner, in a number of equal steps; `start` is
-    /// that at time zero, the lean above zero.
+    /// Returns rotation (rad) and angular velocity (rad/s) after a time (s) on one corner, in a number of equal steps;
+    /// `start` is the state at time zero, with a positive rotation.
     pub(crate) fn stretch(
         &self,
         start: (f64, f64),
@@ -86,17 +86,17 @@ impl Rocker {
         (0..steps).fold(start, |at, i| self.step(at, 1.0, (f64::from(i) * length, length), &push))
     }
 
-    /// Whether a block that nothing pushes any more can only lose what it has.
+    /// `true` if the block can no longer overturn without further push.
     fn safe(&self, theta: f64, spin: f64) -> bool {
         let left = self.alpha - theta.abs();
         let barrier = if self.slender { 0.5 * left * left } else { 1.0 - cos(left) };
         left > 0.0 && 0.5 * spin * spin < self.rate * self.rate * barrier
     }
 
-    /// Rides through a ground acceleration (m/s² over time) that has ended by `pushed_until` (s).
+    /// Integrates through a ground acceleration (m/s² over time) that ends by `pushed_until` (s).
     ///
-    /// Steps are whole parts of that time and at most `longest` (s).
-    /// A block that has not made up its mind `patience` (s) later counts as it leans.
+    /// Steps are integer fractions of that time and at most `longest` (s).
+    /// A block undecided `patience` (s) later is classed by its rotation at that time.
     pub fn ride(
         &self,
         acceleration: impl Fn(f64) -> f64,
@@ -113,7 +113,7 @@ impl Rocker {
         loop {
             let (mut from, until) = (count * length, (count + 1.0) * length);
             count += 1.0;
-            // Uplift, flight and impacts within the step.
+            // Uplift, free rocking and impacts within the step.
             for _ in 0..100 {
                 if until - from < 1e-12 * length {
                     break;
@@ -150,7 +150,7 @@ impl Rocker {
             }
             if until >= pushed_until - 1e-9 * length {
                 let resting = side == 0.0;
-                // It still swings on to the peak that its energy gives.
+                // It still swings to the peak that its energy allows.
                 let settled = self.safe(theta, spin) && spin * theta <= 0.0;
                 if resting || settled {
                     return ride;
@@ -163,7 +163,7 @@ impl Rocker {
         }
     }
 
-    /// When (s) within a step a resting block is first pushed hard enough.
+    /// Returns the time (s) within a step at which a resting block is lifted.
     fn uplift_within(&self, from: f64, until: f64, push: &impl Fn(f64) -> f64) -> Option<f64> {
         let inset = 1e-9 * (until - from);
         let lifts = |t: f64| push(t).abs() > self.uplift();
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use crate::drive::Shake;
 
-    /// The border of overturning in units of g tan α.
+    /// Finds the overturning border in units of g tan α.
     fn border(
         rocker: &Rocker,
         pulse: impl Fn(f64) -> Shake,

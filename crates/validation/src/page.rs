@@ -6,7 +6,7 @@ use barrelstack_report::{Block, Cell, Document, Table, Tone, Verdict, significan
 
 use crate::{Effort, Problem, Row, Tolerance};
 
-/// What rigid-block theory and penalty contact do not share, in sentences.
+/// Differences between rigid-block theory and penalty contact, in sentences.
 pub const LIMITS: [&str; 7] = [
     "Housner's ratio of angular velocities is the least that a corner can show: his impact is \
      perfectly plastic. Damping between none and ζ = 3 chooses any ratio from 1 down to his; lower \
@@ -31,7 +31,7 @@ pub const LIMITS: [&str; 7] = [
      nodes, scene A falls at about 2.1 s, so only its verdict is compared.",
 ];
 
-/// Known problems that no problem here answers, with the reason.
+/// Known problems that are not covered, with the reason.
 pub const ABSENT: [(&str, &str); 10] = [
     (
         "many-impact windows below ω/p = 1.5; double-impulse limit; Dimitrakopoulos and DeJong 2012",
@@ -67,7 +67,7 @@ pub const ABSENT: [(&str, &str); 10] = [
     ),
 ];
 
-/// The words for a theory.
+/// Returns the heading of a theory.
 fn heading(theory: &str) -> &str {
     match theory {
         "housner" => "Free rocking and one push",
@@ -97,7 +97,7 @@ fn tolerance(tolerance: Tolerance) -> String {
     }
 }
 
-/// The page.
+/// Builds the page.
 pub fn document(problems: &[Problem], rows: &[Row], effort: Effort, seconds: f64) -> Document {
     let failed = rows.iter().filter(|row| !row.passed).count();
     let passed = rows.len() - failed;
@@ -206,7 +206,7 @@ fn note(problem: &Problem, row: &Row) -> String {
     text
 }
 
-/// A row for a terminal.
+/// Formats a row for a terminal.
 pub fn line(problem: &Problem, row: &Row, effort: Effort) -> String {
     let mark = if row.passed { "  " } else { "✗ " };
     let answer = match &row.answer {

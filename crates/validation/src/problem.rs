@@ -1,27 +1,27 @@
-//! A problem: what is asked, the exact answer, and how the code is made to answer.
+//! A problem: the quantity, the exact answer, and the computation.
 
 use barrelstack_dynamics::{ModelError, RunError, SettleError};
 
-/// How much work a problem may take.
+/// The computational effort of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
-    /// For the test suite: coarser contacts, wider brackets, smaller ensembles.
+    /// For the test suite: softer contacts, wider brackets, smaller ensembles.
     Fast,
     /// For the report: converged, with the order of convergence.
     Full,
 }
 
-/// How far an answer may be from the exact one.
+/// The allowed deviation of an answer from the exact one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// As a share of the exact answer.
+    /// Relative to the exact answer.
     Relative(f64),
     /// In the unit of the quantity.
     Absolute(f64),
 }
 
 impl Tolerance {
-    /// The error of an answer in the measure of this tolerance.
+    /// Returns the error of an answer as measured by this tolerance.
     pub fn error(self, value: f64, exact: f64) -> f64 {
         match self {
             Self::Relative(_) => (value - exact).abs() / exact.abs(),
@@ -29,37 +29,37 @@ impl Tolerance {
         }
     }
 
-    /// The largest error allowed.
+    /// Returns the largest error allowed.
     pub fn limit(self) -> f64 {
         match self {
             Self::Relative(limit) | Self::Absolute(limit) => limit,
         }
     }
 
-    /// Whether an answer is near enough; one that is not a number never is.
+    /// `true` if an answer is within the tolerance; never for NaN.
     pub fn admits(self, value: f64, exact: f64) -> bool {
         self.error(value, exact) <= self.limit()
     }
 }
 
-/// What the code answers.
+/// The answer of the code.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// In the unit of the problem.
     pub value: f64,
-    /// Order of convergence to the exact answer, see the crate's documentation.
+    /// Order of convergence to the exact answer; see the crate's documentation.
     pub order: Option<f64>,
-    /// What the reader should know.
+    /// Note for the reader.
     pub note: String,
 }
 
 impl Outcome {
-    /// A value alone.
+    /// Creates an outcome without a note.
     pub fn of(value: f64) -> Self {
         Self { value, order: None, note: String::new() }
     }
 
-    /// The same with a note.
+    /// Returns the outcome with a note.
     #[must_use]
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
@@ -73,16 +73,16 @@ impl From<f64> for Outcome {
     }
 }
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The bodies do not make a model.
+    /// The bodies make no valid model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The numbers broke down.
+    /// The run failed numerically.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The bodies do not stand.
+    /// The bodies do not come to rest.
     #[error(transparent)]
     Settle(#[from] SettleError),
     /// A scenario cannot be read.
@@ -91,21 +91,21 @@ pub enum Failure {
     /// A scenario cannot be run.
     #[error(transparent)]
     Scene(#[from] barrelstack::RunFailure),
-    /// What was looked for did not happen.
+    /// The event of interest did not occur.
     #[error("{0}")]
     Absent(String),
 }
 
-/// No answer, for a reason of another library.
+/// Converts an error of another library to a failure.
 #[expect(clippy::needless_pass_by_value, reason = "as errors are mapped")]
 pub fn absent(reason: impl ToString) -> Failure {
     Failure::Absent(reason.to_string())
 }
 
-/// What a problem runs.
+/// The computation of a problem.
 type Run = Box<dyn Fn(Effort) -> Result<Outcome, Failure> + Send + Sync>;
 
-/// A question with an exact answer.
+/// A problem with an exact answer.
 pub struct Problem {
     /// Unique, such as `housner/quarter-period-0.50`; the part before the slash is the theory.
     pub id: String,
@@ -113,22 +113,22 @@ pub struct Problem {
     pub title: String,
     /// Author, year and section of the theory.
     pub source: String,
-    /// What is asked for.
+    /// The requested quantity.
     pub quantity: &'static str,
     /// Its unit; empty for pure numbers.
     pub unit: &'static str,
     /// The exact or published answer.
     pub exact: f64,
-    /// How far the full answer may be from it.
+    /// Tolerance at full effort.
     pub tolerance: Tolerance,
-    /// The same for the fast answer, where it is coarser.
+    /// Tolerance at fast effort, if coarser.
     pub fast: Option<Tolerance>,
-    /// How the code is made to answer.
+    /// The computation.
     pub run: Run,
 }
 
 impl Problem {
-    /// The tolerance at an effort.
+    /// Returns the tolerance at an effort.
     pub fn tolerance(&self, effort: Effort) -> Tolerance {
         match effort {
             Effort::Full => self.tolerance,
@@ -136,55 +136,55 @@ impl Problem {
         }
     }
 
-    /// The theory it belongs to.
+    /// Returns the theory that it belongs to.
     pub fn theory(&self) -> &str {
         self.id.split_once('/').map_or(self.id.as_str(), |(theory, _)| theory)
     }
 
-    /// What it is called within its theory.
+    /// Returns its name within its theory.
     pub fn name(&self) -> &str {
         self.id.split_once('/').map_or(self.id.as_str(), |(_, name)| name)
     }
 }
 
-/// What a problem looks at, made by [`setting`].
+/// The setting of a problem, created by [`setting`].
 pub struct Setting {
     id: String,
     title: String,
     source: String,
 }
 
-/// What is looked at: an [id](Problem::id), the scene in a few words, and the source of the theory.
+/// Creates a setting: an [id](Problem::id), the scene in a few words, and the source of the theory.
 pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) -> Setting {
     Setting { id: id.into(), title: title.into(), source: source.into() }
 }
 
 impl Setting {
-    /// What is asked for, its unit (empty for pure numbers), and the exact answer.
+    /// Adds the requested quantity, its unit (empty for pure numbers), and the exact answer.
     pub fn asks(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
         Question { setting: self, quantity, unit, answer }
     }
 }
 
-/// The exact or published answer, and how near ours has to come.
+/// The exact or published answer with its tolerance.
 pub struct Answer {
     exact: f64,
     tolerance: Tolerance,
     fast: Option<Tolerance>,
 }
 
-/// An answer and how far from it ours may be, as a share of it.
+/// Creates an answer with a relative tolerance.
 pub fn relative(exact: f64, limit: f64) -> Answer {
     Answer { exact, tolerance: Tolerance::Relative(limit), fast: None }
 }
 
-/// An answer and how far from it ours may be, in its unit.
+/// Creates an answer with an absolute tolerance, in its unit.
 pub fn absolute(exact: f64, limit: f64) -> Answer {
     Answer { exact, tolerance: Tolerance::Absolute(limit), fast: None }
 }
 
 impl Answer {
-    /// The same with another limit, of the same kind, for the fast form.
+    /// Returns the answer with another limit, of the same kind, at fast effort.
     #[must_use]
     pub fn fast(self, limit: f64) -> Self {
         let fast = match self.tolerance {
@@ -195,7 +195,7 @@ impl Answer {
     }
 }
 
-/// A problem that does not say yet how the code is made to answer.
+/// A problem without its computation.
 pub struct Question {
     setting: Setting,
     quantity: &'static str,
@@ -204,7 +204,7 @@ pub struct Question {
 }
 
 impl Question {
-    /// How the code is made to answer.
+    /// Adds the computation.
     pub fn by<A: Into<Outcome>>(
         self,
         answer: impl Fn(Effort) -> Result<A, Failure> + Send + Sync + 'static,
@@ -215,7 +215,7 @@ impl Question {
         Problem { id, title, source, quantity, unit, exact, tolerance, fast, run }
     }
 
-    /// The same by what the code answers at a refinement, see [`refine`].
+    /// Adds a computation at successive refinements; see [`refine`].
     pub fn refined(
         self,
         answer: impl Fn(Effort, i32) -> Result<f64, Failure> + Send + Sync + 'static,
@@ -224,7 +224,7 @@ impl Question {
         self.by(move |effort| refine(effort, exact, |level| answer(effort, level)))
     }
 
-    /// The same by bisection within a share of the exact answer to either side, see [`border`].
+    /// Adds a bisection within a fraction of the exact answer to either side; see [`border`].
     pub fn at_border(
         self,
         share: f64,
@@ -236,7 +236,7 @@ impl Question {
     }
 }
 
-/// Answers of successive refinements (0, 1, 2) in full, the coarsest alone in the fast form.
+/// Evaluates successive refinements (0, 1, 2) at full effort, only the coarsest at fast effort.
 ///
 /// # Errors
 /// Those of `answer`.
@@ -260,7 +260,7 @@ pub fn refine(
     })
 }
 
-/// How many halvings a bisection takes.
+/// Returns the number of halvings of a bisection.
 pub fn halvings(effort: Effort) -> u32 {
     match effort {
         Effort::Fast => 2,
@@ -268,10 +268,10 @@ pub fn halvings(effort: Effort) -> u32 {
     }
 }
 
-/// The border between `false` below and `true` above, by bisection between two brackets.
+/// Finds the border between `false` below and `true` above, by bisection between two brackets.
 ///
 /// # Errors
-/// When the brackets do not hold a border, and those of `above`.
+/// If the brackets do not enclose a border, and those of `above`.
 pub fn border(
     (mut low, mut high): (f64, f64),
     halvings: u32,

@@ -1,4 +1,4 @@
-//! A rocking block on penalty corners, and the damping that makes it rock as Housner says.
+//! A rocking block on penalty corners, and the damping that makes it rock according to Housner.
 
 use std::ops::ControlFlow;
 
@@ -13,12 +13,12 @@ use crate::{Effort, Failure, GRAVITY, swing, theory};
 /// Mass (kg); no answer depends on it.
 const MASS: f64 = 100.0;
 
-/// Which law carries the corners.
+/// The contact law of the corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Corner {
     /// Damped on approach only, the element of Candia et al. (2008).
     SpeedGap,
-    /// Damped both ways, without tension.
+    /// Damped in both directions, without tension.
     KelvinVoigt,
 }
 
@@ -29,16 +29,16 @@ pub struct RockingBlock {
     pub radius: f64,
     /// Slenderness angle α (rad).
     pub alpha: f64,
-    /// The law.
+    /// Contact law of the corners.
     pub corner: Corner,
-    /// ω = √(k/m) (rad/s), the stiffness of a corner as a frequency of the whole mass.
+    /// ω = √(k/m) (rad/s), the stiffness of a corner as a frequency with the whole mass.
     pub contact_frequency: f64,
-    /// ζ = c/(2√(km)) of a corner against the whole mass.
+    /// ζ = c/(2√(km)) of a corner with the whole mass.
     pub damping_ratio: f64,
 }
 
 impl RockingBlock {
-    /// A block on speed-gap corners of a stiffness that suits its size.
+    /// Creates a block on speed-gap corners of a stiffness that suits its size.
     pub fn new(radius: f64, alpha: f64) -> Self {
         Self {
             radius,
@@ -49,27 +49,27 @@ impl RockingBlock {
         }
     }
 
-    /// The same with corners four times as stiff for each refinement.
+    /// Returns the block with corners four times as stiff for each refinement.
     #[must_use]
     pub fn refined(mut self, refinements: i32) -> Self {
         self.contact_frequency *= 2.0_f64.powi(refinements);
         self
     }
 
-    /// p (rad/s).
+    /// Returns p (rad/s).
     pub fn rate(&self) -> f64 {
         theory::rocking_rate(self.radius)
     }
 
-    /// The rigid block with a restitution.
+    /// Returns the rigid block with a restitution.
     pub fn rigid(&self, restitution: f64) -> Rocker {
         Rocker { alpha: self.alpha, rate: self.rate(), restitution, slender: false }
     }
 
-    /// The time step (s): well below what the damped corner allows.
+    /// Returns the time step (s): well below the stability limit of the damped corner.
     pub fn step(&self) -> f64 {
-        // Along the base a corner moves 1/m + (R cos α)²/I, about 4/m; the tangential damping stays at
-        // ζ = 1 or less, so the normal direction decides only above it.
+        // Along the base a corner has the mobility 1/m + (R cos α)²/I, about 4/m; the tangential damping stays at
+        // ζ = 1 or less, so the normal direction governs only above it.
         let zeta = 2.0 * self.damping_ratio.max(0.5);
         let limit = (1.0 + zeta * zeta).sqrt() - zeta;
         0.4 * limit / self.contact_frequency
@@ -79,10 +79,10 @@ impl RockingBlock {
         MASS * self.contact_frequency * self.contact_frequency
     }
 
-    /// The block at a lean (rad, clockwise positive) on its loaded corners, sunk to rest.
+    /// Creates the block at a rotation (rad, clockwise positive) on its loaded corners, at its static penetration.
     ///
     /// # Errors
-    /// When its numbers do not make a body.
+    /// If its numbers do not make a valid body.
     pub fn scene(&self, lean: f64) -> Result<Scene, Failure> {
         let stiffness = self.stiffness();
         let (half_width, half_height) =
@@ -106,15 +106,15 @@ impl RockingBlock {
             Corner::SpeedGap => NormalLaw::SpeedGap { stiffness, damping },
             Corner::KelvinVoigt => NormalLaw::KelvinVoigt { stiffness, damping },
         };
-        // Rigid-block theory knows no sliding, whatever the push.
+        // Rigid-block theory has no sliding, whatever the push.
         let laws = interface(normal, coulomb(20.0, stiffness, tangential));
         Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
     }
 
-    /// p times the time from a lean of `share · α` to upright.
+    /// Returns p times the time from a rotation of `share · α` to upright.
     ///
     /// # Errors
-    /// When it does not come down.
+    /// If it does not come down.
     pub fn quarter_period(&self, share: f64) -> Result<f64, Failure> {
         match self.swings(share, 1, 20.0)?.first() {
             Some((end, _)) => Ok(end * self.rate()),
@@ -122,11 +122,11 @@ impl RockingBlock {
         }
     }
 
-    /// Lets the block go at a lean of `share · α`; for each impact, when (s) the block is upright, and the peak of the
-    /// lean over α that follows.
+    /// Releases the block at a rotation of `share · α`; returns for each impact the time (s) at which the block is
+    /// upright, and the following peak rotation over α.
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn swings(
         &self,
         share: f64,
@@ -136,7 +136,7 @@ impl RockingBlock {
         let mut scene = self.scene(share * self.alpha)?;
         let (mut before, mut peak) = ((0.0, share * self.alpha), 0.0_f64);
         let mut swings: Vec<(f64, f64)> = vec![];
-        // Bounces of the corners turn the block by less than this while it changes over.
+        // During an impact, bounces of the corners rotate the block by less than this.
         let slack = 1e-3 * self.alpha;
         let mut side = 1.0;
         let mut crossing = f64::NAN;
@@ -169,11 +169,11 @@ impl RockingBlock {
         Ok(swings)
     }
 
-    /// Ratio of angular velocities that the first impact shows: the root of the energy that is left,
-    /// read from the next peak.
+    /// Returns the ratio of angular velocities at the first impact: the root of the remaining energy, from the next
+    /// peak.
     ///
     /// # Errors
-    /// When the block does not swing.
+    /// If the block does not rock.
     pub fn restitution(&self, share: f64) -> Result<f64, Failure> {
         let height = |share: f64| {
             let theta = share * self.alpha;
@@ -186,11 +186,11 @@ impl RockingBlock {
         }
     }
 
-    /// The same block with the damping ratio at which its first impact from `φ = ½` shows a ratio of
-    /// angular velocities; none when no damping ratio up to 12 does.
+    /// Returns the block with the damping ratio for which its first impact from `φ = ½` has the target ratio of
+    /// angular velocities; `None` if no damping ratio up to 12 does.
     ///
     /// # Errors
-    /// When a block does not swing.
+    /// If a block does not rock.
     pub fn calibrated(mut self, target: f64) -> Result<Option<Self>, Failure> {
         let (mut low, mut high) = (0.02, 12.0);
         let mut shows = |zeta: f64| {
@@ -208,12 +208,12 @@ impl RockingBlock {
         Ok(Some(self))
     }
 
-    /// Whether a ground motion turns the block over.
+    /// Returns whether a ground motion overturns the block.
     ///
-    /// `acceleration_end` (s) is when the ground no longer pushes.
+    /// `acceleration_end` (s) is the end of the ground acceleration.
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn overturns(
         &self,
         drive: &impl Drive<Planar>,
@@ -222,10 +222,10 @@ impl RockingBlock {
         self.ride(drive, acceleration_end, 15.0).map(|ride| ride.overturned)
     }
 
-    /// Whether a ground motion turns the block over before it comes back upright.
+    /// Returns whether a ground motion overturns the block before it comes back upright.
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn overturns_at_once(
         &self,
         drive: &impl Drive<Planar>,
@@ -233,7 +233,7 @@ impl RockingBlock {
     ) -> Result<bool, Failure> {
         let mut scene = self.scene(0.0)?;
         let (mut fell, mut side) = (false, 0.0);
-        // What the corners sway before uplift.
+        // Vibration of the corners before uplift.
         let slack = 0.01 * self.alpha;
         scene.watch(drive, self.step(), acceleration_end + 15.0, |state, _, _| {
             let lean = state.poses[1].orientation;
@@ -247,10 +247,10 @@ impl RockingBlock {
         Ok(fell)
     }
 
-    /// What becomes of the block under a ground motion.
+    /// Computes the outcome of the block under a ground motion.
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn ride(
         &self,
         drive: &impl Drive<Planar>,
@@ -267,8 +267,8 @@ impl RockingBlock {
             peak = peak.max(last);
             fell = last > OVERTURNED;
             let left = self.alpha - last;
-            // It only loses energy from here on. Within an impact springs hold part of it, so only a
-            // block that clearly swings back, or rests, is judged.
+            // It only loses energy from here on. During an impact springs store part of it, so only a
+            // block that clearly swings back, or rests, is classed.
             let back = spin * lean < 0.0 && last > 0.01 * self.alpha;
             let rests = last < 1e-5 && spin.abs() < 1e-4;
             let safe = state.time > acceleration_end
@@ -280,13 +280,13 @@ impl RockingBlock {
         Ok(Ride { overturned: fell || last > self.alpha, peak })
     }
 
-    /// Acceleration (m/s²) that lifts a corner.
+    /// Returns the ground acceleration (m/s²) that lifts a corner.
     pub fn uplift(&self) -> f64 {
         GRAVITY * tan(self.alpha)
     }
 }
 
-/// Contact frequency (rad/s) at an effort.
+/// Returns the contact frequency (rad/s) at an effort.
 pub fn contact_frequency(effort: Effort) -> f64 {
     match effort {
         Effort::Fast => 1500.0,

@@ -1,4 +1,4 @@
-//! What swings: when it goes through its middle.
+//! Zero crossings of oscillations.
 
 use std::ops::ControlFlow;
 
@@ -7,21 +7,21 @@ use barrelstack_dynamics::{Space, State, Still};
 use crate::Failure;
 use crate::scene::Scene;
 
-/// When (s) a quantity is zero between two of its values, each with its time (s), as on a line.
+/// Returns the time (s) at which a quantity is zero between two (time, value) pairs, by linear interpolation.
 pub fn crossing(before: (f64, f64), now: (f64, f64)) -> f64 {
     before.0 + before.1 / (before.1 - now.1) * (now.0 - before.0)
 }
 
-/// When (s) a quantity changes its sign, from its times (s) and values.
+/// Returns the times (s) at which a quantity changes its sign, from its times (s) and values.
 pub fn crossings(values: &[(f64, f64)]) -> Vec<f64> {
     let changes = values.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0);
     changes.map(|pair| crossing(pair[0], pair[1])).collect()
 }
 
-/// The same for a quantity of a scene on ground at rest until a time (s).
+/// Returns the crossings of a quantity of a scene on ground at rest, until a time (s).
 ///
 /// # Errors
-/// When the numbers break down.
+/// If the run fails numerically.
 pub fn run_crossings<S: Space<Real = f64>>(
     scene: &mut Scene<S>,
     step: f64,
@@ -36,7 +36,7 @@ pub fn run_crossings<S: Space<Real = f64>>(
     Ok(crossings(&values))
 }
 
-/// The mean time (s) from one of these instants to the next; none where there are fewer than `least`.
+/// Returns the mean interval (s) between these times; `None` if there are fewer than `least`.
 pub fn mean_time(instants: &[f64], least: usize) -> Option<f64> {
     match instants {
         [first, .., last] if instants.len() >= least => {

@@ -1,6 +1,6 @@
-//! How much arithmetic a step takes, to the last operation.
+//! Number of arithmetic operations per step, exactly.
 //!
-//! Times depend on the machine and on who else uses it; these counts do not.
+//! Times depend on the machine and its load; these counts do not.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use barrelstack::Scenario;
@@ -11,9 +11,9 @@ use barrelstack_validation::counting::{Operations, Work};
 use barrelstack_validation::drive::Shake;
 use barrelstack_validation::problems::consensus;
 
-/// What a step took when it was last looked at: scene, method, nodes that touch, and operations a step.
+/// Recorded cost of a step: scene, method, touching nodes, and operations per step.
 ///
-/// A smaller figure is progress, and is written down here; a larger one wants a reason in the commit.
+/// A smaller figure is progress, and is recorded here; a larger one needs a reason in the commit.
 const KNOWN: [(&str, Method, [u64; 4]); 4] = [
     ("five codes", Method::VelocityVerlet, [24, 6093, 71, 2027]),
     ("five codes", Method::SemiImplicitEuler, [24, 5874, 71, 2015]),
@@ -21,10 +21,10 @@ const KNOWN: [(&str, Method, [u64; 4]); 4] = [
     ("paper", Method::VelocityVerlet, [80, 14359, 175, 5401]),
 ];
 
-/// Steps over which is averaged: the stack rocks and nothing has fallen.
+/// Number of steps in the average: the stack rocks and nothing has fallen.
 const STEPS: u64 = 1000;
 
-/// The ground of the paper's benchmark, smaller, so that both stacks stand.
+/// The ground motion of the paper's benchmark, reduced so that both stacks stand.
 const GROUND: Shake = Shake::Swing { amplitude: 0.05, omega: 5.846 };
 
 #[test]
@@ -35,7 +35,7 @@ fn a_step_takes_no_more_arithmetic_than_it_did() {
     assert_eq!(now, KNOWN);
 }
 
-/// What a step takes now, as [`KNOWN`].
+/// Returns the present cost of a step, as in [`KNOWN`].
 pub(crate) fn now() -> [(&'static str, Method, [u64; 4]); 4] {
     let five_codes = consensus::eight_barrels(20.0).unwrap();
     let paper = assemble(&Scenario::builtin("candia-8-barrels", &[]).unwrap()).unwrap().model;
@@ -45,7 +45,7 @@ pub(crate) fn now() -> [(&'static str, Method, [u64; 4]); 4] {
     })
 }
 
-/// Touching nodes, plain operations, divisions and choices of a step.
+/// Returns touching nodes, plain operations, divisions and choices per step.
 fn per_step(model: &Model<Planar>, method: Method) -> [u64; 4] {
     let mut rest = State::initial(model);
     settle(model, &mut rest, &mut Scratch::new(model), 1e-9).unwrap();

@@ -1,4 +1,4 @@
-//! Every problem in its fast form.
+//! Every problem at fast effort.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! The scene that five codes agree on, as a user writes it, is the one built in code.
+//! The scene on which five codes agree, written as a user would, equals the one built in code.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use std::f64::consts::TAU;
@@ -9,7 +9,7 @@ use barrelstack_dynamics::{Method, Model, Planar, Scratch, Simulation, State, se
 use barrelstack_validation::drive::Shake;
 use barrelstack_validation::problems::consensus;
 
-/// Time, poses, twists and the work of it after 2 s, when four barrels have fallen.
+/// Returns time, poses, twists and the work after 2 s, when four barrels have fallen.
 fn after(model: &Model<Planar>) -> (Vec<u64>, u64) {
     let (mut state, mut scratch) = (State::initial(model), Scratch::new(model));
     settle(model, &mut state, &mut scratch, 1e-9).unwrap();

@@ -1,11 +1,11 @@
-//! Eight barrels on four levels, a scene that five independent codes agree on.
+//! Eight barrels on four levels, a scene on which five independent codes agree.
 //!
-//! Two mappings. *Bodies*: the scene of those codes as it is, one contact point where a barrel's crown
-//! meets a flat underside. *Scenario*: the nearest stack of the scenario language, whose underside is
+//! In two versions. *Bodies*: the scene of those codes exactly, with one contact point between a barrel's crown
+//! and a flat underside. *Scenario*: the nearest stack of the scenario language, whose underside is
 //! a row of nodes, several of which share a sunken crown, so that a joint is stiffer.
 //!
-//! The ground's displacement is A sin ωt from the first instant, so that it starts with a jolt, as
-//! "sine base motion of 0.1016 m" reads. What those codes call a fall is not on record; here a barrel
+//! The ground's displacement is A sin ωt from the first instant, which is a sudden start, according to
+//! "sine base motion of 0.1016 m". Their definition of a fall is not documented; here a barrel
 //! has fallen once it is one level lower, 0.76 m.
 
 use std::f64::consts::TAU;
@@ -31,13 +31,13 @@ const LEVELS: usize = 4;
 const STIFFNESS: f64 = 9.8e5;
 const DAMPING: f64 = 2200.0;
 
-/// Drops (m): one from which a barrel counts as fallen, one that shows what the choice matters.
+/// Drops (m): the one from which a barrel counts as fallen, and one that shows the effect of the choice.
 const FALLS: [f64; 2] = [0.76, 0.2];
 
 /// Length of the runs (s).
 const END: f64 = 10.0;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         first_fall(),
@@ -63,7 +63,7 @@ fn first_fall() -> Problem {
         })
 }
 
-/// The same scene from a file: a free scene whose racks carry chosen nodes.
+/// The same scene from a file: a free scene whose racks have given nodes.
 fn written() -> Problem {
     Problem {
         id: "consensus/a-file".into(),
@@ -105,7 +105,7 @@ fn verdict(
         })
 }
 
-/// A rack: a beam whose underside the crowns below touch, feet, and two points for each barrel.
+/// A rack: a beam whose underside rests on the crowns below, feet, and two support points per barrel.
 fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     let center = CLEARANCE + RADIUS - 0.5 * BEAM;
     let mut supports = vec![];
@@ -125,10 +125,10 @@ fn rack(level: usize, underside: f64, angle: f64) -> Body<Planar> {
     }
 }
 
-/// The scene made of bodies, with cradle supports at ± an angle (degrees).
+/// Builds the scene from bodies, with cradle supports at ± an angle (degrees).
 ///
 /// # Errors
-/// When the bodies make no model.
+/// If the bodies make no valid model.
 pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     let angle = degrees.to_radians();
     let mut bodies = vec![floor()];
@@ -155,7 +155,7 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
             match (is_rack(i), is_rack(j)) {
                 // Cradle supports on barrels.
                 (true, false) => pairs.push(join(i, 0, j, 1)),
-                // Crowns on undersides above; a barrel meets its own rack at the supports alone.
+                // Crowns on undersides above; a barrel touches its own rack only at the supports.
                 (false, true) if i.div_ceil(3) != j.div_ceil(3) => pairs.push(join(i, 0, j, 1)),
                 (false, false) if i < j => pairs.push(join(i, 0, j, 1)),
                 _ => {}
@@ -169,12 +169,12 @@ pub fn eight_barrels(degrees: f64) -> Result<Model<Planar>, ModelError> {
     Model::new(bodies, vec![law(0.5), law(0.22)], pairs, DOWN)
 }
 
-/// Whether a body of the scene is a rack; its barrels follow it.
+/// `true` if a body of the scene is a rack; its barrels follow it.
 fn is_rack(body: usize) -> bool {
     body > 0 && body % 3 == 1
 }
 
-/// When (s) the first barrel falls in the scene made of bodies, for either drop.
+/// Returns the time (s) at which the first barrel falls in the scene from bodies, for either drop.
 fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     let step = 1e-4;
     let mut scene = Scene::of(eight_barrels(degrees)?).settled(1e-9)?;
@@ -196,7 +196,7 @@ fn bodies(degrees: f64, end: f64) -> Result<[Option<f64>; 2], Failure> {
     Ok(fallen)
 }
 
-/// When (s) the first barrel falls in the nearest stack scenario.
+/// Returns the time (s) at which the first barrel falls in the nearest stack scenario.
 fn scenario(degrees: f64, end: f64) -> Result<Option<f64>, Failure> {
     let text = format!(
         r#"

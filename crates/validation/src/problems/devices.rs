@@ -1,4 +1,4 @@
-//! Protection devices: each where its answer is exact, as a scenario puts it on a stack.
+//! Protection devices with exact answers, each on a stack from a scenario.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -15,7 +15,7 @@ use crate::scene::{Scene, disc, floor};
 use crate::swing::{crossings, mean_time, run_crossings};
 use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list: Vec<Problem> = [30.0, 40.0, 55.0].map(rolls_out).into();
     list.push(hill());
@@ -28,8 +28,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A stack of one level on a rack so wide, so heavy and on contacts so stiff that nothing but what the device does
-/// gives.
+/// A stack of one level on a rack so wide and heavy, and with contacts so stiff, that only the device
+/// deforms.
 fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
     let text = format!(
         "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\
@@ -46,13 +46,13 @@ pub(super) fn one_level(settings: &[String], motion: &str, seconds: f64) -> Resu
     Ok(scenario(settings, motion, seconds)?.run()?)
 }
 
-/// The same under a push (g) that grows for a second and stays for another one.
+/// Runs it under a push (g) that grows for a second and stays for another one.
 pub(super) fn pressed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings, &self::push(push, 1.0), 1.99)?, push, 1000)
 }
 
-/// A scenario under a push (g) that grows for a time (ms) and stays for a second, so smoothly, and in steps so small,
-/// that stiff elements do not ring with it.
+/// Runs a scenario under a push (g) that grows for a time (ms) and stays for a second, so smoothly, and in steps so
+/// small, that stiff elements do not ring.
 pub(super) fn run_pushed(scenario: &Scenario, push: f64, rise: u32) -> Result<Run, Failure> {
     let grown = |at: u32| 0.5 * (1.0 - cos(PI * f64::from(at.min(rise)) / f64::from(rise)));
     let samples = (0..rise + 1000).map(|at| push * GRAVITY * grown(at)).collect();
@@ -66,7 +66,7 @@ pub(super) fn push(amplitude: f64, seconds: f64) -> String {
     )
 }
 
-/// The displacement (m) of a body along an axis, with its times (s).
+/// Returns the displacement (m) of a body along an axis, with its times (s).
 pub(super) fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
     let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
@@ -80,7 +80,7 @@ fn chocks(angle: f64) -> Vec<String> {
         "stack.chock.gap=\"0 m\"".into(),
         format!("stack.chock.angle=\"{angle} rad\""),
         "stack.rack.cradle.angle=\"20 deg\"".into(),
-        // As hard as a penalty can be, so that nothing sinks in.
+        // As hard as the penalty method allows, so that penetration is negligible.
         "interface.fallen-barrel-rack.law=\"hertz\"".into(),
         "interface.fallen-barrel-rack.stiffness=\"1e11 N/m^1.5\"".into(),
         "interface.fallen-barrel-rack.friction.coefficient=0".into(),
@@ -102,14 +102,14 @@ fn rolls_out(degrees: f64) -> Problem {
     })
 }
 
-/// How long (s) the blow takes.
+/// Duration (s) of the impulse.
 const BLOW: f64 = 0.05;
 
-/// Distance (m) of the center of a barrel from that of the end of a chock that it rolls over.
+/// Distance (m) from the center of a barrel to that of the end of a chock over which it rolls.
 const ARM: f64 = 0.5 * 0.645_918_367_346_938_8 + 0.015;
 
-/// Push (g) from which a barrel that leans on a chock at an angle (rad) comes over it: about the end of the chock
-/// `L θ'' = g sin θ − a cos θ` while the blow lasts, and on the hill `g L (1 − cos θ)` after it.
+/// Returns the push (g) from which a barrel leaning on a chock at an angle (rad) rolls over it: about the end of the
+/// chock `L θ'' = g sin θ − a cos θ` during the impulse, and then over the barrier `g L (1 − cos θ)`.
 fn over_the_hill(angle: f64) -> f64 {
     let passes = |push: f64| {
         let steps = 2000;
@@ -142,7 +142,7 @@ fn hill() -> Problem {
     .asks("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
-        // Beyond the hill it comes down on the beam.
+        // Beyond the chock it falls onto the beam.
         let drops = run.assembly.of_kind(PartKind::Barrel).map(|b| run.fates.fate(b).drop);
         Ok(drops.fold(0.0, f64::max) > 0.05)
     })
@@ -168,14 +168,14 @@ fn dish(radius: f64) -> Problem {
     })
 }
 
-/// The period (s) with which a quantity crosses zero after a time (s), if it swings.
+/// Returns the period (s) of the zero crossings of a quantity after a time (s), if it oscillates.
 pub(super) fn period(ways: &[(f64, f64)], after: f64) -> Option<f64> {
     let from = ways.partition_point(|(time, _)| *time <= after);
     mean_time(&crossings(&ways[from..]), 3).map(|half| 2.0 * half)
 }
 
 fn slides() -> Problem {
-    // Newmark's block: against the ground it ends a v/2 (a − μg)/(μg) further back.
+    // Newmark's block: relative to the ground it ends a v/2 (a − μg)/(μg) further back.
     let (push_g, seconds, friction) = (0.15, 0.4, 0.05);
     let over: f64 = push_g - friction;
     let exact = 0.5 * over * GRAVITY * seconds * seconds * push_g / friction;
@@ -225,7 +225,7 @@ fn pads() -> Problem {
 
 const MASS: f64 = 100.0;
 
-/// A weight that flies at a speed (m/s) without gravity, and what it is joined to the ground by.
+/// A mass that flies at a speed (m/s) without gravity, joined to the ground by an element.
 fn flying(
     speed: f64,
     element: barrelstack_dynamics::Element<barrelstack_dynamics::Planar>,
@@ -281,11 +281,11 @@ fn between_stops() -> Problem {
         })
 }
 
-/// Frequency of the structure that a mass is tuned to (rad/s), and its stiffness over its mass.
+/// Frequency of the structure to which a mass is tuned (rad/s); the square is stiffness over mass.
 const OMEGA: f64 = TAU;
 
-/// The largest displacement of a structure under a harmonic force, over that under the same force at rest: with a
-/// mass that is this share of it, tuned so. From the answer to a blow, which holds all frequencies.
+/// Returns the largest displacement of a structure under a harmonic force over that under the same static force, with a
+/// tuned mass of this fraction of its mass. Computed from the response to an impulse, which excites all frequencies.
 fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure> {
     let body = |name: &str, mass: f64, z: f64| Body {
         mass,
@@ -313,7 +313,7 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
         ways.push(state.poses[1].position.x);
         ControlFlow::Continue(())
     })?;
-    // |X(ω)| of the blow m v, over its 1/k at rest; both peaks lie near the frequency of the structure.
+    // |X(ω)| of the impulse m v, over its static 1/k; both peaks lie near the frequency of the structure.
     let answer = |omega: f64| {
         let (mut re, mut im) = (0.0, 0.0);
         for (i, x) in ways.iter().enumerate() {

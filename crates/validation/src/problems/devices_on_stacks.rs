@@ -1,4 +1,4 @@
-//! Protection devices that hold a stack, as a scenario puts them on it: forces, periods and frequencies.
+//! Protection devices that hold a stack, from a scenario: forces, periods and frequencies.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use crate::{Failure, GRAVITY, Problem};
 
 use super::devices::{self, one_level, pressed, push, way};
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![lid(), lid_breaks(), strap()];
     list.extend(walking_stop());
@@ -27,20 +27,20 @@ const CRADLE: f64 = 28.0 * TAU / 360.0;
 /// Mass of a full barrel (kg).
 const BARREL: f64 = 46.0 + 990.0 * 0.225;
 
-/// The push (g) under which a barrel leans on one support of its cradle and on what holds it down with a force (N):
-/// `N sin φ = m A`, `N cos φ = m g + F`.
+/// Returns the push (g) under which a barrel leans on one support of its cradle and on a device that holds it down with
+/// a force (N): `N sin φ = m A`, `N cos φ = m g + F`.
 fn held_at(force: f64) -> f64 {
     tan(CRADLE) * (1.0 + force / (BARREL * GRAVITY))
 }
 
-/// The force (N) that holds it down under a push (g).
+/// Returns the force (N) that holds it down under a push (g).
 fn holding(push: f64) -> f64 {
     BARREL * GRAVITY * (push / tan(CRADLE) - 1.0)
 }
 
 const HELD: &str = "statics: F = m g (A/(g tan φ) − 1)";
 
-/// So hard that the barrel stays on its support where it was drawn.
+/// So stiff that the barrel stays in its drawn position on the support.
 const HARD: &str = "interface.barrel-rack.stiffness=\"500 MN/m\"";
 
 fn lids() -> Vec<String> {
@@ -50,7 +50,7 @@ fn lids() -> Vec<String> {
     settings
 }
 
-/// The largest force (N) in any element.
+/// Returns the largest force (N) in any element.
 fn largest(run: &Run) -> f64 {
     run.elements.iter().map(|element| element.peak.0.abs()).fold(0.0, f64::max)
 }
@@ -83,7 +83,7 @@ fn lid_breaks() -> Problem {
 }
 
 fn strap() -> Problem {
-    // A strap down each side of the barrel; without friction it turns until both pull alike.
+    // A strap on each side of the barrel; without friction it turns until both pull equally.
     let exact = 0.5 * holding(0.9);
     setting(
         "devices/strap",
@@ -98,12 +98,12 @@ fn strap() -> Problem {
     })
 }
 
-/// The period (s) with which a quantity crosses zero after a time (s).
+/// Returns the period (s) of the zero crossings of a quantity after a time (s).
 fn period(ways: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
     devices::period(ways, after).ok_or_else(|| Failure::Absent("it does not swing".into()))
 }
 
-/// The mass (kg) of bodies whose names a filter lets through.
+/// Returns the mass (kg) of the bodies whose names pass a filter.
 fn mass_of(run: &Run, counts: impl Fn(&str) -> bool) -> f64 {
     let bodies = run.assembly.model.bodies().iter().enumerate();
     let counted = bodies.filter(|(at, body)| *at != Assembly::GROUND && counts(&body.name));
@@ -144,7 +144,7 @@ fn walking_stop() -> [Problem; 2] {
     ]
 }
 
-/// A platform that moves as freely as can be.
+/// Settings of a platform without friction.
 fn platform(recentring: f64) -> Vec<String> {
     vec![
         "stack.isolator.path=\"flat\"".to_owned(),
@@ -155,7 +155,7 @@ fn platform(recentring: f64) -> Vec<String> {
     ]
 }
 
-/// What moves with a platform that has the default mass (kg).
+/// Mass (kg) that moves with a platform of the default mass.
 const ABOARD: f64 = 60.0 + 400.0 + 2.0 * BARREL;
 
 fn tie() -> Problem {
@@ -181,10 +181,10 @@ fn tie() -> Problem {
     })
 }
 
-/// Stiffness (N/m) of the springs of a platform on which a mass is tuned.
+/// Stiffness (N/m) of the springs of a platform with a tuned mass.
 const SPRINGS: f64 = 1e5;
 
-/// A platform on springs with a mass on the rack that it carries.
+/// Runs a platform on springs with a mass on the rack that it carries.
 fn with_mass(mass: f64, tuning: Tuning, motion: (f64, f64), seconds: f64) -> Result<Run, Failure> {
     let own = TAU / (tuning.frequency * (SPRINGS / ABOARD).sqrt());
     let mut settings = platform(SPRINGS);
@@ -221,7 +221,7 @@ fn frequency(upper: usize) -> Problem {
     .by(move |_| {
         let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
         let (platform, other) = (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
-        // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
+        // A mode is isolated by projecting out the other one, orthogonal with respect to the masses.
         let shape = own / (own - square);
         let seen =
             |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
@@ -230,19 +230,20 @@ fn frequency(upper: usize) -> Problem {
     })
 }
 
-/// The frequencies (rad/s) at which answers are looked for.
+/// The frequencies (rad/s) at which the response is evaluated.
 fn frequencies() -> impl Iterator<Item = f64> {
     (0..=60).map(|i| (SPRINGS / ABOARD).sqrt() * (0.65 + 0.01 * f64::from(i)))
 }
 
-/// The largest displacement of a platform under harmonic ground accelerations, over that under a steady one, with
-/// a mass tuned by Den Hartog's formula: closed form, and from the answer to a blow, which holds all frequencies.
+/// The largest displacement of a platform under harmonic ground acceleration over that under a steady one, with
+/// a mass tuned by Den Hartog's formula: in closed form, and from the response to an impulse, which excites all
+/// frequencies.
 fn tuned(share: f64) -> Problem {
     let tuning = Tuning::den_hartog(share);
     let whole = SPRINGS / ABOARD;
     let own = tuning.frequency * whole.sqrt();
     let closed = |omega: f64| {
-        // Of the mass, against the platform: y (ω₂² − ω² + 2 i ζ ω₂ ω) = −a + ω² x.
+        // The mass, relative to the platform: y (ω₂² − ω² + 2 i ζ ω₂ ω) = −a + ω² x.
         let (re, im) = (own * own - omega * omega, 2.0 * tuning.damping_ratio * own * omega);
         let size = re * re + im * im;
         // The platform: x (ω₁² − ω²) = −a + μ (ω₂² + 2 i ζ ω₂ ω) y.
@@ -275,7 +276,7 @@ fn tuned(share: f64) -> Problem {
                     im += step * x * sin(omega * t);
                 }
             }
-            // The blow holds a v sin(ωT/2)/(ωT/2) of every frequency.
+            // The impulse has the amplitude a v sin(ωT/2)/(ωT/2) at every frequency.
             let held = blow * GRAVITY * sin(0.5 * omega * seconds) / (0.5 * omega);
             (re * re + im * im).sqrt() * whole / held
         };

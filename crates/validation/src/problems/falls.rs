@@ -1,4 +1,4 @@
-//! How hard what falls is stopped, as a run tells it.
+//! Impact force on a falling body, as reported by a run.
 
 use std::ops::ControlFlow;
 
@@ -12,15 +12,15 @@ use crate::problem::{absent, relative, setting};
 use crate::scene::Scene;
 use crate::{Failure, GRAVITY, Problem};
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     [1.0, 5.0].map(stopped).into()
 }
 
-/// Mass (kg) and radius (m) of a full barrel, and how hard (N/m^1.5) the ground is.
+/// Mass (kg) and radius (m) of a full barrel, and Hertz stiffness (N/m^1.5) of the ground.
 const BARREL: [f64; 3] = [268.75, 0.345, 1.2e9];
 
-/// The largest force (N) of a ground `F = k δ^1.5` on a body that has fallen freely: `m g (h + δ) = ⅖ k δ^2.5`.
+/// Returns the largest force (N) of a ground `F = k δ^1.5` on a body in free fall: `m g (h + δ) = ⅖ k δ^2.5`.
 fn largest_force(height: f64) -> f64 {
     let [mass, _, hardness] = BARREL;
     let mut depth = 0.0_f64;
@@ -60,7 +60,7 @@ fn stopped(height: f64) -> Problem {
         })
 }
 
-/// A body that is 20 cm down has fallen; it has no seat to lose.
+/// A body that is 20 cm lower has fallen; it has no seat to lose.
 const THRESHOLDS: Thresholds = Thresholds {
     seat_loss_ratio: f64::INFINITY,
     fall_drop: 0.2,

@@ -24,7 +24,7 @@ fn fitted(stripes: &[Stripe]) -> Result<Fit, Failure> {
     fit(&evidence(stripes), Dispersion::Free).map_err(absent)
 }
 
-/// One number of the fit of the eight stripes, right to half a unit of its last printed digit.
+/// One number of the fit of the eight stripes, exact to half a unit of its last printed digit.
 fn number(
     id: &str,
     quantity: &'static str,
@@ -41,7 +41,7 @@ const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
 const LEVELS: [f64; 7] = [0.15, 0.25, 0.35, 0.45, 0.6, 0.8, 1.0];
 const AT: [f64; 5] = [0.2, 0.3, 0.45, 0.6, 0.9];
 
-/// The share of bands that hold the true curve, over campaigns of seven stripes of thirty cases.
+/// Returns the coverage of the true curve by bands, over campaigns of seven stripes of thirty cases.
 fn coverage(
     effort: Effort,
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
@@ -76,7 +76,7 @@ fn covered(
     band: fn(&[Stripe], &mut Random) -> Result<Vec<Interval>, Failure>,
 ) -> Problem {
     setting(format!("fragility/{id}"), title, source)
-        // Sixty campaigns of five places that go together scatter by some 0.02.
+        // Sixty campaigns at five correlated intensities scatter by some 0.02.
         .asks(
             "share of 95 % bands that hold the true curve, mean of five intensities",
             "",
@@ -107,7 +107,7 @@ fn power_law() -> Problem {
     })
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         number("median", "median θ", 0.426_30, 5e-6, |fit| fit.curve.median),

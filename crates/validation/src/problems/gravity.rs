@@ -1,4 +1,4 @@
-//! Equilibrium under gravity: forces, sinking, overhangs, and rest that stays.
+//! Equilibrium under gravity: forces, penetration, overhangs, and stability of rest.
 
 use std::ops::ControlFlow;
 
@@ -20,7 +20,7 @@ const SOURCE: &str = "statics";
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;
 
-/// How far (m) nodes are in from the ends, so that equal bricks can stand on each other.
+/// Distance (m) of nodes from the ends, so that equal bricks can stand on each other.
 pub(super) const INSET: f64 = 0.02;
 
 fn firm() -> NormalLaw {
@@ -31,7 +31,7 @@ fn rough() -> FrictionLaw {
     coulomb(0.5, STIFFNESS, 1e4)
 }
 
-/// A brick whose nodes are a little in from its ends.
+/// A brick whose nodes are slightly inside its ends.
 pub(super) fn brick(
     name: &str,
     (length, height): (f64, f64),
@@ -53,7 +53,7 @@ fn column(count: u32) -> Result<Scene, Failure> {
     Ok(Scene::new(bodies, interface(firm(), rough()), DOWN)?.settled(1e-9)?)
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend((1..=5).map(level_force));
@@ -64,7 +64,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// The sum of normal forces (N) between two bodies, whichever carries the nodes.
+/// Returns the sum of normal forces (N) between two bodies, whichever has the nodes.
 fn force_between(scene: &Scene, a: usize, b: usize) -> f64 {
     let joins = |pair: usize| {
         let pair = scene.model.pair(pair);
@@ -112,7 +112,7 @@ fn cradle(angle: f64) -> Problem {
         format!("disc of 275 kg on two smooth points at ±{angle} rad"),
         SOURCE,
     )
-    // The points lie a little higher on the sunken disc; stiffness decides.
+    // The points touch the sunken disc a little higher; the effect vanishes with stiffness.
     .asks("normal force of one", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
@@ -154,11 +154,11 @@ fn rest() -> Problem {
     })
 }
 
-/// The harmonic stack: the topmost of `n` bricks hangs out by a share of the farthest overhang.
+/// `true` if a harmonic stack of `n` bricks stands with a fraction of the largest overhang.
 fn stands(n: u32, share: f64) -> Result<bool, Failure> {
     let (length, height) = (1.0, 0.2);
-    // The lowest lies on a table that ends at x = 0; brick i from the top hangs out by L/2i over the
-    // one below.
+    // The lowest lies on a table that ends at x = 0; brick i from the top overhangs the one below by
+    // L/2i.
     let table = rectangle(4.0, 1.0);
     let mut ground = ground_of(vec![centered(Shape::Polygon(table.clone()))]);
     ground.pose = pose(-2.0, -0.5, 0.0);

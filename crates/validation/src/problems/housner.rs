@@ -1,4 +1,4 @@
-//! Free rocking: period and amplitude, loss at impacts, uplift, and overturning by one push.
+//! Free rocking: period and amplitude, loss at impacts, uplift, and overturning by one pulse.
 
 use barrelstack_dynamics::math::{cos, tan};
 
@@ -9,10 +9,10 @@ use crate::{Effort, Failure, GRAVITY, Problem, theory};
 
 const SOURCE: &str = "Housner 1963";
 
-/// A block whose corners are damped enough to show Housner's ratio (see `restitution`).
+/// A block whose corners are damped enough to reproduce Housner's ratio (see `restitution`).
 pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     RockingBlock {
-        // Damped both ways it comes nearer to his plastic impact than damped on approach alone.
+        // Damping in both directions comes nearer to his plastic impact than damping on approach alone.
         corner: Corner::KelvinVoigt,
         damping_ratio: 3.0,
         contact_frequency: contact_frequency(effort),
@@ -20,8 +20,8 @@ pub(super) fn firm(effort: Effort, radius: f64, alpha: f64) -> RockingBlock {
     }
 }
 
-/// A slender block, for closed forms that take angles as small; stiff, so that its sinking stays small
-/// beside its angles.
+/// A slender block, for closed forms of small angles; stiff, so that its penetration stays small
+/// relative to its angles.
 pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     let stiffer = if effort == Effort::Full { 5.0 } else { 4.0 };
     RockingBlock {
@@ -30,7 +30,7 @@ pub(super) fn slender(effort: Effort, radius: f64) -> RockingBlock {
     }
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for alpha in [0.10, 0.25, 0.40] {
@@ -78,7 +78,7 @@ fn ratio(alpha: f64) -> Problem {
     .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
-/// Lean over α after impacts, exact for any α, from φ = ½.
+/// Returns the rotation over α after impacts, exact for any α, from φ = ½.
 fn peaks(alpha: f64, impacts: usize) -> f64 {
     let eta = theory::housner_restitution(alpha);
     (0..impacts).fold(0.5, |share, _| theory::next_peak(alpha, share, eta * eta))
@@ -105,7 +105,7 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// The swing after a number of impacts.
+/// Returns the swing after a number of impacts.
 fn nth(swings: &[(f64, f64)], impacts: usize) -> Result<(f64, f64), Failure> {
     swings
         .get(impacts - 1)
@@ -129,7 +129,7 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
     })
 }
 
-/// Uplift under a ground acceleration that comes slowly; `vertical` (g) acts all the while.
+/// Uplift under a slowly growing ground acceleration; `vertical` (g) is constant.
 fn uplift(alpha: f64, vertical: f64) -> Problem {
     let exact = tan(alpha) * (1.0 + vertical);
     let name = if vertical == 0.0 {
@@ -165,7 +165,7 @@ fn rectangular(product: f64) -> Problem {
     )
     .asks("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
     .by(move |effort| {
-        // The jump of the push sets the springs swinging, by less the stiffer they are.
+        // The sudden push excites the springs, less the stiffer they are.
         refine(effort, exact, |level| {
             let softer = if effort == Effort::Full { 2 } else { 0 };
             let block = slender(effort, 1.0).refined(level - softer);

@@ -1,4 +1,4 @@
-//! Measures of ground motions with closed forms: a harmonic, and a push that stays.
+//! Intensity measures with closed forms: a harmonic, and a constant push.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,7 +19,7 @@ const CYCLES: u32 = 8;
 /// Damping ratio of spectra.
 const DAMPING: f64 = 0.05;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let time = f64::from(CYCLES) * PERIOD;
     let arias = PI / (2.0 * STANDARD_GRAVITY) * AMPLITUDE * AMPLITUDE * time / 2.0;
@@ -64,14 +64,14 @@ fn of_harmonic(
     .by(move |_| measured(&measure, &harmonic()?))
 }
 
-/// A push of 1 m/s² that stays for 4 s.
+/// A push of 1 m/s² for 4 s.
 fn push(step: f64) -> Result<Sampled, Failure> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
     let samples = (4.0 / step) as usize;
     sampled(step, vec![1.0; samples])
 }
 
-/// Largest pseudo-acceleration over the push: 1 + e^{−πζ/√(1−ζ²)}.
+/// Returns the largest pseudo-acceleration over the push: 1 + e^{−πζ/√(1−ζ²)}.
 fn overshoot() -> f64 {
     1.0 + exp(-PI * DAMPING / (1.0 - DAMPING * DAMPING).sqrt())
 }
@@ -99,7 +99,7 @@ fn short_period() -> Problem {
     )
     .asks("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
     .by(|_| {
-        // Twelve samples a cycle are steps of 42 ms, interpolated between them by the recursion itself.
+        // Twelve samples per cycle are steps of 42 ms, which the recursion interpolates.
         let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
         let motion = sampled(PERIOD / 12.0, (0..=12 * CYCLES).map(wave).collect())?;
         let short = IntensityMeasure::Sa { period: 0.002, damping: DAMPING };
@@ -107,7 +107,7 @@ fn short_period() -> Problem {
     })
 }
 
-/// `∫ PSV dT` from 0.1 s to 2.5 s with `PSV = S_a T/2π` and `S_a` the same at all periods.
+/// `∫ PSV dT` from 0.1 s to 2.5 s with `PSV = S_a T/2π` and equal `S_a` at all periods.
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
     setting("intensity/housner", "Housner intensity of a push of 1 m/s² that stays", STEP)

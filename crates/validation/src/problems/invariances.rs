@@ -1,4 +1,4 @@
-//! What must hold in every scene: symmetry, similitude, invariance, and books that close.
+//! Properties that hold in every scene: symmetry, similitude, invariance, and energy balance.
 
 use barrelstack_dynamics::{
     Body, ContactPair, Model, Nodes, NormalLaw, Planar, Shape, State, Still, Twist, Vec2,
@@ -13,7 +13,7 @@ use crate::{Effort, Failure, Outcome, Problem};
 const SOURCE: &str = "symmetry of mechanics";
 const BOOKS: &str = "balance of energy";
 
-/// Heaps that a problem looks at.
+/// Returns the number of heaps of a problem.
 fn seeds(effort: Effort) -> u64 {
     match effort {
         Effort::Fast => 2,
@@ -29,7 +29,7 @@ fn shaken(acceleration: f64) -> Shake {
     Shake::Harmonic { acceleration, omega: 9.0 }
 }
 
-/// The six numbers of each body's motion.
+/// Returns the six numbers of each body's motion.
 fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
     let bodies = state.poses.iter().zip(&state.twists);
     bodies
@@ -39,7 +39,7 @@ fn numbers(state: &State<Planar>) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// The largest difference of two scenes, the first scaled number by number.
+/// Returns the largest difference of two scenes, the first scaled component by component.
 fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
     numbers(a)
         .iter()
@@ -48,7 +48,7 @@ fn apart(a: &State<Planar>, scale: [f64; 6], b: &State<Planar>) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         invariance("mirror", "mirrored heap on mirrored ground", 1e-10, mirror),
@@ -92,7 +92,7 @@ fn mirror(seed: u64) -> Result<f64, Failure> {
         body.pose.position = flip(body.pose.position);
         body.pose.orientation = -body.pose.orientation;
         body.twist = Twist { linear: flip(body.twist.linear), angular: -body.twist.angular };
-        // Rectangles, discs and floors are their own mirror images; their nodes are not.
+        // Rectangles, discs and floors are symmetric; their nodes are not.
         for nodes in &mut body.nodes {
             if let Nodes::Fixed(nodes) = nodes {
                 for node in nodes {
@@ -111,7 +111,7 @@ fn mirror(seed: u64) -> Result<f64, Failure> {
     Ok(apart(&here.state, [-1.0, 1.0, -1.0, -1.0, 1.0, -1.0], &there.state))
 }
 
-/// A body four times as large in the same gravity.
+/// Returns a body four times as large under the same gravity.
 fn four_times(body: &Body<Planar>) -> Body<Planar> {
     let mut body = body.clone();
     body.mass *= 64.0;
@@ -122,7 +122,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
         match &mut placed.surface {
             Shape::Circle(circle) => circle.radius *= 4.0,
             Shape::Polygon(polygon) => *polygon = polygon.scaled(4.0),
-            // Half-planes have no size, and heaps hold nothing else.
+            // Half-planes have no size, and heaps contain no other shapes.
             Shape::HalfPlane(_) | Shape::Cradle(_) | Shape::BarrelProfile(_) => {}
         }
     }
@@ -133,7 +133,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
                     node.position = node.position * 4.0;
                 }
             }
-            // Heaps are made of blocks with nodes and of discs.
+            // Heaps consist of blocks with nodes and of discs.
             Nodes::Rounds(_) | Nodes::Whole(_) => {}
             Nodes::Rolling { radius, .. } => *radius *= 4.0,
         }
@@ -186,7 +186,7 @@ fn galilean(seed: u64) -> Result<f64, Failure> {
 fn order(seed: u64) -> Result<f64, Failure> {
     let bodies = heap(seed);
     let last = bodies.len();
-    // The ground stays first; body i changes places with body last − i.
+    // The ground stays first; body i is swapped with body last − i.
     let place = |i: usize| if i == 0 { 0 } else { last - i };
     let mut turned: Vec<Body<Planar>> = (0..last).map(|i| bodies[place(i)].clone()).collect();
     for nodes in turned.iter_mut().flat_map(|body| &mut body.nodes) {
@@ -194,7 +194,7 @@ fn order(seed: u64) -> Result<f64, Failure> {
             nodes.reverse();
         }
     }
-    // The same two bodies meet in the same roles, whatever their numbers.
+    // The same pairs of bodies in the same roles, whatever their numbers.
     let pairs = all_pairs(&bodies)
         .into_iter()
         .map(|p| ContactPair { contactor: place(p.contactor), target: place(p.target), ..p })

@@ -1,7 +1,7 @@
-//! Blocks that were measured: the granite blocks of Peña et al. on a shaking table.
+//! Measured blocks: the granite blocks of Peña et al. on a shaking table.
 //!
 //! Sizes and rigid-body theory are exact; the measured ratios of angular velocities are quoted from
-//! memory. What is checked is that the contact can be calibrated
+//! memory. The problems check that the contact can be calibrated
 //! to a measured block, not the measurement.
 
 use barrelstack_dynamics::math::atan;
@@ -14,12 +14,12 @@ use super::housner::firm;
 
 const SOURCE: &str = "Peña, Prieto, Lourenço et al. 2007, blocks S1 to S3";
 
-/// Name, width (m), height (m) and measured ratio of angular velocities, where it can be shown: that of
-/// S3, 0.978, lies below Housner's 0.9787, which is the least that any damping shows.
+/// Name, width (m), height (m) and measured ratio of angular velocities, if attainable: that of
+/// S3, 0.978, lies below Housner's 0.9787, the minimum for any damping.
 const BLOCKS: [(&str, f64, f64, Option<f64>); 3] =
     [("s1", 0.25, 1.000, Some(0.936)), ("s2", 0.17, 1.000, Some(0.973)), ("s3", 0.12, 1.000, None)];
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let periods = BLOCKS.into_iter().map(|(name, width, height, _)| period(name, width, height));
     let decays = BLOCKS
@@ -28,7 +28,7 @@ pub(super) fn problems() -> Vec<Problem> {
     periods.chain(decays).collect()
 }
 
-/// Half-diagonal (m) and slenderness (rad).
+/// Returns half-diagonal (m) and slenderness (rad).
 fn dimensions(width: f64, height: f64) -> (f64, f64) {
     (0.5 * width.hypot(height), atan(width / height))
 }
@@ -48,7 +48,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
     })
 }
 
-/// The lean after three impacts of a block whose contact was calibrated at the first.
+/// The rotation after three impacts of a block whose contact was calibrated at the first.
 fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
     let (radius, alpha) = dimensions(width, height);
     let exact = (0..3).fold(0.5, |share, _| theory::next_peak(alpha, share, ratio * ratio));
@@ -57,7 +57,7 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
         format!("the same, damping chosen at the first impact for the measured η = {ratio}"),
         SOURCE,
     )
-    // A share of the loss at an impact hangs on the lean; the least of the three shows it most.
+    // The loss at an impact depends partly on the rotation, most visibly for the least of the three.
     .asks("lean over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
     .by(move |effort| {
         let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };

@@ -26,7 +26,7 @@ mod statistics;
 
 use crate::Problem;
 
-/// Every problem, in the order of the report.
+/// Returns every problem, in the order of the report.
 pub fn all() -> Vec<Problem> {
     let groups = [
         housner::problems(),

@@ -1,7 +1,7 @@
-//! Smooth motions, against equations written apart from the contact code and solved by a library.
+//! Smooth motions, against independent equations solved by a library.
 //!
-//! Two kinds: rigid motion, which contact comes to as it stiffens, and the very equations of springs
-//! and dampers, of which only the time step is an approximation.
+//! Two kinds: rigid motion, which contact approaches as it stiffens, and the full equations of springs
+//! and dampers, which the program approximates only by its time step.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::math::{acos, atan2, cos, sin};
@@ -24,7 +24,7 @@ const SOURCE: &str =
     "equations of motion, solved by the library differential-equations 0.7, DOP853";
 const MASS: f64 = 100.0;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         rocking("leaning", (0.25, 6.0, 0.3)),
@@ -39,14 +39,14 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Acceleration `a sin ωt` of ground that starts at rest: velocity (m/s) and displacement (m).
+/// Returns velocity (m/s) and displacement (m) of ground with acceleration `a sin ωt` that starts at rest.
 fn ground(a: f64, omega: f64, t: f64) -> (f64, f64) {
     let velocity = a / omega * (1.0 - cos(omega * t));
     (velocity, a / omega * (t - sin(omega * t) / omega))
 }
 
-/// Rates of lean and spin of a block of half-diagonal R = 1 m that leans on a corner, on ground of an acceleration
-/// (m/s²) over time.
+/// Returns the rates of rotation and angular velocity of a block of half-diagonal R = 1 m that rocks on a corner, under
+/// a ground acceleration (m/s²) over time.
 fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64; 2]) -> [f64; 2] {
     // Moments about the corner: I θ″ = −m R [g sin(α − θ) + a cos(α − θ)] with I = 4/3 m R².
     move |t, y| {
@@ -56,8 +56,8 @@ fn leaning(alpha: f64, acceleration: impl Fn(f64) -> f64) -> impl Fn(f64, &[f64;
     }
 }
 
-/// A block that leans on one corner while the ground makes one sine of `push` g, first away from the
-/// corner: it sways about the lean at which it would fall, or goes over.
+/// A block that rocks on one corner under one sine cycle of `push` g, first away from the
+/// corner: it stays near the rotation of unstable equilibrium, or overturns.
 fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     let (radius, until) = (1.0, 1.0);
     let rates = leaning(alpha, move |t| -push * GRAVITY * sin(omega * t));
@@ -80,7 +80,7 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
     })
 }
 
-/// The same block on a soft corner: normal spring and damper, stick with spring and damper, in full.
+/// The same block on a soft corner, with the full equations of normal spring and damper, stick spring and damper.
 fn corner() -> Problem {
     let (alpha, omega, push, until) = (0.25, 6.0, 0.3, 0.8);
     let block = RockingBlock {
@@ -89,10 +89,10 @@ fn corner() -> Problem {
         damping_ratio: 0.1,
         ..RockingBlock::new(1.0, alpha)
     };
-    let (k, c) = (200.0 * 200.0, 2.0 * 0.1 * 200.0); // of a unit of mass
+    let (k, c) = (200.0 * 200.0, 2.0 * 0.1 * 200.0); // per unit of mass
     let (width, height) = (sin(alpha), cos(alpha));
-    // x, z, angle of the center, their rates, and the stretch of the stick. Both bodies feel the force
-    // on the floor below the corner, and the velocities are taken there.
+    // x, z, angle of the center, their rates, and the elongation of the stick. Contact force and velocities
+    // are taken at the point of the floor below the corner.
     let rates = move |t: f64, y: &[f64; 7]| {
         let [_, z, angle, vx, vz, spin, stick] = *y;
         let (right, up) =
@@ -122,7 +122,7 @@ fn corner() -> Problem {
     })
 }
 
-/// A block that bounces and pitches on two springs, never leaving them, while the floor goes up and down.
+/// A block that bounces and pitches on two springs without leaving them, on a floor that moves vertically.
 fn springs() -> Problem {
     let (half_width, half_height, until) = (0.4, 0.3, 1.0);
     let (frequency, zeta) = (60.0, 0.02);
@@ -130,7 +130,7 @@ fn springs() -> Problem {
     let (push, omega) = (1.5, 40.0);
     let (start, tilt) = (half_height - 0.8 * MASS * GRAVITY / (2.0 * stiffness), 1e-3);
     let inertia = MASS * (half_width * half_width + half_height * half_height) / 3.0;
-    // A corner's place to the right of the center, and above it.
+    // Position of a corner to the right of the center, and above it.
     let corner = move |side: f64, angle: f64| {
         (
             side * half_width * cos(angle) + half_height * sin(angle),
@@ -172,7 +172,7 @@ fn springs() -> Problem {
 const CRADLE: f64 = 0.6;
 const DISC: f64 = 0.35;
 
-/// A solid disc in a wide cradle at an angle (rad), sunk to rest, with stiffer contact and a shorter
+/// A solid disc in a wide cradle at an angle (rad), at its static penetration, with stiffer contact and a shorter
 /// step for each refinement; and that step (s).
 fn cradled(angle: f64, friction: f64, level: i32) -> Result<(Scene, f64), Failure> {
     let stiffness = 1e8 * 4.0_f64.powi(level);
@@ -186,7 +186,7 @@ fn cradled(angle: f64, friction: f64, level: i32) -> Result<(Scene, f64), Failur
     Ok((Scene::new(vec![cradle, body], laws, DOWN)?, 1e-4 / 2.0_f64.powi(level)))
 }
 
-/// Angle (rad) of the disc in its cradle, positive to the right.
+/// Returns the angle (rad) of the disc in its cradle, positive to the right.
 fn angle_in_cradle(scene: &Scene) -> f64 {
     let place = scene.state.poses[1].position;
     atan2(place.x, -place.z)
@@ -211,7 +211,7 @@ fn pendulum() -> Problem {
     })
 }
 
-/// A disc that spins so fast that it slips one way all the while and climbs its cradle.
+/// A disc that spins so fast that it slips in one direction throughout and climbs its cradle.
 fn bowl() -> Problem {
     let (friction, spin, until) = (0.4, 40.0, 0.6);
     let arm = CRADLE - DISC;
@@ -236,7 +236,7 @@ fn bowl() -> Problem {
     })
 }
 
-/// A thrown body whose drag couples flight and spin, seen from ground that shakes.
+/// A thrown body whose viscous drag couples translation and rotation, relative to shaking ground.
 fn flight() -> Problem {
     let until = 1.0;
     let (inertia, push, omega) = (8.0, 3.0, 7.0);
@@ -271,14 +271,14 @@ fn flight() -> Problem {
     })
 }
 
-/// The block of the ensembles, as the integrator of this crate has it.
+/// The block of the ensembles, for the independent integrator of this crate.
 fn rigid() -> Rocker {
     let alpha = 0.25;
     let restitution = theory::housner_restitution(alpha);
     Rocker { alpha, rate: theory::rocking_rate(1.0), restitution, slender: false }
 }
 
-/// The integrator that judges ensembles, on a stretch without impact.
+/// The integrator that verifies ensembles, over an interval without impact.
 fn own_lean() -> Problem {
     let (omega, push, until) = (6.0, 0.3, 1.0);
     let rigid = rigid();
@@ -294,7 +294,7 @@ fn own_lean() -> Problem {
             })
 }
 
-/// The same from rest: uplift, one swing under a half-sine, and the peak that it has left to reach.
+/// The same from rest: uplift, one swing under a half-sine, and the peak that follows from its energy.
 fn own_peak() -> Problem {
     let rigid = rigid();
     let omega = 2.0 * rigid.rate;
@@ -302,7 +302,7 @@ fn own_peak() -> Problem {
     let share = rigid.uplift() * GRAVITY / strength;
     let lift = atan2(share, (1.0 - share * share).sqrt()) / omega;
     let end = std::f64::consts::PI / omega;
-    // The ground goes right, so the block leans left: lean is positive all the same.
+    // The ground moves right, so the block rotates left; the rotation is counted positive.
     let rates = leaning(rigid.alpha, move |t| -strength * sin(omega * t));
     let [lean, spin] = solution(rates, [0.0, 0.0], (lift, end));
     // Energy from there on: ½ θ′² = p² [cos(α − peak) − cos(α − θ)].

@@ -1,4 +1,4 @@
-//! Nothing stands in anything: stacks that fall, looked at frame by frame.
+//! Bodies do not overlap: collapsing stacks, checked frame by frame.
 
 use std::path::{Path, PathBuf};
 
@@ -7,8 +7,8 @@ use crate::{Effort, Failure, Outcome, Problem};
 use barrelstack::overlap::Boundaries;
 use barrelstack::scenario::{RackKind, Scenario, catalog};
 
-/// Stacks of all kinds under strong shaking, all frames until rest: how deep bodies stand in each other
-/// that are no seat of each other.
+/// Stacks of all kinds under strong shaking, all frames until rest: the deepest overlap of bodies
+/// that have no seat on each other.
 pub(super) fn problem() -> Problem {
     setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
 .asks("deepest overlap but at seats", "m", absolute(0.0, 0.015))
@@ -21,7 +21,7 @@ pub(super) fn problem() -> Problem {
                 let scenario = random_stack(case, &records)?;
                 let run = match scenario.run() {
                     Ok(run) => run,
-                    // A rack whose rails lie too steep on the staves does not stand, and says so.
+                    // A rack whose rails are too steep for the staves does not stand, and reports it.
                     Err(barrelstack::RunFailure::Settle(_)) => {
                         unstable += 1;
                         continue;
@@ -47,17 +47,17 @@ pub(super) fn problem() -> Problem {
         })
 }
 
-/// The deepest overlaps (m) seen.
+/// The deepest overlaps (m) observed.
 #[derive(Default)]
 struct Survey {
-    /// Of two bodies that the stack does not join.
+    /// Of two bodies without a common seat.
     loose: f64,
-    /// Of a body and what it has its seat on.
+    /// Of a body and its seat.
     seat: f64,
-    /// The same in the last frame.
+    /// In the last frame: without a common seat, and at seats.
     end: f64,
     seat_end: f64,
-    /// Largest residual of the energy books.
+    /// Largest residual of the energy balance.
     books: f64,
 }
 
@@ -91,7 +91,7 @@ impl Survey {
     }
 }
 
-/// Records of horizontal motion that may not be bundled: used where they lie beside the checkout.
+/// Records of horizontal motion that may not be bundled: used if present beside the checkout.
 fn records() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     [
@@ -107,9 +107,9 @@ fn records() -> Vec<PathBuf> {
     .collect()
 }
 
-/// A stack that depends on nothing but its number and the records.
+/// A stack determined by its number and the records.
 fn random_stack(case: usize, records: &[PathBuf]) -> Result<Scenario, Failure> {
-    // One turn of SplitMix64 for every choice.
+    // One step of SplitMix64 per choice.
     let pick = |salt: usize, count: usize| {
         let mut z = ((case * 64 + salt) as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

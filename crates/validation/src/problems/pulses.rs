@@ -47,11 +47,11 @@ impl Form {
     }
 }
 
-/// A border of the table: where overturning starts, where it stops again, and where the block falls
+/// Borders of the table: where overturning starts, where the block is safe again, and where it overturns
 /// without an impact.
 const BORDERS: [&str; 3] = ["starts", "safe-again", "without-impact"];
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     list.extend([1.0, 2.0, 3.0, 5.0].map(|ratio| closed(Form::HalfSine, ratio)));
@@ -70,7 +70,7 @@ pub(super) fn problems() -> Vec<Problem> {
         (Form::OneCosine, 3.0, [1.8578, 6.5103, 10.954]),
     ] {
         let [starts, safe, again]: [f64; 3] = borders;
-        // Halfway to the neighbors the answer is known; no further than 3 %.
+        // Between neighboring borders the answer is known, so brackets reach halfway, and at most 3 %.
         let (low, high) = (0.5 * (starts + safe), 0.5 * (safe + again));
         let brackets = [
             (0.97 * starts, low.min(1.03 * starts)),
@@ -117,7 +117,7 @@ fn tabulated(
     exact: f64,
     bracket: (f64, f64),
 ) -> Problem {
-    // Between impacts the block falls below the border of being safe again, above the others.
+    // Below the border of being safe again the block overturns; above the other borders, too.
     let falls_below = which == BORDERS[1];
     setting(
         format!("pulses/{}-{ratio}-{which}", form.name()),

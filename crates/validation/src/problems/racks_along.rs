@@ -1,4 +1,4 @@
-//! Racks along their barrels: posts that bear a stack, and rails that raise one end of every barrel.
+//! Racks along their barrels: posts that carry a stack, and rails that raise one end of every barrel.
 
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack::{Run, Scenario};
@@ -10,15 +10,15 @@ use crate::{Failure, Problem};
 
 use super::devices::{push, run_pushed};
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![posts()];
     list.extend([(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)].map(|(degrees, side)| slides(degrees, side)));
     list
 }
 
-/// A stack along its barrels, on contacts so stiff that next to nothing gives, under a push (g) that grows for two
-/// seconds and stays for another one.
+/// Runs a stack along its barrels, with contacts so stiff that almost nothing deforms, under a push (g) that grows
+/// for two seconds and stays for another one.
 fn pushed(settings: &[String], push: f64) -> Result<Run, Failure> {
     run_pushed(&scenario(settings)?, push, 2000)
 }
@@ -37,20 +37,20 @@ fn scenario(settings: &[String]) -> Result<Scenario, Failure> {
     Ok(Scenario::parse("racks.toml", &text, settings)?)
 }
 
-/// Distance (m) of the outer end of the flat top of a post from the middle of its rack: 44 cm to its axis, half of
-/// its 5 cm, less the 12 mm by which its corners are rounded.
+/// Distance (m) of the outer end of the flat top of a post from the middle of its rack: 44 cm to its axis, plus half
+/// of its 5 cm, minus the 12 mm radius of its corners.
 const EDGE: f64 = 0.44 + 0.025 - 0.012;
 
 /// Height (m) from one level of racks on posts to the next.
 const PITCH: f64 = 0.89;
 
 fn towers() -> Vec<String> {
-    // The bottom rack is so heavy that the stack opens above it, at the first posts.
+    // The bottom rack is so heavy that the stack separates above it, at the first posts.
     [
         "stack.rack=rack-on-rack",
         "stack.levels=3",
         "interface.rack-ground.stiffness=\"5000 MN/m\"",
-        // Softer ones let the stack turn on the two corners of a post.
+        // Softer contacts let the stack rotate on the two corners of a post.
         "interface.rack-rack.stiffness=\"500 MN/m\"",
         "stack.override=[{ kind = \"rack\", level = 1, mass = \"50000 kg\" }]",
         "interface.barrel-rack.friction.coefficient=5.0",
@@ -79,7 +79,7 @@ fn posts() -> Problem {
     })
 }
 
-/// Height (m) of the center of mass of the upper levels over the posts that bear them.
+/// Returns the height (m) of the center of mass of the upper levels above the posts that carry them.
 fn height_of_upper_levels() -> Result<f64, Failure> {
     let assembly = assemble(&scenario(&towers())?).map_err(absent)?;
     let (mut mass, mut moment) = (0.0, 0.0);
@@ -101,29 +101,29 @@ const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
 /// Friction of the barrel on its rails.
 const FRICTION: f64 = 0.2;
 
-/// The push (g) from which a barrel slides on two rails that raise its right end by an angle (rad), towards that end
-/// or, with `side = -1`, from it.
+/// Returns the push (g) from which a barrel slides on two rails that raise its right end by an angle (rad), toward
+/// that end or, with `side = -1`, away from it.
 ///
-/// Its staves are an arc about a point C high above it, so it slides by turning about C: at the two contacts
+/// Its staves are an arc about a point C high above it, so it slides by rotating about C: at the two contacts
 /// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0` and about C `m d × (A, −g) = μ (N₁ + N₂) R`.
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
     let rise = 0.5 * (bilge - head);
     let arc = (0.25 * length * length + rise * rise) / (2.0 * rise);
-    // Rails at ±27 cm, 5 cm wide, their corners rounded by 12 mm: the barrel touches the inner ones.
+    // Rails at ±27 cm, 5 cm wide, corners rounded by 12 mm: the barrel touches the inner ones.
     let (corner, rail) = (0.012, 0.27 - 0.025 + 0.012);
     let down = arc - 0.5 * bilge;
-    // Of the center of the barrel, from C; the mirror image where it slides from its raised end.
+    // Center of the barrel, relative to C; mirrored if it slides away from its raised end.
     let center = Vec2::new(side * down * sin(angle), -down * cos(angle));
     let contact = |at: f64| {
         let x = (at + center.x) / (arc + corner);
         Vec2::new(x, -(1.0 - x * x).sqrt())
     };
     let [left, right] = [-rail, rail].map(contact);
-    // The forces at a contact for a normal force of 1: towards C, and against the slip, which is to the right.
+    // The force at a contact for a unit normal force: toward C, and against the slip, which is to the right.
     let force = |e: Vec2| Vec2::new(-e.x + FRICTION * e.z, -e.z - FRICTION * e.x);
     let (a, b) = (force(left), force(right));
-    // In weights: N₁ a + N₂ b = (−A, 1).
+    // In units of weight: N₁ a + N₂ b = (−A, 1).
     let whole = a.x * b.z - b.x * a.z;
     let normal = |push: f64| {
         let (x, z) = (-push, 1.0);
@@ -156,7 +156,7 @@ fn slides(degrees: f64, side: f64) -> Problem {
                 format!("interface.barrel-rack.friction.coefficient={FRICTION}"),
                 format!("stack.rack.incline=\"{degrees} deg\""),
             ];
-            // What the ground does to the left pushes the barrel to the right.
+            // Ground acceleration to the left pushes the barrel to the right.
             let run = pushed(&settings, -side * amplitude)?;
             Ok(run.fates.fate(named(&run.assembly, "B1.1")?).peak_slip > 1e-3)
         })

@@ -1,4 +1,4 @@
-//! How a block on accelerating ground begins to move: at rest, sliding, rocking, or both.
+//! Onset of motion of a block on accelerating ground: rest, sliding, rocking, or both.
 
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::{Drive, NormalLaw, Planar};
@@ -11,7 +11,7 @@ use crate::{Effort, Failure, GRAVITY, Problem, theory};
 const SOURCE: &str = "Shao and Tung 1999, Taniguchi 2002";
 const MASS: f64 = 100.0;
 
-/// A block on near rigid corners, at rest on the ground.
+/// A block on nearly rigid corners, at rest on the ground.
 pub(super) fn standing(
     (width, height): (f64, f64),
     friction: f64,
@@ -27,24 +27,24 @@ pub(super) fn standing(
     Ok(Scene::new(vec![floor(), body], laws, DOWN)?)
 }
 
-/// How a block of height 2 m and slenderness `s` has begun to move: whether it slid, whether it
-/// turned.
+/// Returns whether a block of height 2 m and slenderness `s` has begun to slide, and whether it has begun to
+/// rock.
 fn start(s: f64, beta: f64, friction: f64, refinement: i32) -> Result<(bool, bool), Failure> {
     let finer = 2.0_f64.powi(refinement);
     let mut scene = standing((2.0 * s, 2.0), friction, 1e10 * finer * finer)?;
-    // The acceleration comes slowly for the contact and at once for the block (p = 2.6 /s).
+    // The acceleration is slow for the contact and sudden for the block (p = 2.6 /s).
     let ramp = 0.004;
     let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp };
     scene.run(&drive, 5e-6 / finer, ramp + 0.02)?;
     let at = scene.state.poses[1];
-    // The ground runs to the right, so the block turns about its left lower corner.
+    // The ground moves to the right, so the block rotates about its lower left corner.
     let (sin, cos) = barrelstack_dynamics::math::sin_cos(at.orientation);
     let slip = scene.relative(1) - cos * s + sin + s;
-    // Sticks stretch and unload by micrometers, less so the stiffer they are.
+    // Sticks stretch and unload by micrometers, less the stiffer they are.
     Ok((slip.abs() > 4e-6 / finer, at.orientation.abs() > 1e-5))
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for s in [0.2, 0.25, 1.0] {
@@ -106,8 +106,8 @@ fn first_spin(s: f64, beta: f64) -> Problem {
         let finer = 2.0_f64.powi(level);
         let mut scene = standing((2.0 * s, 2.0), 10.0, 1e10 * finer * finer)?;
         let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 1e-9 };
-        // The spin between two instants, when the springs have come to rest and the block has
-        // hardly turned.
+        // From the angular velocity at two times, after the springs have come to rest and before the block has
+        // turned much.
         let step = 5e-6 / finer;
         scene.run(&drive, step, 0.004)?;
         let before = scene.state.twists[1].angular;
@@ -116,10 +116,10 @@ fn first_spin(s: f64, beta: f64) -> Problem {
     })
 }
 
-/// A flat block, too low to rock, after a ride on the ground.
+/// A flat block, too low to rock, after a motion of the ground.
 ///
 /// # Errors
-/// When the numbers break down.
+/// If the run fails numerically.
 pub(super) fn ridden(
     friction: f64,
     drive: &impl Drive<Planar>,
@@ -132,7 +132,7 @@ pub(super) fn ridden(
     Ok(scene)
 }
 
-/// Refinements that a fast run starts from.
+/// Returns the refinement from which a run starts.
 pub(super) fn base(effort: Effort) -> i32 {
     match effort {
         Effort::Fast => -1,

@@ -1,4 +1,4 @@
-//! Restitution: the law's own, under gravity, and what a rocking block shows of it.
+//! Restitution: of the law alone, under gravity, and of a rocking block.
 
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -19,7 +19,7 @@ const ROCKING: &str = "calibration of viscous damping, as Vlachakis et al. 2021"
 const OMEGA: f64 = 100.0;
 const RADIUS: f64 = 0.1;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     let table = [0.05, 0.0676, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 2.0];
@@ -47,8 +47,8 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must neither
-/// gain nor lose.
+/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must conserve
+/// energy.
 fn newtons_cradle() -> Problem {
     setting(
         "restitution/newtons-cradle",
@@ -75,7 +75,7 @@ fn newtons_cradle() -> Problem {
     })
 }
 
-/// A mass of 1 kg that meets the floor at a speed (m/s).
+/// A mass of 1 kg that hits the floor at a speed (m/s).
 fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, Failure> {
     let stiffness = OMEGA * OMEGA;
     let damping = restitution::damping(stiffness, zeta, 1.0);
@@ -88,7 +88,7 @@ fn striking(law: Corner, zeta: f64, speed: f64, gravity: Vec2) -> Result<Scene, 
     Ok(Scene::new(vec![floor(), body], interface(normal, FrictionLaw::Frictionless), gravity)?)
 }
 
-/// When (s) and how fast (m/s) a mass leaves the floor again; none when it stays for `patience` (s).
+/// Returns when (s) and how fast (m/s) a mass leaves the floor; `None` if it stays for `patience` (s).
 fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f64)>, Failure> {
     let mut before = (0.0, 0.0);
     let mut left = None;
@@ -104,7 +104,7 @@ fn leaving(scene: &mut Scene, step: f64, patience: f64) -> Result<Option<(f64, f
     Ok(left)
 }
 
-/// The step (s); here a refinement halves the step alone, since the answer is the law's own.
+/// Returns the step (s); here a refinement halves only the step, since the exact answer is that of the law.
 fn step(level: i32) -> f64 {
     1e-4 / OMEGA / 2.0_f64.powi(level)
 }
@@ -132,8 +132,8 @@ fn rebound(law: Corner, zeta: f64, exact: f64) -> Problem {
         };
         refine(effort, true_value, |level| {
             let mut scene = striking(law, zeta, 1.0, Vec2::default())?;
-            // The Kelvin–Voigt node lets go before the mass is back at the surface; by then it
-            // flies at the speed with which it left.
+            // The Kelvin–Voigt node releases the mass before it is back at the surface; by then it
+            // flies at the speed of release.
             Ok(gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.1)
         })
     })
@@ -197,12 +197,12 @@ fn stays(zeta: f64) -> Problem {
     .asks("Γ = g/ωv from which it does not lift off", "", relative(exact, 2e-3).fast(1.2e-2))
     .at_border(0.02, move |gamma| {
         let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
-        // Every later swing is lower than the first.
+        // Every later rebound is lower than the first.
         Ok(leaving(&mut scene, step(0), 8.0 / OMEGA)?.is_none())
     })
 }
 
-/// The longest step at which symplectic Euler keeps a mass quiet on its node.
+/// The longest stable step of symplectic Euler for a mass on its node.
 fn stability(zeta: f64) -> Problem {
     let exact = 2.0 * ((1.0 + zeta * zeta).sqrt() - zeta);
     setting(
@@ -225,7 +225,7 @@ fn stability(zeta: f64) -> Problem {
     })
 }
 
-/// A damping chosen at one swing shows the target at another.
+/// A damping calibrated at one amplitude reproduces the target at another.
 fn calibrated(target: f64) -> Problem {
     let alpha = 0.25;
     setting(

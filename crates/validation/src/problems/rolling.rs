@@ -1,4 +1,4 @@
-//! Discs that roll: on a moving base, down a slope, and in cradles.
+//! Rolling discs: on a moving base, down a slope, and in cradles.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -25,12 +25,12 @@ const RADIUS: f64 = 0.35;
 /// k²/r² of a full barrel whose wine slips, a ball, a solid cylinder and a hoop.
 const RATIOS: [f64; 4] = [0.1236, 0.4, 0.5, 1.0];
 
-/// Stiffness (N/m) after refinements.
+/// Returns the stiffness (N/m) after refinements.
 fn stiffness(level: i32) -> f64 {
     1e8 * 4.0_f64.powi(level)
 }
 
-/// Time step (s) after refinements.
+/// Returns the time step (s) after refinements.
 fn step(level: i32) -> f64 {
     1e-4 / 2.0_f64.powi(level)
 }
@@ -45,7 +45,7 @@ fn stick(coefficient: f64, level: i32) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, MASS))
 }
 
-/// A disc of k²/r² = `ratio`, sunk to rest on a floor.
+/// A disc of k²/r² = `ratio`, at its static penetration in a floor.
 fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene, Failure> {
     let sunk = -MASS * gravity.z / stiffness(level);
     let center = Vec2::new(0.0, RADIUS - sunk);
@@ -53,7 +53,7 @@ fn roller(ratio: f64, friction: f64, gravity: Vec2, level: i32) -> Result<Scene,
     Ok(Scene::new(vec![floor(), body], interface(firm(level), stick(friction, level)), gravity)?)
 }
 
-/// Mean acceleration (m/s²) of the center between 0.5 s and 1 s.
+/// Returns the mean acceleration (m/s²) of the center between 0.5 s and 1 s.
 fn acceleration(scene: &mut Scene, drive: &impl Drive<Planar>, level: i32) -> Result<f64, Failure> {
     scene.run(drive, step(level), 0.5)?;
     let before = scene.state.twists[1].linear.x;
@@ -61,13 +61,13 @@ fn acceleration(scene: &mut Scene, drive: &impl Drive<Planar>, level: i32) -> Re
     Ok((scene.state.twists[1].linear.x - before) / 0.5)
 }
 
-/// Speed (m/s) at which the disc slips on its base.
+/// Returns the slip speed (m/s) of the disc on its base.
 fn slip(scene: &Scene) -> f64 {
     let (ground, twist) = (scene.state.twists[0], scene.state.twists[1]);
     (twist.linear.x + RADIUS * twist.angular - ground.linear.x).abs()
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for ratio in RATIOS {
@@ -150,7 +150,7 @@ fn slope_slip(ratio: f64) -> Problem {
         scene.run(&Still, step(0), 1.0)?;
         let start = slip(&scene);
         scene.run(&Still, step(0), 2.0)?;
-        // Rolling on springs it slips at a steady speed; beyond the limit the slip grows.
+        // Rolling on springs it creeps at a steady speed; beyond the limit the slip speed grows.
         Ok(slip(&scene) - start > 2e-3)
     })
 }
@@ -174,7 +174,7 @@ fn swing(ratio: f64) -> Problem {
         let mut scene = Scene::new(vec![cradle, body], laws, DOWN)?;
         let place = |state: &State<Planar>| state.poses[1].position.x;
         let through = run_crossings(&mut scene, step(level), 8.0, place)?;
-        // It starts on the right, so every other time it comes from there.
+        // It starts on the right, so every second crossing is from there.
         let leftward: Vec<f64> = through.into_iter().step_by(2).collect();
         mean_time(&leftward, 4).ok_or_else(|| Failure::Absent("the disc does not swing".into()))
     })

@@ -1,4 +1,4 @@
-//! Blocks that slide: through pulses, on shaking ground, down slopes; and blocks that must not.
+//! Sliding blocks: under pulses, on shaking ground, down slopes; and blocks that must not slide.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ const COULOMB: &str = "Coulomb";
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let (a, n, duration) = (0.5, 0.2, 0.4);
     let half_sine =
@@ -87,13 +87,13 @@ fn steady() -> Problem {
         })
 }
 
-/// A low block on its lower corners, sunk to rest, on a slope of an angle (rad).
+/// A low block on its lower corners, at its static penetration, on a slope of an angle (rad).
 fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Result<Scene, Failure> {
     let gravity = gravity_on_slope(slope);
     let sunk = -MASS * gravity.z / (2.0 * STIFFNESS);
     let mut body = block("sledge", (0.6, 0.1), MASS, pose(0.0, 0.05 - sunk, 0.0));
     body.twist = Twist { linear: Vec2::new(speed, 0.0), angular: 0.0 };
-    // Damped both ways, so that starts die out.
+    // Damped in both directions, so that initial vibrations decay.
     let normal = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e4 };
     Ok(Scene::new(vec![floor(), body], interface(normal, friction), gravity)?)
 }

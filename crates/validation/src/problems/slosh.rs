@@ -1,5 +1,5 @@
 //! Waves in a part-filled barrel: their frequencies and masses against published ones, and against finite
-//! elements in the plane of the wine.
+//! elements in the plane of the cross-section.
 
 use barrelstack::slosh::{across, along, filled_to};
 use barrelstack::{Run, Scenario};
@@ -14,7 +14,7 @@ const NEARLY_EMPTY: &str = "a particle in a round trough";
 const NEARLY_FULL: &str = "ice-fishing problem, Fox and Kuttler 1983";
 const ELEMENTS: &str = "potential theory by finite elements";
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![
         frequency("nearly-empty", NEARLY_EMPTY, 1e-4, 1.0, 2e-3),
@@ -29,7 +29,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// `ω² R/g` of a cylinder of radius 1 m that is filled to a depth (m).
+/// Returns `ω² R/g` of a cylinder of radius 1 m filled to a depth (m).
 fn number(depth: f64) -> f64 {
     1.0 / across(1.0, filled_to(depth)).length
 }
@@ -56,7 +56,7 @@ fn nearly_full() -> Problem {
     .by(move |_| Ok(number(depth) * half_width))
 }
 
-/// Elements to a side, by which the answers of finite elements are off by some 0.1 %.
+/// Elements per side, for which the finite-element answers are off by some 0.1 %.
 const SIDE: usize = 28;
 
 fn by_elements(depth: f64) -> Problem {
@@ -81,8 +81,8 @@ fn mass(depth: f64) -> Problem {
     .by(move |_| Ok(across(1.0, filled_to(depth)).share))
 }
 
-/// The first antisymmetric wave in a segment of the unit circle, `ω²/g` and its share of the mass, by bilinear
-/// elements between surface and wall: an eigenvalue problem `K φ = κ M φ` with `M` on the surface alone.
+/// Returns `ω²/g` and the mass fraction of the first antisymmetric wave in a segment of the unit circle, by bilinear
+/// elements between surface and wall: an eigenvalue problem `K φ = κ M φ` with `M` on the surface only.
 fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
     let angle = acos(1.0 - depth);
     let (width, height) = sin_cos(angle);
@@ -91,7 +91,7 @@ fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
         let (sin, cos) = sin_cos(angle * s);
         [(1.0 - t) * width * s + t * sin, -(1.0 - t) * height - t * cos]
     };
-    // On the middle line the potential is zero; where surface and wall meet there is one node.
+    // On the center line the potential is zero; at the corner of surface and wall there is one node.
     let count = (side - 1) * (side + 1) + 1;
     let number = |i: usize, j: usize| match i {
         0 => None,
@@ -130,7 +130,7 @@ fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
     }
     let surface: Vec<usize> = (1..=side).filter_map(|i| number(i, 0)).collect();
     let step = width / side as f64;
-    // The mass matrix of linear elements on the surface, zero in the middle.
+    // The mass matrix of linear elements on the surface, with zero at the center.
     let weighed = |wave: &[f64]| -> Vec<f64> {
         let at = |i: usize| if i == 0 { 0.0 } else { wave[surface[i - 1]] };
         let mut load = vec![0.0; count];
@@ -162,7 +162,7 @@ fn finite_elements(depth: f64, side: usize) -> (f64, f64) {
     (kappa, 2.0 * kappa * push * push / square / area)
 }
 
-/// The lower factor of a symmetric matrix, in its place (Cholesky).
+/// Computes the lower Cholesky factor of a symmetric matrix, in place.
 fn factorize(matrix: &mut [Vec<f64>]) {
     for i in 0..matrix.len() {
         for j in 0..=i {
@@ -186,7 +186,7 @@ fn solve(factor: &[Vec<f64>], load: &mut [f64]) {
 }
 
 fn long() -> Problem {
-    // A tank of 2 m by 0.5 m, as deep as half of a cylinder of that mean depth.
+    // A tank of 2 m by 0.5 m, represented by half of a cylinder of that mean depth.
     let (length, depth) = (2.0, 0.5);
     let exact = std::f64::consts::PI / length * (std::f64::consts::PI * depth / length).tanh();
     setting(
@@ -201,7 +201,7 @@ fn long() -> Problem {
     })
 }
 
-/// The wine of a barrel in its cradle, set in motion by a short push.
+/// The wine of a barrel in its cradle, excited by a short push.
 fn in_a_stack(filled: f64) -> Problem {
     let wave = scenario(filled)
         .ok()

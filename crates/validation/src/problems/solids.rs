@@ -1,5 +1,5 @@
-//! Solid bodies: nothing stands in anything, what falls is stopped within millimeters, and contact is smooth
-//! where boundaries slide along each other.
+//! Solid bodies: no overlaps, falls stopped within millimeters, and smooth contact where boundaries slide along
+//! each other.
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -17,12 +17,12 @@ use crate::{Effort, Failure, GRAVITY, Outcome, Problem};
 
 const REBOUND: &str = "balance of energy of a spring k δ^1.5";
 
-/// A full barrel and its law of impact, those of the catalog.
+/// A full barrel and its impact law, from the catalog.
 const MASS: f64 = 270.0;
 const STIFFNESS: f64 = 1.2e9;
 const RESTITUTION: f64 = 0.3;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     let mut list = vec![];
     for height in [1.0, 2.0, 3.3] {
@@ -45,8 +45,8 @@ fn law() -> NormalLaw {
     NormalLaw::Rebound { stiffness: STIFFNESS, restitution: RESTITUTION, speed: 0.1 }
 }
 
-/// A mass that meets the floor after a fall from a height (m): its greatest depth (m), and its speed
-/// (m/s) as it leaves.
+/// Returns the greatest depth (m) and the rebound speed (m/s) of a mass that hits the floor after a fall from a height
+/// (m).
 fn drop(mass: f64, height: f64, step: f64) -> Result<(f64, f64), Failure> {
     let radius = 0.35;
     let mut body = disc("mass", radius, mass, 0.01, Vec2::new(0.0, radius));
@@ -71,8 +71,8 @@ fn speed_after(height: f64) -> f64 {
     (2.0 * GRAVITY * height).sqrt()
 }
 
-/// How deep a barrel goes: `½ m v² + m g δ = ⅖ k δ^2.5`, while it is much faster than the speed at which
-/// the law begins to damp.
+/// The depth of a barrel: `½ m v² + m g δ = ⅖ k δ^2.5`, if it is much faster than the speed at which the law begins to
+/// damp.
 fn depth(height: f64) -> Problem {
     let energy = MASS * GRAVITY * height;
     let mut exact = 0.01;
@@ -88,7 +88,7 @@ fn depth(height: f64) -> Problem {
     .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
-/// How fast it leaves, whatever its mass.
+/// The rebound speed, independent of the mass.
 fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     setting(
         format!("solids/restitution-{}-{height:.1}m", what.replace(' ', "-")),
@@ -104,7 +104,7 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
     })
 }
 
-/// The same with the step that a stack takes.
+/// The rebound with the default step of a stack.
 fn default_step() -> Problem {
     setting(
         "solids/restitution-at-the-default-step",
@@ -127,7 +127,7 @@ fn default_step() -> Problem {
     })
 }
 
-/// A shape that touches others exactly.
+/// A body whose shape contacts others exactly, not by nodes.
 fn solid(name: &str, shape: Shape, pose: Pose<Planar>) -> Body<Planar> {
     let rounds = Nodes::Rounds(shape.rounds(1.0));
     Body {
@@ -156,7 +156,7 @@ fn two_boxes() -> [Shape; 2] {
     [rounded_box(1.0, 0.2), rounded_box(0.6, 0.2)]
 }
 
-/// The rail of a rack and a barrel along its axis.
+/// The rail of a rack, and a barrel along its axis.
 fn rail_and_barrel() -> [Shape; 2] {
     let rail = Polygon::bar(Vec2::new(-0.48, 0.0), Vec2::new(0.48, 0.0), 0.012);
     let barrel = BarrelProfile::new(0.95, 0.58, 0.7).and_then(|profile| profile.rounded(0.01));
@@ -166,7 +166,7 @@ fn rail_and_barrel() -> [Shape; 2] {
     }
 }
 
-/// Two bodies that test each other both ways, the first of them at the origin.
+/// A model of two bodies, each tested as contactor of the other; the lower is at the origin.
 fn two(
     [below, above]: [Shape; 2],
     upper: Pose<Planar>,
@@ -183,7 +183,7 @@ fn two(
     Ok((model, state))
 }
 
-/// Forces on the upper box: horizontal, vertical (N), moment (N m), and how many contacts make them.
+/// Returns the forces on the upper box: horizontal, vertical (N), moment (N m), and the number of contacts.
 fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Failure> {
     let (model, state) = two(two_boxes(), upper, swapped)?;
     let mut scratch = Scratch::new(&model);
@@ -192,7 +192,7 @@ fn forces_on(upper: Pose<Planar>, swapped: bool) -> Result<([f64; 3], usize), Fa
     Ok(([wrench.force.x, wrench.force.z, wrench.moment], scratch.contacts.len()))
 }
 
-/// A box flat on another: two contacts, at the ends of where they overlap, whichever box they are of.
+/// A box flat on another: two contacts, at the ends of the overlap, whichever box they belong to.
 fn flat(share: f64, count: f64) -> Problem {
     setting(
         format!("solids/flat-on-flat-{share:.2}"),
@@ -212,7 +212,7 @@ fn flat(share: f64, count: f64) -> Problem {
     })
 }
 
-/// Forces change smoothly while one box goes along paths over flats, edges and corners of the other: the
+/// Forces change smoothly while one box moves along paths over flats, edges and corners of the other: the
 /// largest jump between neighbors of a fine path, over the largest change that the stiffness explains.
 fn smooth() -> Problem {
     setting(
@@ -225,7 +225,7 @@ fn smooth() -> Problem {
         let steps = if effort == Effort::Full { 4000 } else { 1000 };
         let (mut worst, mut touching) = (0.0_f64, 0_u64);
         for path in 0..40 {
-            // From the left edge to the right one, sinking and turning a little on the way.
+            // From the left edge to the right one, sinking and rotating a little along the path.
             let lean = f64::from(path) / 40.0 - 0.5;
             let depth = 1e-3 * (1.0 + f64::from(path % 4));
             let at = |i: i32| {
@@ -251,11 +251,11 @@ fn smooth() -> Problem {
     })
 }
 
-/// Way (m, rad) to either side over which a slope is taken.
+/// Displacement (m, rad) to either side for a finite difference.
 const WAY: f64 = 1e-8;
 
-/// Forces are minus the slope of the energy that the springs store, wherever two bodies press into each
-/// other and whichever of their pieces meet: so no way around a corner gives or takes energy. The largest
+/// Forces are the negative gradient of the stored elastic energy, wherever two bodies press into each
+/// other and whichever of their pieces touch, so no path around a corner gains or loses energy. The largest
 /// difference over the force, at poses all around the lower body, of all three components.
 fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
     setting(
@@ -286,7 +286,7 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
             }
             let pose = [1.8 * at[0] - 0.9, 1.2 * at[1] - 0.6, 2.0 * PI * at[2]];
             let (_, force, deepest, contacts) = energy_and_force(pose);
-            // Deeper than this the cores of the bodies may overlap, which no contact is meant to reach.
+            // At greater depth the cores of the bodies may overlap, which the contact is not designed for.
             if deepest == 0.0 || deepest > 0.015 {
                 continue;
             }

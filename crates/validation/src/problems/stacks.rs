@@ -1,4 +1,4 @@
-//! Stacked blocks: which joint opens or slides first, and the four ways in which two blocks rock.
+//! Stacked blocks: the joint that opens or slides first, and the four rocking patterns of two blocks.
 
 use std::ops::ControlFlow;
 
@@ -19,7 +19,7 @@ const MASS: f64 = 100.0;
 /// Stiffness (N/m) of a joint's nodes.
 const STIFFNESS: f64 = 1e9;
 
-/// Blocks of sizes (m) on each other, from the ground up, with a friction coefficient of the ground
+/// Blocks of given sizes (m) on each other, from the ground up, with one friction coefficient of the ground
 /// and one of all other joints.
 fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> {
     let mut bodies = vec![floor()];
@@ -44,7 +44,7 @@ fn tower(sizes: &[(f64, f64)], frictions: (f64, f64)) -> Result<Scene, Failure> 
 /// Time step (s).
 const STEP: f64 = 1e-5;
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         opens("one", &[(0.4, 1.2)]),
@@ -58,7 +58,7 @@ pub(super) fn problems() -> Vec<Problem> {
     ]
 }
 
-/// Least half-width of a joint over the height of the center of mass above it; the joint's number.
+/// Returns the least half-width of a joint over the height of the center of mass above it, and the joint's index.
 fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
     let joint = |k: usize| {
         // Equal masses: the mean of the heights of the centers above the joint.
@@ -68,7 +68,7 @@ fn least_ratio(sizes: &[(f64, f64)]) -> (f64, usize) {
             sum += base + 0.5 * height;
             base += height;
         }
-        // The joint turns about the outermost node of the narrower face.
+        // The joint rotates about the outermost node of the narrower face.
         let below = if k == 0 { f64::INFINITY } else { sizes[k - 1].0 };
         let half = 0.5 * sizes[k].0.min(below) - INSET;
         half / (sum / above.len() as f64)
@@ -135,10 +135,10 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
     })
 }
 
-/// Names of the patterns of Psycharis, in his order of appearance here.
+/// Names of the patterns of Psycharis, in order of appearance here.
 const NAMES: [&str; 4] = ["together", "upper alone", "same sense", "opposite senses"];
 
-/// The pattern of two blocks that lean by `lower` and `upper` (rad), if both are clear of rest.
+/// Returns the pattern of two blocks with rotations `lower` and `upper` (rad), if both are clear of rest.
 fn pattern(lower: f64, upper: f64) -> Option<usize> {
     let (open, hair) = (2e-3, 2e-4);
     let between = upper - lower;

@@ -1,6 +1,6 @@
 //! Maxima over an ensemble of records, against the rigid-block integrator.
 //!
-//! Single histories of rocking are not reproducible, the distribution of their maxima is.
+//! Single rocking histories are not reproducible, but the distribution of their maxima is.
 
 use std::f64::consts::TAU;
 
@@ -22,8 +22,8 @@ const RADIUS: f64 = 1.0;
 /// Sample step of the records (s).
 const SAMPLE: f64 = 0.01;
 
-/// A synthetic record: 24 waves between 0.4 Hz and 6 Hz of random phase, risen and decayed, its peak
-/// drawn between 0.26 g and 0.5 g, so that less than half of them overturn the block.
+/// A synthetic record: 24 waves between 0.4 Hz and 6 Hz of random phase in an envelope, with a peak
+/// between 0.26 g and 0.5 g, so that less than half of the records overturn the block.
 fn record(seed: u64) -> Sampled {
     let mut random = Random(seed);
     let peak = random.within(0.26, 0.5) * GRAVITY;
@@ -38,7 +38,7 @@ fn record(seed: u64) -> Sampled {
         .map(|i| {
             let t = f64::from(i) * SAMPLE;
             let envelope = (t / 2.0).min(1.0).powi(2) * exp(-0.35 * (t - 4.0).max(0.0));
-            // Low waves carry most, as in ground acceleration past its corner.
+            // Low frequencies dominate, as in ground acceleration above its corner frequency.
             let sum: f64 = waves.iter().map(|(w, p)| cos(w * t + p) / (1.0 + w / 15.0)).sum();
             let end = ((10.0 - t) / 0.5).clamp(0.0, 1.0);
             envelope * sum * end
@@ -48,7 +48,7 @@ fn record(seed: u64) -> Sampled {
     Sampled::new(SAMPLE, shape.iter().map(|a| a * peak / largest).collect())
 }
 
-/// Peak leans over α of the contact code and of the rigid block, record by record; 2 if overturned.
+/// Returns the peak rotations over α of the contact code and of the rigid block, record by record; 2 if overturned.
 fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     let block: RockingBlock = firm(effort, RADIUS, ALPHA);
     let rigid: Rocker = block.rigid(theory::housner_restitution(ALPHA));
@@ -64,7 +64,7 @@ fn maxima(effort: Effort) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     Ok((ours, exact))
 }
 
-/// The largest vertical distance of two distributions of equally many samples.
+/// Returns the largest vertical distance of two empirical distributions of equally many samples.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let share =
         |of: &[f64], at: f64| of.iter().filter(|x| **x <= at).count() as f64 / of.len() as f64;
@@ -78,7 +78,7 @@ fn median(of: &[f64]) -> f64 {
     0.5 * (sorted[half] + sorted[(sorted.len() - 1) / 2])
 }
 
-/// The problems of this theory.
+/// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
     vec![
         setting(
@@ -86,7 +86,7 @@ pub(super) fn problems() -> Vec<Problem> {
             "block of α = 0.25, R = 1 m under 200 synthetic records (10 in the fast form)",
             SOURCE,
         )
-        // Two samples of 200 from one distribution are this far apart in one case of twenty.
+        // Two samples of 200 from one distribution differ by this much in one case of twenty.
         .asks(
             "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
             "",

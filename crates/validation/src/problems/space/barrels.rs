@@ -1,4 +1,4 @@
-//! What rolls on its rim or its stave: tops, discs, barrels on a floor and on tubes.
+//! Rolling on a rim or a stave: tops, discs, barrels on a floor and on tubes.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
@@ -70,13 +70,13 @@ fn shaped(length: f64, head: f64, bilge: f64, rounding: f64) -> Result<Barrel, F
     Barrel::new(length, head, bilge, rounding).map_err(absent)
 }
 
-/// The mean rate (rad/s) at which the axis of body 1 goes round the upright until a time (s).
+/// Returns the mean rate (rad/s) at which the axis of body 1 precesses about the vertical until a time (s).
 fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Failure> {
     let (mut round, mut before) = (0.0, 0.0);
     scene.watch(&Still, step, end, |state, _, _| {
         let axis = axis(state.poses[1].orientation);
         let now = atan2(axis.y, axis.x);
-        // Azimuths jump by a turn.
+        // Azimuths jump by a full turn.
         let way: f64 = now - before;
         round += if way > PI {
             way - TAU
@@ -91,7 +91,7 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
     Ok(round / end)
 }
 
-/// A top whose spherical tip rolls, going round steadily.
+/// A top whose spherical tip rolls, in steady precession.
 fn top(asked: &'static str) -> Problem {
     let (quantity, unit, exact) = match asked {
         "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
@@ -129,9 +129,9 @@ fn top(asked: &'static str) -> Problem {
     })
 }
 
-/// A body of revolution that runs round on its lower rim while its center stays.
+/// A body of revolution that rolls on its lower rim while its center stays.
 ///
-/// The point of the rim on the floor stands still, so the spin lies along the line from the center to it.
+/// The rim's contact point is at rest, so the angular velocity lies along the line from the center to it.
 fn running_round(
     shape: Barrel,
     (mass, about, across): (f64, f64, f64),
@@ -146,7 +146,7 @@ fn running_round(
     let place = Vec3::new(0.0, 0.0, height - mass * G / STIFFNESS);
     let mut body = solid("barrel", Hull::Barrel(shape), mass, inertia, place);
     body.pose.orientation = upright(lean);
-    // From the center to the floor, as a sum along the upright and along the axis.
+    // The vector from the center to the floor, decomposed along the vertical and along the axis.
     let to_rim = Vec3::new(aside, 0.0, -height);
     let upward = -height - aside * cos(lean) / sin(lean);
     body.twist.angular = to_rim * (round / upward);
@@ -163,7 +163,7 @@ fn disc(degrees: f64, exact: f64) -> Problem {
     .by(move |_| {
         let (mass, radius) = (20.0, 0.3);
         let square = mass * radius * radius;
-        // As thin as no lever.
+        // So thin that the thickness has no effect.
         let shape = shaped(2e-5, radius, radius + 1.6e-10, 0.0)?;
         let bulk = (mass, 0.5 * square, 0.25 * square);
         let mut scene = running_round(shape, bulk, degrees.to_radians(), exact)?;
@@ -202,7 +202,7 @@ fn rock(
     )
     .asks("period", "s", relative(exact, 1e-3))
     .by(move |_| {
-        // Small swings stand for those without amplitude.
+        // Small amplitudes stand for the limit of zero.
         let lean = if degrees == 0.0 { 0.003 } else { degrees.to_radians() };
         let inertia = Vec3::new(about, across, across);
         let height = 1.6875 - 1.3425 * cos(lean) - mass * G / STIFFNESS;
@@ -219,14 +219,14 @@ fn rock(
     })
 }
 
-/// How high (m) the axis of a barrel lies above those of the tubes that bear it.
+/// Height (m) of the axis of a barrel above those of the tubes that support it.
 const ABOVE_TUBES: f64 = 0.343_517_867_6;
-/// Angle (rad) between the upright and the normal of a contact on them.
+/// Angle (rad) between the vertical and the normal of a contact on them.
 const CONTACT_ANGLE: f64 = 9.098_134_339 * PI / 180.0;
 /// Slope (rad) of the tubes.
 const SLOPE: f64 = 5.0 * PI / 180.0;
 
-/// A barrel at rest across two tubes that fall along `x`.
+/// A barrel at rest across two tubes that descend along `x`.
 fn on_tubes(
     (_, mass, about, across): (&str, f64, f64, f64),
     role: Role,
@@ -235,7 +235,7 @@ fn on_tubes(
     let hull = Hull::Barrel(barrel()?);
     let gravity = gravity_on_slope(G, SLOPE, 0.0);
     let stiffness = 1e9;
-    // Along the upright by the depth along the normal.
+    // Vertical penetration from the penetration along the normal.
     let press = -mass * gravity.z / (2.0 * cos(CONTACT_ANGLE));
     let sunk = press / (stiffness * cos(CONTACT_ANGLE));
     let place = Vec3::new(0.0, 0.0, ABOVE_TUBES - sunk);

@@ -1,4 +1,4 @@
-//! Feet, legs and boxes: how loads are shared, what tips, what rocks.
+//! Feet, legs and boxes: load distribution, tipping, rocking.
 
 use std::ops::ControlFlow;
 
@@ -24,7 +24,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// The forces (N) on the feet (m, from the weight) of a plate of 981 N on equal springs.
+/// Returns the forces (N) on the feet (m, relative to the center of mass) of a plate of 981 N on equal springs.
 fn loads(feet: &[Vec3]) -> Result<Vec<f64>, Failure> {
     let mut plate = free("plate", 100.0, Vec3::new(10.0, 10.0, 10.0), Vec3::default());
     plate.nodes = vec![points(feet)];
@@ -65,7 +65,7 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
     exact.into_iter().enumerate().map(of).collect()
 }
 
-/// A box that is pushed obliquely tips over the edge that comes first.
+/// A box pushed obliquely tips over the critical edge.
 fn tips(degrees: f64, exact: f64) -> Problem {
     setting(
         format!("space-blocks/tips-{degrees}"),
@@ -95,29 +95,30 @@ fn tips(degrees: f64, exact: f64) -> Problem {
 
 /// The first impact of a box.
 struct Impact {
-    /// When (s).
+    /// Time (s).
     time: f64,
-    /// The rate (rad/s) before.
+    /// Angular velocity (rad/s) before.
     rate: f64,
-    /// The rate after over that before, from how far the box leans next.
+    /// Angular velocity after over that before, from the next peak rotation of the box.
     ratio: f64,
 }
 
-/// The first impact of a box let go at half its slenderness angle, all turned about the upright.
+/// Computes the first impact of a box released at half its slenderness angle, with everything rotated about the
+/// vertical.
 fn first_impact(turned: f64) -> Result<Impact, Failure> {
     let (half_width, half_height, mass) = (0.27, 0.9, 270.0);
     let alpha = 0.291_456_794_5;
     let across = mass * (half_width * half_width + half_height * half_height) / 3.0;
     let inertia = Vec3::new(across + 50.0, across, 60.0);
     let mut body = free("box", mass, inertia, Vec3::default());
-    // It stands on the edge at +x and leans that way.
+    // It stands on the edge at +x and leans in that direction.
     let lean = Quaternion::turn(Vec3::new(0.0, 0.5 * alpha, 0.0));
     body.pose.orientation = yaw(turned).after(lean);
     let stiffness = 1e9;
     let edge = body.pose.orientation.matrix().apply(Vec3::new(half_width, 0.0, -half_height));
     body.pose.position = -edge - Vec3::new(0.0, 0.0, mass * G / (2.0 * stiffness));
     body.nodes = vec![points(&corners(half_width, 0.5, -half_height))];
-    // Damped as the block of the plane that shows Housner's ratio.
+    // Damped like the plane block that reproduces Housner's ratio.
     let damping = |ratio| restitution::damping(stiffness, ratio, 0.5 * mass);
     let law = NormalLaw::KelvinVoigt { stiffness, damping: damping(3.0) };
     let grip = coulomb(20.0, stiffness, damping(1.0));
@@ -135,14 +136,14 @@ fn first_impact(turned: f64) -> Result<Impact, Failure> {
             struck = Some((before.0 + part * (state.time - before.0), before.1));
         }
         if struck.is_some() {
-            // The sine of its lean to the other side.
+            // Sine of its rotation to the other side.
             peak = peak.max(-turn.apply(Vec3::new(0.0, 0.0, 1.0)).dot(toward));
         }
         before = (state.time, rate, height);
         ControlFlow::Continue(())
     })?;
     let (time, rate) = struck.ok_or_else(|| Failure::Absent("the box does not strike".into()))?;
-    // Half the square of the rate at the bottom, over p².
+    // Half the square of the angular velocity in the upright position, over p².
     let energy = |lean: f64| cos(alpha - lean) - cos(alpha);
     let ratio = (energy(asin(peak)) / energy(0.5 * alpha)).sqrt();
     Ok(Impact { time, rate, ratio })

@@ -1,4 +1,4 @@
-//! What stands on its head or lies on its side: rest, rocking and rolling on a face or along a line.
+//! Bodies on a head or on a side: rest, rocking and rolling on a face or along a line.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::ControlFlow;
@@ -22,10 +22,10 @@ const MASS: f64 = 269.0;
 /// Moments of inertia (kg·m²) of the barrel about its axis and across.
 const ABOUT: f64 = 14.1;
 const ACROSS: f64 = 22.6;
-/// Half the length (m) of the barrel and the radius (m) of the flat of its head.
+/// Half the length (m) of the barrel, and the radius (m) of the flat part of its head.
 const HALF: f64 = 0.4725;
 const HEAD: f64 = 0.269_982_558_045_203;
-/// A stiffness (N/m) at which springs are seen to give.
+/// A stiffness (N/m) at which springs deform measurably.
 const SOFT: f64 = 1e6;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -55,7 +55,7 @@ fn spring() -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness: SOFT, damping: 0.0 }
 }
 
-/// Barrels on their heads, one on the other.
+/// Barrels on their heads, stacked.
 fn stands(count: u32) -> Problem {
     let exact: f64 = (1..=count).map(|above| f64::from(above) * MASS * G / (4.0 * SOFT)).sum();
     setting(
@@ -78,7 +78,7 @@ fn stands(count: u32) -> Problem {
     })
 }
 
-/// The period (s) with which a component of the axis of body 1 swings.
+/// Returns the period (s) of a component of the axis of body 1.
 fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<f64, Failure> {
     let through =
         run_crossings(&mut scene, 1e-5, 5.3 * guess, |state| of(axis(state.poses[1].orientation)))?;
@@ -86,14 +86,14 @@ fn period(mut scene: Scene<Spatial>, of: fn(Vec3) -> f64, guess: f64) -> Result<
     Ok(2.0 * half)
 }
 
-/// Without friction a body turns about its center of mass, while its weight goes through the flat of its head,
-/// which lies behind the round of the chime.
+/// Without friction a body rotates about its center of mass, while its weight acts through the flat of its head,
+/// which lies inside the rounded chime.
 fn barrel_on_springs() -> Swing {
     let sunk = MASS * G / (4.0 * SOFT);
     let square = (2.0 * SOFT * HEAD * HEAD - MASS * G * (HALF - 0.01)) / ACROSS;
     let start = || {
         let mut body = barrel("barrel", HALF - sunk, 0.01)?;
-        // All of the head bears.
+        // The whole head is in contact.
         body.pose.orientation = upright(0.3 * sunk / HEAD);
         scene(vec![floor(), body], spring(), FrictionLaw::Frictionless, down())
     };
@@ -107,13 +107,13 @@ fn tube_on_springs() -> Swing {
     let inertia = Vec3::new(1.3, 50.0, 50.0);
     let mut body = solid("tube", shape, MASS, inertia, Vec3::new(0.0, 0.0, 0.1 - sunk));
     body.pose.orientation = Quaternion::turn(Vec3::new(0.0, 0.3 * sunk / half, 0.0));
-    // Its round ends roll, so no weight pulls it over.
+    // Its round ends roll, so its weight has no overturning moment.
     let square = 2.0 * SOFT * half * half / inertia.y;
     let scene = scene(vec![floor(), body], spring(), FrictionLaw::Frictionless, down());
     (TAU / square.sqrt(), scene)
 }
 
-/// The exact period (s), and a scene to see it.
+/// The exact period (s), and a scene to measure it.
 type Swing = (f64, Result<Scene<Spatial>, Failure>);
 
 fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
@@ -128,9 +128,9 @@ fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
     .by(move |_| period(start().1?, of, exact))
 }
 
-/// A barrel let go on the rim of its head, at half the angle at which it would stay.
+/// A barrel released on the rim of its head, at half the angle of unstable equilibrium.
 fn rocks(asked: &'static str) -> Problem {
-    // A sharp rim, but for a hair.
+    // An almost sharp rim.
     let rounding = 1e-6;
     let (half, head) = (HALF - rounding, 0.2775 - 0.43 * rounding);
     let alpha = atan(head / half);
@@ -160,7 +160,7 @@ fn rocks(asked: &'static str) -> Problem {
         scene.watch(&Still, 1e-5, 2.0, |state, _, _| {
             let axis = axis(state.poses[1].orientation);
             let (lean, rate) = (asin(axis.x), state.twists[1].angular.y);
-            // A little before, where the middle of the head does not bear yet.
+            // Shortly before, while the middle of the head is not yet in contact.
             let level = 2e-4;
             if lean < level {
                 let part = (before.1 - level) / (before.1 - lean);
@@ -177,12 +177,12 @@ fn rocks(asked: &'static str) -> Problem {
     })
 }
 
-/// A tube in the groove between two others, along lines.
+/// A tube in the groove between two others, in line contact.
 fn groove() -> Problem {
     let (radius, aside) = (0.05, 0.06);
     let slope = asin(aside / (2.0 * radius));
     let exact = 2.0 * radius * cos(slope) - {
-        // Each line is two springs; the tube sinks by what they give, across the slope of the normals.
+        // Each line is two springs; the tube sinks by their deformation, across the slope of the normals.
         let pressed = |sunk: f64| {
             let height = 2.0 * radius * cos(slope) - sunk;
             let apart = (height * height + aside * aside).sqrt();
@@ -210,14 +210,14 @@ fn groove() -> Problem {
         let place = Vec3::new(0.0, 0.0, 2.0 * radius * cos(slope));
         let tube = solid("tube", shape(0.6), MASS, Vec3::new(0.4, 40.0, 40.0), place);
         let bodies = vec![tube, side("left", -aside), side("right", aside)];
-        // Friction would bear a part of it.
+        // Friction would carry a part of the load.
         let law = firm(SOFT, MASS);
         let scene = scene(bodies, law, FrictionLaw::Frictionless, down())?.settled(1e-10)?;
         Ok(scene.state.poses[0].position.z)
     })
 }
 
-/// A tube that lies on a slope and rolls down, whichever way it points at first.
+/// A tube that lies on a slope and rolls down, independent of its azimuth.
 fn rolls(degrees: f64) -> Problem {
     let (radius, half_length) = (0.1, 0.7);
     let slope = 5.0_f64.to_radians();

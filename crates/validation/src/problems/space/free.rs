@@ -1,4 +1,4 @@
-//! A body that turns freely: Euler's equations and their solution in elliptic functions.
+//! A freely rotating body: Euler's equations and their solution in elliptic functions.
 
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ const SOURCE: &str = "Euler's equations; Landau and Lifshitz, Mechanics, § 37";
 
 /// Principal moments of inertia (kg·m²).
 const INERTIA: Vec3 = Vec3::new(2.0, 5.0, 6.0);
-/// Spin (rad/s) at the start: near the middle axis, about which no body stays.
+/// Initial angular velocity (rad/s): near the intermediate axis, about which rotation is unstable.
 const SPIN: Vec3 = Vec3::new(0.2, 3.0, 0.1);
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -43,7 +43,7 @@ fn body(method: Method) -> Result<Scene<Spatial>, Failure> {
     Ok(scene)
 }
 
-/// The spin (rad/s), seen from the body.
+/// Returns the angular velocity (rad/s) in the frame of the body.
 fn body_spin(scene: &Scene<Spatial>) -> Vec3 {
     let rotation = Spatial::<f64>::rotation(scene.state.poses[0].orientation);
     rotation.unapply(scene.state.twists[0].angular)
@@ -89,7 +89,7 @@ fn attitude() -> Problem {
     })
 }
 
-/// How the body is turned after 7 s in steps of a length (s).
+/// Returns the orientation of the body after 7 s in steps of a length (s).
 fn turned(method: Method, step: f64) -> Result<Quaternion, Failure> {
     let mut scene = body(method)?;
     scene.run(&Still, step, 7.0)?;
@@ -118,7 +118,7 @@ fn convergence(method: Method, order: f64) -> Problem {
         let note = format!(
             "order {found:.2}: {first:.2e}, {second:.2e} rad between steps of 10, 5 and 2.5 ms"
         );
-        // The error of fourth order is so small here that the one of fifth order still shows.
+        // The fourth-order error is so small here that the fifth-order one is still visible.
         Ok(Outcome::of(found.min(order)).noted(note))
     })
 }

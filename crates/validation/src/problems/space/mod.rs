@@ -1,4 +1,4 @@
-//! Bodies in space: turning freely, rolling, sliding, standing on feet, and barrels.
+//! Bodies in space: free rotation, rolling, sliding, standing on feet, and barrels.
 
 mod barrels;
 mod blocks;
@@ -15,23 +15,23 @@ use barrelstack_dynamics::{Body, FrictionLaw, NormalLaw, Quaternion, Spatial, Ve
 use crate::scene::{Scene, coulomb, interface};
 use crate::{Failure, Problem};
 
-/// Acceleration of free fall (m/s²) of these problems.
+/// Acceleration of gravity (m/s²) in these problems.
 const G: f64 = 9.81;
 
 /// Time step (s).
 const STEP: f64 = 2e-5;
 
-/// Stiffness (N/m) of a contact, along the normal and of the stick.
+/// Stiffness (N/m) of a contact, normal and tangential.
 const STIFFNESS: f64 = 1e8;
 
-/// Which part of a pair a body is: sticks live on the target.
+/// The role of a body in a pair: sticks are stored on the target.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Contactor,
     Target,
 }
 
-/// The problems of these theories.
+/// Returns the problems of these theories.
 pub(super) fn problems() -> Vec<Problem> {
     let theories = [
         free::problems(),
@@ -44,17 +44,17 @@ pub(super) fn problems() -> Vec<Problem> {
     theories.into_iter().flatten().collect()
 }
 
-/// A normal law of a stiffness (N/m), for a mass (kg) that comes to rest on it.
+/// Returns a normal law of a stiffness (N/m), damped for a mass (kg) that comes to rest on it.
 fn firm(stiffness: f64, mass: f64) -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness, damping: restitution::damping(stiffness, 0.7, mass) }
 }
 
-/// Friction of a coefficient, whose sticks have a stiffness (N/m) and damp a mass (kg).
+/// Returns friction of a coefficient, with sticks of a stiffness (N/m), damped for a mass (kg).
 fn rough(coefficient: f64, stiffness: f64, mass: f64) -> FrictionLaw {
     coulomb(coefficient, stiffness, restitution::damping(stiffness, 0.5, mass))
 }
 
-/// Bodies with one interface.
+/// Creates a scene with one interface.
 fn scene(
     bodies: Vec<Body<Spatial>>,
     normal: NormalLaw,
@@ -64,17 +64,17 @@ fn scene(
     Ok(Scene::new(bodies, interface(normal, friction), gravity)?)
 }
 
-/// Free fall straight down.
+/// Returns gravity straight down.
 fn down() -> Vec3 {
     Vec3::new(0.0, 0.0, -G)
 }
 
-/// The orientation of a body whose axis `x` points up, but for a lean (rad) toward the outer `x`.
+/// Returns the orientation of a body whose axis `x` points up, inclined by an angle (rad) toward the global `x`.
 fn upright(lean: f64) -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, lean - FRAC_PI_2, 0.0))
 }
 
-/// Where the axis `x` of a body points.
+/// Returns the direction of the axis `x` of a body.
 fn axis(orientation: Quaternion) -> Vec3 {
     orientation.matrix().apply(Vec3::new(1.0, 0.0, 0.0))
 }

@@ -15,7 +15,7 @@ use crate::{Failure, Outcome, Problem};
 const SOURCE: &str = "rigid-body dynamics of a homogeneous ball";
 const RADIUS: f64 = 0.3;
 const MASS: f64 = 10.0;
-/// Direction (rad) in which slopes fall: none of the axes.
+/// Downhill direction (rad) of the slopes: not along an axis.
 const HEADING: f64 = 0.5;
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -37,7 +37,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A ball at rest on a floor under gravity as felt on a slope.
+/// A ball at rest on a floor, with gravity rotated as on a slope.
 fn on_slope(radians: f64, friction: f64) -> Result<Scene<Spatial>, Failure> {
     let gravity = gravity_on_slope(G, radians, HEADING);
     let sunk = -MASS * gravity.z / STIFFNESS;
@@ -45,7 +45,7 @@ fn on_slope(radians: f64, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(bodies, firm(STIFFNESS, MASS), rough(friction, STIFFNESS, MASS), gravity)
 }
 
-/// A component along the direction in which slopes fall.
+/// Returns the downhill component of a vector.
 fn downhill(vector: Vec3) -> f64 {
     vector.dot(Vec3::new(cos(HEADING), sin(HEADING), 0.0))
 }
@@ -65,14 +65,14 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
             .asks("spin after 1 s", "rad/s", relative(spin, 1e-4))
             .by(move |_| {
                 let spin = run()?.state.twists[1].angular;
-                // It turns about the level axis across the slope.
+                // It rotates about the horizontal axis across the slope.
                 let across = Vec3::new(-sin(HEADING), cos(HEADING), 0.0);
                 Ok(spin.dot(across))
             }),
     ]
 }
 
-/// Radius (m) of the ball that stands for the floor where the ball is the target.
+/// Radius (m) of the ball that represents the floor if the ball is the target.
 const EARTH: f64 = 1e5;
 
 /// The ball on a slope with the constants of this problem.
@@ -94,14 +94,14 @@ fn rolling(role: Role, friction: f64) -> Result<Scene<Spatial>, Failure> {
     scene(vec![ground, ball], firm(stiffness, MASS), friction, gravity)
 }
 
-/// A stick that travels over the surface of the ball, or stays on the floor: forces are the same.
+/// A stick that travels over the surface of the ball, or stays on the floor: the forces are equal.
 fn carried(role: Role, friction: f64) -> [Problem; 3] {
     let (name, place) = match role {
         Role::Contactor => ("contactor", 10.784_628),
         Role::Target => ("target", 10.785_161),
     };
     let title = format!("ball as {name} on a slope of 20°, μ = {friction}, for 3 s");
-    // Forces from when the start has died away.
+    // Forces after initial vibrations have decayed.
     let forces = move |seen: fn(f64, f64, f64) -> f64| -> Result<f64, Failure> {
         let mut scene = rolling(role, friction)?;
         let mut worst = 0.0_f64;
@@ -140,7 +140,7 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     ]
 }
 
-/// A ball that slips in a direction of its own: a parabola, then a straight line.
+/// A ball that slips obliquely: a parabola, then a straight line.
 fn side_spin() -> [Problem; 3] {
     let title = "ball thrown along x with spin (6, 4, 7) rad/s, μ = 0.2";
     let source = "slip keeps its direction; Coriolis 1835";
@@ -191,9 +191,9 @@ fn bounce() -> [Problem; 3] {
             let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
             ball.twist.linear = Vec3::new(3.0, 1.0, -2.0);
             ball.twist.angular = Vec3::new(0.0, 30.0, 0.0);
-            // As stiff as that the depth is no lever, with the same damping ratio.
+            // So stiff that the penetration is no lever arm, with the same damping ratio.
             let law = NormalLaw::SpeedGap { stiffness: 1e12, damping: 4e5 };
-            // Far faster than the speed at which this law begins to hold.
+            // Far above the velocity of regularization.
             let sliding = FrictionLaw::Regularized { coefficient: 0.05, velocity: 1e-6 };
             let mut scene = scene(vec![floor(), ball], law, sliding, Vec3::default())?;
             scene.run(&Still, 1e-9, 2e-5)?;

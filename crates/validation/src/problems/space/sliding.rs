@@ -1,4 +1,4 @@
-//! Blocks and rings that slide and spin: friction is a circle, whatever direction it has.
+//! Sliding and spinning blocks and rings: the friction limit is a circle, independent of direction.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use crate::spatial::{corners, floor, free, gravity_on_slope, points, yaw};
 use crate::{Failure, Problem};
 
 const MASS: f64 = 100.0;
-/// Half the sides (m) of the block.
+/// Half the side lengths (m) of the block.
 const HALF: (f64, f64) = (0.7365, 0.27);
 
 pub(super) fn problems() -> Vec<Problem> {
@@ -46,7 +46,7 @@ fn block(
     )
 }
 
-/// A body on a number of feet, with a moment of inertia (kg·m²) about the upright.
+/// A body on a number of feet, with a moment of inertia (kg·m²) about the vertical.
 fn sliding(
     feet: barrelstack_dynamics::Nodes<Spatial>,
     count: f64,
@@ -66,12 +66,12 @@ fn sliding(
     scene(vec![floor(), body], firm(stiffness, share), friction, gravity)
 }
 
-/// The turn (rad) about the upright.
+/// Returns the rotation (rad) about the vertical.
 fn turn(orientation: Quaternion) -> f64 {
     2.0 * barrelstack_dynamics::math::atan2(orientation.v.z, orientation.w)
 }
 
-/// When (s) the body first moves against the way it began, by `speed` (m/s or rad/s) along it.
+/// Returns the time (s) at which the body first reverses its motion, measured by `speed` (m/s or rad/s).
 fn stops(
     scene: &mut Scene<Spatial>,
     end: f64,
@@ -182,7 +182,7 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
     ]
 }
 
-/// A ring that slides and spins: each makes the friction against the other smaller.
+/// A ring that slides and spins: each motion reduces the friction against the other.
 fn ring() -> [Problem; 3] {
     let title = "ring thrown at 1 m/s and spun at 1.5 m/s about its center, μ = 0.3";
     let source = "sliding ring: Farkas, Bartels, Unger and Wolf 2003";
