@@ -1,10 +1,10 @@
-//! What can be typed.
+//! Command-line arguments.
 
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
-/// What the first page of help ends with.
+/// End of the first page of help.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack demo                                       a first run, and a report to open in a browser

@@ -1,10 +1,10 @@
-//! The command line that sets what would have helped beside the stack as it is.
+//! The command line that compares the remedy with the stack as it is.
 
 use barrelstack::variants::Remedy;
 
 use crate::args::{ScenarioArgs, VariantArgs};
 
-/// What was typed to make the run that something is set beside.
+/// Arguments of the run to compare with.
 pub(crate) struct Command<'a> {
     scenario: &'a ScenarioArgs,
     variants: VariantArgs,
@@ -15,8 +15,8 @@ impl<'a> Command<'a> {
         Self { scenario, variants }
     }
 
-    /// The command for all that suffices; none where nothing does, where one change is not enough to say it, or
-    /// where the scenario was read from standard input.
+    /// Returns the command for all sufficient changes; `None` if there is none, if one option cannot state it, or
+    /// if the scenario was read from standard input.
     pub(crate) fn against(&self, found: &Remedy) -> Option<String> {
         let ScenarioArgs { scenario, set, record } = self.scenario;
         let all = [&found.height, &found.straps].into_iter().flatten();
@@ -38,7 +38,7 @@ impl<'a> Command<'a> {
     }
 }
 
-/// A word as a shell takes it for one.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=:,+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -63,7 +63,7 @@ mod tests {
         for word in
             ["stack.levels=3", "a b", "stack.strap={ ties = \"x\" }", "it's", "", "$HOME `x`"]
         {
-            // Where there is no shell there is nothing to disturb.
+            // Without a shell nothing needs quoting.
             assert!(said(word).map_or(true, |said| said == word), "{word}");
         }
     }

@@ -1,4 +1,4 @@
-//! Which pictures figures become, as typed.
+//! Formats of figures, from the options.
 
 use barrelstack_report::{Format, Paper};
 
@@ -16,12 +16,12 @@ pub(crate) struct FigureArgs {
 }
 
 impl FigureArgs {
-    /// Whether any format was asked for by name.
+    /// `true` if any format was requested by name.
     pub(crate) fn names_any(&self) -> bool {
         !self.format.is_empty()
     }
 
-    /// The formats, each once, SVG first.
+    /// Returns the formats, each once, SVG first.
     pub(crate) fn formats(&self) -> Vec<Format> {
         let asked = |format: &Format| {
             let named = self.format.iter().any(|name| Format::from(*name) == *format);

@@ -1,5 +1,5 @@
-//! Ctrl-C, and what else asks a program to end: within a second work has stopped, what is finished is kept, and what
-//! that is has been said.
+//! Ctrl-C and other requests to terminate: within a second work has stopped, finished results are kept, and the user is
+//! informed of them.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -11,44 +11,44 @@ use barrelstack_input::system;
 
 use crate::printer;
 
-/// Whether the user asked to stop; of the whole program, which can have one handler only.
+/// `true` if the user requested a stop; global, since a program can have one handler only.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Whether there is work that looks at it.
+/// `true` if some work polls the request.
 static LISTENS: AtomicBool = AtomicBool::new(false);
 
-/// Whether work has stopped since, and what is finished of it is being kept.
+/// `true` if work has stopped since, and its finished results are being kept.
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
-/// Whether all work is finished, and what came of it is being written.
+/// `true` if all work is finished, and its results are being written.
 static FINISHED: AtomicBool = AtomicBool::new(false);
 
-/// What is kept when the program is ended in the middle of work.
+/// Description of what is kept if the program is terminated during work.
 static KEPT: Mutex<Option<String>> = Mutex::new(None);
 
-/// Folders in which files may lie that are not finished.
+/// Folders that may contain unfinished files.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Time for work to notice that it is to stop; what is left of a second is for saying what is kept.
+/// Time for work to notice the request; the rest of a second is for printing what is kept.
 const GRACE: Duration = Duration::from_millis(600);
 
-/// Time for work that stops to print and write what is finished.
+/// Time for stopping work to print and write its finished results.
 const KEEPING: Duration = Duration::from_secs(30);
 
-/// Exit status of a program that was asked to stop.
+/// Exit status of an interrupted program.
 pub(crate) const STATUS: u8 = 130;
 
-/// Knows whether the user asked to stop.
+/// Access to the stop request.
 pub(crate) struct Interrupt;
 
-/// How many pieces of work have begun to listen.
+/// Number of pieces of work that have begun to listen.
 static WORKS: AtomicUsize = AtomicUsize::new(0);
 
-/// Where a test stops the program.
+/// Place at which a test stops the program.
 static PLACE: OnceLock<Option<Place>> = OnceLock::new();
 
-/// A place in the work of the program, the same whatever the load: `2:variants:3` is where three variants are done in
-/// the second piece of work.
+/// A place in the work of the program, independent of the load: `2:variants:3` is reached when three variants are done
+/// in the second piece of work.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     work: usize,
@@ -74,25 +74,25 @@ impl std::str::FromStr for Place {
 
 /// Stops the program at a place as a signal would.
 pub(crate) fn stop_at(place: Option<Place>) {
-    // Only the first counts, and there is one.
+    // Only the first call counts, and there is one.
     let _ = PLACE.set(place);
 }
 
-/// Takes the signals of the whole program; `json` says whether what is printed is a document.
+/// Handles the signals of the whole program; `json` is `true` if a document is printed.
 ///
-/// The first asks to stop. Work that does not listen, or does not notice in time, is ended; work that stops has time to
-/// keep what is finished; a second signal ends everything. Files are written under their own names only when whole, and
-/// what is unfinished is removed.
+/// The first requests a stop. Work that does not listen, or does not notice in time, is terminated; work that stops has
+/// time to keep its finished results; a second signal terminates at once. Files are written under their own names only
+/// when complete, and unfinished ones are removed.
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
-    // An error says that the system refuses a handler: then Ctrl-C ends the program as it always did.
+    // An error means that the system refuses a handler: then Ctrl-C terminates the program as by default.
     drop(ctrlc::set_handler(ask));
 }
 
-/// Whether what is printed is a document.
+/// `true` if a document is printed.
 static JSON: AtomicBool = AtomicBool::new(false);
 
-/// What a signal does.
+/// Handles a signal.
 fn ask() {
     let json = JSON.load(Ordering::Relaxed);
     if ASKED.swap(true, Ordering::Relaxed) || !LISTENS.load(Ordering::Relaxed) {
@@ -109,7 +109,7 @@ fn ask() {
     });
 }
 
-/// Ends the program, says what is kept and removes what is unfinished.
+/// Terminates the program, prints what is kept and removes unfinished files.
 #[expect(clippy::exit, reason = "the work does not end by itself")]
 fn end(json: bool) -> ! {
     system::write_no_more();
@@ -118,7 +118,7 @@ fn end(json: bool) -> ! {
         folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten()
     {
         if entry.file_name().to_string_lossy().ends_with(&system::unfinished()) {
-            // It may have been renamed since, and then it is whole.
+            // If it was renamed in the meantime it is complete, and there is nothing to remove.
             let _ = std::fs::remove_file(entry.path());
         }
     }
@@ -127,24 +127,24 @@ fn end(json: bool) -> ! {
     std::process::exit(i32::from(STATUS))
 }
 
-/// Whether work was stopped before its end.
+/// `true` if work was stopped before its end.
 pub(crate) fn has_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// All work is finished: from now on what came of it is written, which a first signal does not cut short.
+/// Marks all work as finished: its results are being written, which a first signal does not cut short.
 pub(crate) fn finished() {
     FINISHED.store(true, Ordering::Relaxed);
 }
 
-/// Says what is kept when the program is ended from now on.
+/// Sets the description of what is kept if the program is terminated from now on.
 pub(crate) fn keeps(words: String) {
     if let Ok(mut kept) = KEPT.lock() {
         *kept = Some(words);
     }
 }
 
-/// Files are written in this folder from now on.
+/// Registers a folder for unfinished files.
 pub(crate) fn writes_to(folder: &Path) {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     if let Ok(mut folders) = FOLDERS.lock()
@@ -154,7 +154,7 @@ pub(crate) fn writes_to(folder: &Path) {
     }
 }
 
-/// The work stopped because it was asked to; what is kept was said beforehand.
+/// Error of work that stopped on request; what is kept was printed beforehand.
 #[derive(Debug)]
 pub(crate) struct Stopped;
 
@@ -168,14 +168,14 @@ impl std::fmt::Display for Stopped {
 }
 
 impl Interrupt {
-    /// Listens from now on; work that comes after other work hears what that was asked.
+    /// Begins to listen; also returns earlier requests.
     pub(crate) fn listen() -> Self {
         LISTENS.store(true, Ordering::Relaxed);
         WORKS.fetch_add(1, Ordering::Relaxed);
         Self
     }
 
-    /// Whether the user asked to stop.
+    /// `true` if the user requested a stop.
     #[expect(clippy::unused_self, reason = "who asks has to listen")]
     pub(crate) fn asked(&self) -> bool {
         let asked = ASKED.load(Ordering::Relaxed);
@@ -185,7 +185,7 @@ impl Interrupt {
         asked
     }
 
-    /// Work of this kind has come this far: the place where a test stops it.
+    /// Reports the progress of work of a kind: the place at which a test stops it.
     #[expect(clippy::unused_self, reason = "who reaches it has to listen")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(place)) = PLACE.get() else { return };
@@ -197,7 +197,7 @@ impl Interrupt {
         }
     }
 
-    /// Whether to go on.
+    /// Returns `Break` if a stop was requested.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         if self.asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -11,7 +11,7 @@ pub(crate) struct LanesArgs {
     pub(crate) lanes: Option<Width>,
 }
 
-/// The width of a name, if this machine has it.
+/// Parses the name of a width, if this machine has it.
 fn here(name: &str) -> Result<Width, String> {
     Width::named(name).filter(|width| width.is_here()).ok_or_else(|| {
         let here = Width::ALL.into_iter().filter(|width| width.is_here()).map(Width::name);

@@ -20,12 +20,12 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
-    // Known before the rest is understood, so that a mistake in it is told as asked, too.
+    // Parse `--json` first, so that argument errors honor it.
     let json = std::env::args_os().any(|argument| argument == "--json");
     interrupt::watch(json);
     let args = match args::Args::try_parse() {
         Ok(args) => args,
-        // Anything may have been typed, so it is printed as all else is.
+        // Arguments may contain anything, so the message is printed through the escaping printer.
         Err(error) if error.use_stderr() => {
             printer::usage(&error.render().to_string(), json);
             return ExitCode::from(2);
@@ -34,7 +34,7 @@ fn main() -> ExitCode {
     };
     interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {
-        // Whatever is kept, stopped work is no result.
+        // Stopped work is not a success, whatever is kept.
         Ok(code) if code == ExitCode::SUCCESS && interrupt::has_stopped() => {
             ExitCode::from(interrupt::STATUS)
         }
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
         }
         Err(error) => {
             printer::error(&error, json);
-            // The same status as for a mistyped option, so that scripts can tell both from a verdict.
+            // The same status as for a mistyped option, so that scripts can distinguish both from a verdict.
             ExitCode::from(2)
         }
     }

@@ -1,4 +1,4 @@
-//! Everything that is printed: results to standard output, errors and warnings to standard error.
+//! All printing: results to standard output, errors and warnings to standard error.
 #![expect(clippy::print_stderr, reason = "this is where printing is done")]
 
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ use serde::Serialize;
 use crate::interrupt::{STATUS, Stopped};
 use crate::remedy::remedy;
 
-/// Lines of a result.
+/// Prints lines of a result.
 pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow::Result<()> {
     let mut whole = String::new();
     for line in lines {
@@ -27,15 +27,15 @@ pub(crate) fn lines<T: AsRef<str>>(lines: impl IntoIterator<Item = T>) -> anyhow
     text(&whole)
 }
 
-/// A text as it is.
+/// Prints a text unchanged except for control characters.
 ///
-/// A reader that has gone away (`| head`) wants no more, and no message either.
+/// A reader that has closed the pipe (`| head`) is not an error.
 /// Any other failure, such as a full disk, would leave half a result behind and is an error.
 pub(crate) fn text(text: &str) -> anyhow::Result<()> {
     raw(&harmless(text))
 }
 
-/// As [`text`], of what is no text for people.
+/// Prints a text as [`text`] does, without replacing control characters.
 fn raw(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -46,13 +46,13 @@ fn raw(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// A document for programs.
+/// Prints a document for programs.
 pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(document)? + "\n";
     PRINTED.store(true, Ordering::Relaxed);
     let mut whole = String::with_capacity(text.len());
     for c in text.chars() {
-        // The characters that JSON leaves as they are and a terminal obeys.
+        // Escape control characters that JSON leaves as they are and a terminal interprets.
         if c.is_control() && c != '\n' {
             let _ = write!(whole, "\\u{:04x}", u32::from(c));
         } else {
@@ -62,21 +62,21 @@ pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
     raw(&whole)
 }
 
-/// Whether a document was printed: then no second one follows.
+/// `true` if a document was printed: then no second one follows.
 static PRINTED: AtomicBool = AtomicBool::new(false);
 
-/// Text that cannot disturb a terminal.
+/// Replaces control characters, which could disturb a terminal.
 pub(crate) fn harmless(text: &str) -> String {
     let shown = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c };
     text.chars().map(shown).collect()
 }
 
-/// A number of things, such as "1 case" and "2 cases".
+/// Formats a number of things, such as "1 case" and "2 cases".
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// An error, with its causes, as one paragraph; `json` asks for a document as well.
+/// Prints an error, with its causes, as one paragraph; with `json` also as a document.
 pub(crate) fn error(error: &anyhow::Error, json: bool) {
     let (next, words) = (remedy(error), bounded(&format!("{error:#}")));
     match next {
@@ -88,7 +88,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     told(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
-/// A text of which the middle is left out where it is longer than anyone reads.
+/// Shortens an overlong text in the middle.
 fn bounded(text: &str) -> String {
     const LONGEST: usize = 2000;
     const KEPT: usize = 400;
@@ -100,7 +100,7 @@ fn bounded(text: &str) -> String {
     first.chain(" […] ".chars()).chain(last).collect()
 }
 
-/// What the parser of the command line says.
+/// Prints an error of the command-line parser.
 pub(crate) fn usage(words: &str, json: bool) {
     let words = &bounded(words);
     eprint!("{}", harmless(words));
@@ -108,17 +108,17 @@ pub(crate) fn usage(words: &str, json: bool) {
     told(&ErrorDocument::of(&(first, None, None, 2)), json);
 }
 
-/// That the program was stopped, and what is kept.
+/// Prints that the program was stopped, and what is kept.
 pub(crate) fn stopped(json: bool) {
     let words = Stopped.to_string();
     note(&words);
     told(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
-/// Prints a document of an error where documents are asked for and none was printed.
+/// Prints the document of an error if documents are requested and none was printed.
 fn told(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
-        // Where standard output is gone, standard error has it all.
+        // If standard output is closed, standard error has it all.
         drop(self::document(document));
     }
 }
@@ -148,17 +148,17 @@ described! {
     }
 }
 
-/// What became of the work, beside a result.
+/// Prints a note on the work, beside a result.
 pub(crate) fn note(text: &str) {
     eprintln!("{}", harmless(text));
 }
 
-/// What the reader of a result should know, one sentence.
+/// Prints a warning to the reader of a result, one sentence.
 pub(crate) fn warning(text: &str) {
     eprintln!("warning: {}", harmless(text));
 }
 
-/// What the reader of a result should know.
+/// Prints all warnings to the reader of a result.
 pub(crate) fn warnings(answer: &Answer) {
     let own = &answer.decides.summary.warnings;
     let other = answer.other.iter().flat_map(|other| &other.summary.warnings);
@@ -166,19 +166,19 @@ pub(crate) fn warnings(answer: &Answer) {
     all.for_each(|text| warning(text));
 }
 
-/// A verdict, its sentences below its headline.
+/// Returns a verdict, with its sentences below its headline.
 pub(crate) fn verdict(verdict: &Verdict) -> Vec<String> {
     let sentences = verdict.sentences.iter().map(|sentence| format!("  {sentence}"));
     std::iter::once(verdict.headline.clone()).chain(sentences).collect()
 }
 
-/// The command that sets what would have helped beside the stack.
+/// Returns the command that compares the remedy with the stack.
 pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
     let command = summary.remedy.as_ref()?.comparison.as_ref()?;
     Some(format!("To see it side by side: {command}"))
 }
 
-/// The answer for people; `changes` are the values changed on the command line.
+/// Prints the answer for people; `changes` are the values changed on the command line.
 pub(crate) fn answer(
     answer: &Answer,
     changes: &[String],
@@ -203,7 +203,7 @@ pub(crate) fn answer(
     lines(all)
 }
 
-/// What repeats of a run say about it.
+/// Prints the results of repeats of a run.
 pub(crate) fn verification(found: &barrelstack::verify::Verification) -> anyhow::Result<()> {
     let rows = found.rows();
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;

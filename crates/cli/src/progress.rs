@@ -1,4 +1,4 @@
-//! How far work is: a bar on a terminal, a line now and then elsewhere; and Ctrl-C that keeps what was computed.
+//! Progress: a bar on a terminal, occasional lines elsewhere; and Ctrl-C that keeps computed results.
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
@@ -11,30 +11,30 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::interrupt::Interrupt;
 use crate::printer;
 
-/// How often a line is printed where there is no terminal.
+/// Interval of lines without a terminal.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// How long work is looked at before it is told how long all of it takes.
+/// Warm-up before an estimate of the total time is shown.
 const LOOKED_AT: Duration = Duration::from_secs(1);
 
-/// The share of it that is done by then, unless it takes long.
+/// Minimum share of the work done for an estimate, unless the work takes long.
 const SHARE: f64 = 0.02;
 
-/// The shortest work of which that is told.
+/// Shortest total time for which an estimate is shown.
 const LONG: Duration = Duration::from_secs(10);
 
-/// Tells how far work is, and whether the user wants it to stop.
+/// Progress display and cancellation.
 pub(crate) struct Progress {
     bar: Bar,
     lines: Lines,
     interrupt: Interrupt,
 }
 
-/// A bar on a terminal, if one is wanted; it is taken away also where the work ends in an error.
+/// A bar on a terminal, if requested; removed on drop, also after an error.
 pub(crate) struct Bar(pub(crate) Option<ProgressBar>);
 
 impl Bar {
-    /// Makes it where there is a terminal.
+    /// Creates it if there is a terminal.
     pub(crate) fn new(show: bool, make: impl FnOnce() -> ProgressBar) -> Self {
         Self((show && std::io::stderr().is_terminal()).then(make))
     }
@@ -49,7 +49,7 @@ impl Drop for Bar {
 }
 
 impl Progress {
-    /// Starts; shows something only when asked to.
+    /// Starts the display; shows something only if requested.
     pub(crate) fn new(show: bool) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg}"));
@@ -60,20 +60,20 @@ impl Progress {
         Self { bar, lines: Lines::new(show), interrupt: Interrupt::listen() }
     }
 
-    /// The run has come this far.
+    /// Reports the progress of a run.
     pub(crate) fn at(&self, progress: barrelstack::Progress) -> ControlFlow<()> {
         let barrelstack::Progress { time, end_time } = progress;
         self.interrupt.reached("seconds", time);
         self.told(time, end_time, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
-    /// So many of so many things are done.
+    /// Reports the number of finished things of a total.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
         self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
     }
 
-    /// A run and its variants have come this far.
+    /// Reports the progress of a run and its variants.
     pub(crate) fn told_of(&self, told: variants::Advance) -> ControlFlow<()> {
         match told {
             variants::Advance::Run(reached) => self.at(reached),
@@ -83,13 +83,13 @@ impl Progress {
         }
     }
 
-    /// So many of so many things are done of a part of the work, after which there may be others.
+    /// Reports the number of finished things of a part of the work, after which others may follow.
     pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.lines.part();
         self.counted(done, of, things)
     }
 
-    /// So many tries are done of a search whose length is not known.
+    /// Reports the number of tries of a search of unknown length.
     pub(crate) fn searched(&self, done: u64, things: &str) -> ControlFlow<()> {
         let words = || format!("{done} {things}");
         if let Some(bar) = &self.bar.0 {
@@ -115,42 +115,42 @@ impl Progress {
     }
 }
 
-/// Lines where there is no terminal: how long all of it takes, then every few seconds how far it is.
+/// Lines without a terminal: an estimate of the total time, then the progress every few seconds.
 pub(crate) struct Lines {
-    /// None where no lines are wanted.
+    /// `None` if no lines are requested.
     told: Option<Mutex<LastLine>>,
 }
 
-/// What was told of some work.
+/// State of the lines of some work.
 struct LastLine {
-    /// When a line was last printed.
+    /// Time of the last line.
     last: Instant,
-    /// Whether it was told how long all of it takes, or nobody knows.
+    /// `true` if the total time was printed, or is unknown.
     whole: bool,
-    /// When this work, or this part of it, was first looked at, and how much was done by then: what an earlier run had
-    /// done took this one no time.
+    /// Start of this work, or of this part of it, and the amount done by then: results of an earlier run took this one
+    /// no time.
     start: Option<(Instant, f64)>,
-    /// How much was done when last looked at, and of how much.
+    /// Amount done at the last report, and the total.
     done: f64,
     of: f64,
 }
 
 impl Lines {
-    /// Starts; prints something only when asked to, and only where there is no terminal.
+    /// Starts; prints only if requested, and only without a terminal.
     pub(crate) fn new(show: bool) -> Self {
         let told = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
         Self { told: wanted.then(|| Mutex::new(told)) }
     }
 
-    /// What is told of is a part, and nobody knows how long all of it takes.
+    /// Marks the work as a part, so that the total time is unknown.
     fn part(&self) {
         if let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) {
             told.whole = true;
         }
     }
 
-    /// Work of unknown length has come this far.
+    /// Reports the progress of work of unknown length.
     fn now_and_then(&self, words: impl Fn() -> String) {
         let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
         if told.last.elapsed() > EVERY {
@@ -159,10 +159,10 @@ impl Lines {
         }
     }
 
-    /// Work has come this far.
+    /// Reports the progress of work.
     pub(crate) fn at(&self, done: f64, of: f64, words: impl Fn() -> String) {
         let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
-        // Far less than before is the next part; a little less comes from another thread.
+        // A large decrease starts the next part; a small one comes from another thread.
         let anew = of != told.of || done < 0.5 * told.done;
         (told.done, told.of) = (done, of);
         let (start, first) = match told.start {
@@ -170,7 +170,7 @@ impl Lines {
             _ => *told.start.insert((Instant::now(), done)),
         };
         let (spent, gone, left) = (start.elapsed(), done - first, of - done);
-        // The first of many things that go on together says little of the rest.
+        // The first of many concurrent items do not predict the rest.
         if spent < LOOKED_AT || gone <= 0.0 || (gone < SHARE * of && spent < EVERY) {
             return;
         }
@@ -192,7 +192,7 @@ pub(crate) fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_spinner())
 }
 
-/// The unit in which the bar counts.
+/// Converts to the unit of the bar.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -202,7 +202,7 @@ fn thousandths(value: f64) -> u64 {
     (1e3 * value) as u64
 }
 
-/// A time as a person would say it.
+/// Formats a time for people.
 fn rounded(time: Duration) -> String {
     match time.as_secs() {
         seconds @ 0..90 => format!("{} s", seconds.max(1)),

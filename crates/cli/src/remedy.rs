@@ -1,4 +1,4 @@
-//! What to type after an error: libraries state the fact, the command knows its own words.
+//! The next command after an error: libraries state the fact, the command line has its own options.
 
 use anyhow::Error;
 use barrelstack::RunFailure;
@@ -7,7 +7,7 @@ use barrelstack::export::ExportError;
 use barrelstack::ground::GroundError;
 use barrelstack_motion::MotionError;
 
-/// What to type after an error, where one option helps.
+/// Returns the advice after an error, if one option helps.
 pub(crate) fn remedy(error: &Error) -> Option<&'static str> {
     error.chain().find_map(|cause| {
         if let Some(ExportError::Occupied { .. }) = cause.downcast_ref() {

@@ -13,7 +13,7 @@ const NAME: usize = 24;
 /// Width of the history of the drift.
 const SPARKS: usize = 40;
 
-/// The rows, in reading order; `changes` are the values changed on the command line.
+/// Returns the rows, in reading order; `changes` are the values changed on the command line.
 pub(crate) fn rows(
     run: &Run,
     summary: &Summary,
@@ -105,7 +105,7 @@ pub(crate) fn rows(
     rows
 }
 
-/// The stack at the end of the run, under a line that says so.
+/// Draws the stack at the end of the run, under a title.
 pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
     let picture = final_picture(run, characters);
     if picture.is_empty() {
@@ -116,7 +116,7 @@ pub(crate) fn picture(run: &Run, characters: Characters) -> Vec<String> {
     [String::new(), title].into_iter().chain(lines).collect()
 }
 
-/// The outcome in a few words.
+/// Describes the outcome in a few words.
 fn verdict(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.kind, outcome.mode, outcome.time) {
@@ -127,7 +127,7 @@ fn verdict(summary: &Summary) -> String {
     }
 }
 
-/// What was done, and how fast.
+/// Describes the computation, and its speed.
 fn computed(summary: &Summary) -> String {
     let run = &summary.run;
     let mut text = format!(
@@ -143,7 +143,7 @@ fn computed(summary: &Summary) -> String {
     text
 }
 
-/// An energy (J) with its unit.
+/// Formats an energy (J) with its unit.
 fn joules(energy: f64) -> String {
     if energy.abs() < 1e3 {
         format!("{} J", three_digits(energy))
@@ -152,7 +152,7 @@ fn joules(energy: f64) -> String {
     }
 }
 
-/// How far (m) and to which side something has moved.
+/// Formats a displacement (m) with its side.
 fn moved(distance: f64) -> String {
     if distance.abs() < 5e-4 {
         return "none at the end".to_owned();
@@ -161,7 +161,7 @@ fn moved(distance: f64) -> String {
     format!("{:.1} cm to the {side} at the end", 100.0 * distance.abs())
 }
 
-/// A number with three significant digits.
+/// Formats a number with three significant digits.
 fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

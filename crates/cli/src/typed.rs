@@ -1,8 +1,8 @@
-//! Closed sets as they are typed.
+//! Closed sets as arguments.
 
 use clap::ValueEnum;
 
-/// Declares what may be typed for a member of a closed set, with its help, and which member that is.
+/// Declares the argument words of the members of a closed set, with their help.
 macro_rules! typed {
     (
         $(#[$about:meta])*
@@ -28,7 +28,7 @@ macro_rules! typed {
 
 pub(crate) use typed;
 
-/// The word for a member of a closed set.
+/// Returns the argument word of a member of a closed set.
 pub(crate) fn word(member: impl ValueEnum + Copy) -> String {
     member.to_possible_value().map_or_else(String::new, |word| word.get_name().to_owned())
 }

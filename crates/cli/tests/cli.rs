@@ -1,4 +1,4 @@
-//! The command as people and scripts use it: what is printed where, what is written, which status.
+//! The command for people and scripts: printed output, written files, exit status.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -20,7 +20,7 @@ const SHORT: [&str; 4] = [
     "--set=imperfections.variants=4",
 ];
 
-/// All that a run writes.
+/// All files of a run.
 const FILES: [&str; 9] = [
     "envelopes.csv",
     "forces.csv",
@@ -33,17 +33,17 @@ const FILES: [&str; 9] = [
     "variants.csv",
 ];
 
-/// One run and no variants.
+/// One run without variants.
 const ONE: &str = "--set=imperfections.variants=0";
 
-/// The demo in the plane in which it is weaker.
+/// The weaker plane of the demo.
 const ALONG: &str = "--set=stack.view=longitudinal";
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-/// A summary without the time that it took on the clock.
+/// Returns the lines of a summary without the wall-clock time.
 fn timeless(text: &str) -> Vec<String> {
     let lines = text.lines().filter(|line| !line.contains("wall_seconds"));
     lines.map(str::to_owned).collect()
@@ -64,7 +64,7 @@ fn the_summary_says_what_happened_in_words_and_rows() {
     assert!(text.contains("\n  outcome                 collapse by ejection at "), "{text}");
     let rows = text.lines().skip_while(|line| !line.is_empty()).skip(1);
     for row in rows.take_while(|line| !line.is_empty()) {
-        // Names fill 24 characters after the margin of 2, so all values stand below each other.
+        // Names fill 24 characters after the margin of 2, so all values are aligned.
         let at: Vec<char> = row.chars().collect();
         assert!(row.starts_with("  ") && at[25] == ' ' && at[26] != ' ', "{row:?}");
     }
@@ -91,7 +91,7 @@ fn a_folder_gets_all_files_and_the_same_summary() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(names(&out).unwrap(), FILES);
     assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), stdout(&output));
-    // What was written out can be run again, and is the same run.
+    // The written scenario can be run again, with the same result.
     let scenario = out.join("scenario.toml");
     let again = barrelstack(["run", scenario.to_str().unwrap(), "--json"]);
     assert_eq!(timeless(&stdout(&again)), timeless(&stdout(&output)));
@@ -126,7 +126,7 @@ fn a_demo_replaces_what_a_demo_wrote_and_nothing_else() {
         let output = demo();
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
-    // Changed by its owner a while after.
+    // Changed by its owner some time later.
     let mine = fs::File::options().append(true).open(out.join("scenario.toml")).unwrap();
     (&mine).write_all(b"# mine\n").unwrap();
     mine.set_modified(std::time::SystemTime::now() + std::time::Duration::from_secs(60)).unwrap();
@@ -140,7 +140,7 @@ fn a_demo_replaces_what_a_demo_wrote_and_nothing_else() {
 fn a_verdict_that_cannot_be_written_is_printed_all_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    // The folder is there before the run; what is in the way of a file is so only afterwards.
+    // The folder exists before the run; the obstacle concerns one file only.
     fs::create_dir_all(out.join("report.html/in the way")).unwrap();
     let arguments =
         SHORT.into_iter().chain(["--json", "--overwrite", "--out", out.to_str().unwrap()]);
@@ -241,7 +241,7 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
 
 #[test]
 fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
-    // A step close to the critical one under dampers too strong for it, and no settling that would show it.
+    // A step close to the critical one under dampers too strong for it, without settling, which would show it.
     let broken = [
         "--set=run.settle=false",
         "--set=run.step=0.6 ms",
@@ -430,7 +430,7 @@ mod unix {
     fn ctrl_c_keeps_what_was_computed() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("out");
-        // An hour in steps of 4 µs takes minutes, and is told to stop before.
+        // An hour in steps of 4 µs takes minutes, and is interrupted before.
         let child = program(["run", "sliding-block", "--set=run.duration=3600 s"])
             .args(["--set=run.step=4 us", "--json", "--out", out.to_str().unwrap()])
             .stdout(Stdio::piped())

@@ -1,4 +1,4 @@
-//! The commands of the page "From a laptop to a cluster", run as they stand there.
+//! The commands of the page "From a laptop to a cluster", run as written there.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
@@ -11,7 +11,7 @@ use std::process::Command;
 
 use common::{HEAD, there};
 
-/// Six chunks of short cases behind [`HEAD`], in place of the example of the page.
+/// Six chunks of short cases after [`HEAD`], in place of the example of the page.
 const STUDY: &str = "\
 duration = \"0.3 s\"
 [[factor]]
@@ -26,7 +26,7 @@ count = 48
 chunk = 8
 ";
 
-/// The commands under a heading of the page, one text a block.
+/// Returns the commands under a heading of the page, one text per block.
 fn blocks(heading: &str) -> Vec<String> {
     let page =
         fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("CLUSTER.md")).unwrap();
@@ -53,7 +53,7 @@ fn tables(folder: &Path) -> Option<[Vec<u8>; 3]> {
     read.iter().all(Option::is_some).then(|| read.map(Option::unwrap))
 }
 
-/// A folder in which the study was run by one process, and its table.
+/// Returns a folder in which one process ran the study, and its table.
 fn one_machine() -> (tempfile::TempDir, [Vec<u8>; 3]) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("mine.toml"), [HEAD, STUDY].concat()).unwrap();
@@ -99,7 +99,7 @@ fn a_killed_process_leaves_its_chunk_to_the_other() {
         let (mut killed, mut other) = (start(), start());
         // As soon as there is something to lose, and a little later each time.
         while common::names(&out.join("shards")).is_none_or(|names| names.is_empty()) {
-            // On a busy machine it may be done between two looks.
+            // On a busy machine it may finish between two polls.
             if let Some(status) = killed.try_wait().unwrap() {
                 assert!(status.success(), "it ended before it was killed, with {status}");
                 break;
@@ -134,7 +134,7 @@ fn slurm_makes_the_same_table() {
         return;
     }
     let (folder, table) = one_machine();
-    // Two arrays and the job behind them.
+    // Two arrays and the job after them.
     let block = blocks("Slurm")[0].replace(" > ", " --array-limit 4 > ");
     shell(folder.path(), &block);
     let out = folder.path().join("on-slurm");

@@ -1,4 +1,4 @@
-//! `compare`, and `run --verify` with a folder: what is printed and written.
+//! `compare`, and `run --verify` with a folder: printed output and written files.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -12,7 +12,7 @@ use serde_json::Value;
 
 const SHORT: &str = "--set=run.stop_after_collapse=0.1 s";
 
-/// Few variants, for the sake of time.
+/// Few variants, to save time.
 const FEW: &str = "--variants=4";
 
 fn json(text: &str) -> Value {
@@ -39,7 +39,7 @@ fn two_runs_become_one_page_and_a_few_lines() {
     assert_eq!(names(&out).unwrap(), ["figures", "report.html", "report.md"]);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("What is different") && page.contains("player several"));
-    // Every figure that the text names is there.
+    // Every figure that the text names exists.
     let markdown = fs::read_to_string(out.join("report.md")).unwrap();
     let links: Vec<&str> = markdown.split("](figures/").skip(1).collect();
     assert!(links.len() > 8, "{markdown}");
@@ -47,7 +47,7 @@ fn two_runs_become_one_page_and_a_few_lines() {
         let name = link.split(')').next().unwrap();
         assert!(out.join("figures").join(name).is_file(), "{name}");
     }
-    // A second comparison does not replace the first in silence.
+    // A second comparison does not silently replace the first.
     let again =
         ["compare", "demo-napa", "--against=stack.levels=4", "--out", out.to_str().unwrap()];
     refused("occupied", &barrelstack(again), Path::new("/nowhere"), &["--overwrite"]);

@@ -1,4 +1,4 @@
-//! The page of a study and `barrelstack study report` as a user meets them.
+//! The page of a study and `barrelstack study report`, end to end.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -8,7 +8,7 @@ use std::fs;
 
 use common::{HEAD, barrelstack, stderr, stdout};
 
-/// What is said to a mistake.
+/// Returns the error for a mistake.
 fn refused(arguments: &[&str]) -> String {
     let output = barrelstack(arguments);
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

@@ -1,5 +1,5 @@
-//! Everything that can be typed wrong, or is meant to harm: hundreds of cases, and in each no panic, nothing half
-//! done, one error with its place and the next move, in bounded time and memory.
+//! Wrong and malicious input: hundreds of cases, and in each no panic, no partial output, one error with its place
+//! and the remedy, in bounded time and memory.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use cases::Cases;
 use common::stderr;
 
-/// A scene of one block by this name.
+/// Returns a scene of one block by this name.
 fn block(name: &str) -> String {
     let name = toml_text(name);
     format!(
@@ -28,7 +28,7 @@ fn block(name: &str) -> String {
     )
 }
 
-/// A text as TOML writes it.
+/// Quotes a text for TOML.
 fn toml_text(text: &str) -> String {
     let escaped = text.chars().fold(String::new(), |mut all, c| {
         match c {
@@ -41,7 +41,7 @@ fn toml_text(text: &str) -> String {
     format!("\"{escaped}\"")
 }
 
-/// Names that somebody gives who means harm, or a wrong file.
+/// Names given with intent to harm, or by mistake.
 const NAMES: [&str; 18] = [
     "../../../etc/passwd",
     "/etc/passwd",
@@ -126,7 +126,7 @@ fn changes_that_cannot_be_meant_name_themselves() {
     ];
     for field in fields {
         for value in values {
-            // A motion may be turned around.
+            // A motion may be reversed.
             if (field, value) == ("motion.scale.factor", "-1") {
                 continue;
             }
@@ -186,7 +186,7 @@ fn sizes_beyond_all_cellars_are_refused_before_they_are_spent() {
         cases.refused(&["run", "demo-napa", "--set", set, "--out=o"], &[]);
         cases.refused(&["check", "demo-napa", "--set", set], &[]);
     }
-    // Within the ranges of the fields and beyond memory together.
+    // Each within the range of its field, but together beyond memory.
     let kept = ["--set=record.history_rate=10 kHz", "--set=run.duration=3600 s"];
     cases.refused(&[&["run", "demo-napa"], &kept[..]].concat(), &["GB", "record.history_rate"]);
     for options in [
@@ -271,7 +271,7 @@ fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
     cases.end(33);
 }
 
-/// A record of 300 samples as AT2, and as the program's own text and NPZ.
+/// Returns a record of 300 samples as AT2, and as the program's own text and NPZ.
 fn records(cases: &mut Cases) -> Vec<String> {
     ["at2", "txt", "csv", "npz"]
         .map(|ending| {
@@ -404,7 +404,7 @@ fn names_of_bodies_stay_in_their_cells_and_folders() {
     cases.end(60);
 }
 
-/// The rows of a CSV file (RFC 4180).
+/// Parses the rows of a CSV file (RFC 4180).
 fn rows(text: &str) -> Vec<Vec<String>> {
     let (mut rows, mut row, mut cell, mut quoted) = (Vec::new(), Vec::new(), String::new(), false);
     let mut all = text.chars().peekable();
@@ -423,7 +423,7 @@ fn rows(text: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// The names in an archive.
+/// Returns the names in an archive.
 fn members(archive: &[u8]) -> Vec<String> {
     let starts = archive.windows(4).enumerate().filter(|(_, four)| *four == b"PK\x01\x02");
     let name = |at: usize| {

@@ -1,5 +1,4 @@
-//! Record files that cannot be meant: each gets one error at its place with the next move, and nothing
-//! is written.
+//! Invalid record files: each gets one error at its place with the remedy, and nothing is written.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -37,7 +36,7 @@ fn peer(points: usize) -> String {
     );
     let _ = writeln!(text, "NPTS= {points:6}, DT=   .0100 SEC");
     for index in 0..points {
-        // Squares of half a second: they begin with 0.1, and no filter makes them zero.
+        // Half-second squares: they begin with 0.1, and no filter makes them zero.
         let value = if index % 50 < 25 { 0.1 } else { -0.1 };
         let end = if index % 5 == 4 { "\n" } else { "" };
         let _ = write!(text, "{value:15.7E}{end}");
@@ -118,7 +117,7 @@ fn peer_files_that_are_damaged() {
         &["line 5", "1.00000E+999"],
     );
     refuse("one value", "a.at2", peer(1).as_bytes(), &["2 samples"]);
-    // A comma for the point all through the file, which makes two numbers of each.
+    // Commas as decimal marks throughout the file, which make two numbers of each.
     let comma = peer(200).replace('.', ",").replacen(",0100", ".0100", 1);
     refuse("comma", "a.at2", comma.as_bytes(), &["line 4", "200", "400"]);
 }
@@ -155,7 +154,7 @@ fn paths_that_are_no_files() {
     refused("empty name", &with(""), &out, &["--record"]);
 }
 
-/// Two columns of two seconds whose third time is late.
+/// Returns two columns of two seconds whose third time is late.
 fn uneven() -> Vec<u8> {
     let mut text = String::from("0.00 0.1\n0.01 0.2\n0.05 -0.3\n");
     for index in 6..200 {

@@ -1,5 +1,4 @@
-//! Scenario files that cannot be meant: each gets one error at its place with the next move, and
-//! nothing is written.
+//! Invalid scenario files: each gets one error at its place with the remedy, and nothing is written.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

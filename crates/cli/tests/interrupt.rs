@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: every command stops, makes no verdict of what is not finished, keeps what is, and says so.
+//! Ctrl-C and SIGTERM: every command stops, gives no verdict on unfinished work, keeps finished work, and reports it.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
@@ -16,10 +16,10 @@ use common::{HEAD, barrelstack, names, program};
 const LONG: [&str; 3] =
     ["--set=run.duration=3600 s", "--set=run.until=duration", "--set=stack.levels=2"];
 
-/// How long a command may take to end, on however busy a machine; measured 0.1 to 2 s, the work is of hours.
+/// Time limit for a command to end, on a busy machine; measured 0.1 to 2 s, the work is of hours.
 const AT_MOST: Duration = Duration::from_secs(40);
 
-/// Starts a command, signals it, and gives its words on standard error.
+/// Starts a command, sends it a signal, and returns its standard error.
 fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
     let what = format!("{signal} {arguments:?}");
     let mut child = program(arguments)
@@ -32,7 +32,7 @@ fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
     std::thread::sleep(Duration::from_millis(700));
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success(), "{what}: it had ended before");
-    // Standard input stays open, so that what reads it waits on.
+    // Standard input stays open, so that a reader of it keeps waiting.
     let input = child.stdin.take();
     let start = Instant::now();
     let output = child.wait_with_output().unwrap();
@@ -46,7 +46,7 @@ fn stopped(signal: &str, arguments: &[&str], folder: &Path) -> String {
     words
 }
 
-/// All files below a folder.
+/// Returns all files below a folder.
 fn files(folder: &Path) -> Vec<String> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten() {
@@ -113,11 +113,11 @@ fn every_command_ends_and_says_what_is_kept() {
         let half: Vec<String> = files(at).into_iter().filter(unfinished).collect();
         assert_eq!(half, Vec::<String>::new(), "{arguments:?}");
     }
-    // What was computed until then is there.
+    // Results computed until then are there.
     assert!(names(&at.join("run")).unwrap().contains(&"report.html".to_owned()));
     assert!(names(&at.join("demo")).unwrap().contains(&"report.html".to_owned()));
     assert!(names(&at.join("compared")).unwrap().contains(&"report.html".to_owned()));
-    // What would be half is not.
+    // Incomplete files are not.
     assert!(!at.join("matched.txt").exists());
 }
 
@@ -143,12 +143,12 @@ fn a_study_that_was_stopped_goes_on() {
 /// Two levels of barrels, which stand, for a few seconds: short work with variants.
 const SHORT: [&str; 4] = ["run", "demo-napa", "--set=stack.levels=2", "--set=run.duration=4 s"];
 
-/// Words that only a verdict has.
+/// Words that occur in verdicts only.
 const VERDICTS: [&str; 5] =
     ["This stack", "The stack stands", ": it stands", ": it falls", "gives way after"];
 
-/// What a command says that stops itself at a place of its work: standard output, which must hold no verdict where none
-/// is `finished`.
+/// Runs a command that stops itself at a place of its work; returns standard output, which must not contain a verdict
+/// unless `finished`.
 fn stops_at(place: &str, arguments: &[&str], folder: &Path, finished: bool) -> String {
     let what = format!("{arguments:?} at {place}");
     let output = program(arguments)
@@ -190,7 +190,7 @@ fn stopped_variants_are_kept_and_make_no_verdict() {
             assert!(summary[verdict].is_null(), "{verdict}");
         }
         assert!(summary["outcome"]["barrels_fallen"].is_null());
-        // What is done has its row, and nothing else has one.
+        // Finished cases have a row, and no others.
         let rows = fs::read_to_string(folder.path().join("out/variants.csv")).unwrap();
         assert_eq!(rows.lines().count() as u64, 1 + done, "{rows}");
         assert!(!rows.contains("interrupted"), "{rows}");
@@ -224,7 +224,7 @@ fn a_stack_that_had_collapsed_when_it_was_stopped_has_no_outcome_either() {
     for field in ["mode", "time", "first", "first_fall", "barrels_fallen"] {
         assert!(outcome[field].is_null(), "{field}: {outcome}");
     }
-    // What was observed until then stands with the bodies.
+    // Observations until then are reported with the bodies.
     let left = |body: &serde_json::Value| body["left_seat_at"].is_f64();
     assert!(summary["bodies"].as_array().unwrap().iter().any(left));
 }

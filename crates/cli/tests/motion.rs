@@ -1,4 +1,4 @@
-//! The commands about ground motions: what they print, what they write, what they refuse.
+//! The motion commands: printed output, written files, refusals.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use common::{barrelstack, names, refused, skipped, stderr, stdout};
 use serde_json::Value;
 
-/// Runs `motion` in a way that must succeed, and gives what it printed.
+/// Runs `motion`, which must succeed, and returns standard output.
 fn motion(arguments: &[&str]) -> String {
     let output = barrelstack([&["motion"], arguments].concat());
     let (told, warned) = (stdout(&output), stderr(&output));
@@ -19,7 +19,7 @@ fn motion(arguments: &[&str]) -> String {
     told
 }
 
-/// The channels of a file as `info --json` gives them.
+/// Returns the channels of a file from `info --json`.
 fn channels(file: &Path) -> Vec<Value> {
     let told = motion(&["info", "--json", text(file)]);
     let document: Value = serde_json::from_str(&told).unwrap();
@@ -38,13 +38,13 @@ fn close(a: f64, b: f64, share: f64) -> bool {
     (a - b).abs() <= share * b.abs()
 }
 
-/// The rows of numbers of a file in the program's own form.
+/// Returns the rows of numbers of a file in the program's own form.
 fn rows(file: &Path) -> Vec<String> {
     let whole = fs::read_to_string(file).unwrap();
     whole.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
 }
 
-/// A folder with `napa.txt`, the bundled record after processing, cut to its strong part.
+/// Returns a folder with `napa.txt`, the bundled record after processing, cut to its strong part.
 fn napa() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("napa.txt");
@@ -78,7 +78,7 @@ fn every_number_of_the_table_has_a_unit() {
     assert_eq!(rows.len(), 21, "{told}");
     let units = ["g", "cm/s", "cm", "s", "m/s", "m/s^0.75"];
     for row in rows {
-        // Columns stand apart by two blanks or more, the words of a name by one.
+        // Two blanks or more separate columns, one separates the words of a name.
         let unit = row.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).nth(1).unwrap();
         assert!(units.contains(&unit), "{row}");
     }
@@ -174,7 +174,7 @@ fn a_raw_record_is_scaled_by_its_motion_and_not_by_its_drift() {
     assert!(close(measure(&channels(&file)[0], "pgd"), 0.2, 1e-12));
     let processed = measure(&channels(&file)[0], "pga");
     motion(&[&scaled[..], &[text(&file), "--processing", "none"]].concat());
-    // Drift is half a meter, so the factor to 20 cm of it is far too small.
+    // The drift is half a meter, so that the factor to 20 cm is far too small.
     assert!(measure(&channels(&file)[0], "pga") < 0.5 * processed);
 }
 
@@ -472,7 +472,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
     refused("three components", &output, &at2, &["holds one component", "--component"]);
 }
 
-/// What a user would state of files that do not, from the folder's own README.
+/// Returns options for files that lack information, from the README of the folder.
 fn stated(file: &str) -> &'static [&'static str] {
     match file {
         "columns/ChiChi.txt" => &["--unit", "g"],
@@ -486,7 +486,7 @@ fn stated(file: &str) -> &'static [&'static str] {
 
 #[test]
 fn every_real_file_is_shown_or_refused() {
-    // No such file holds an acceleration history.
+    // Files without an acceleration history.
     const REFUSED: [&str; 6] = [
         "README.md",
         "asdf/nc72282711_workspace.h5",
@@ -524,6 +524,6 @@ fn every_real_file_is_shown_or_refused() {
             seen += 1;
         }
     }
-    // As many as there are in the folder's README, without those refused.
+    // The number of files in the folder's README, without those refused.
     assert!(seen >= 30, "{seen} files");
 }

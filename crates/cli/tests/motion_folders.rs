@@ -1,4 +1,4 @@
-//! Whole folders of records: the table, what is refused, what is done anew, and a set for a study.
+//! Whole folders of records: the table, refusals, repetition of changed records, and a set for a study.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -11,14 +11,14 @@ use std::path::Path;
 use barrelstack_motion::Random;
 use common::{barrelstack, stderr, stdout};
 
-/// Runs `motion` in a way that must succeed, and gives what it printed.
+/// Runs `motion`, which must succeed, and returns standard output.
 fn motion(arguments: &[&str]) -> String {
     let output = barrelstack([&["motion"], arguments].concat());
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     stdout(&output)
 }
 
-/// Runs `motion` in a way that must be refused with these words.
+/// Runs `motion`, which must be refused with these words.
 fn refused(arguments: &[String], words: &str) {
     let all = std::iter::once("motion").chain(arguments.iter().map(String::as_str));
     let output = barrelstack(all);
@@ -30,14 +30,14 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// A folder of `count` made records of two horizontals, one file of words, and a flatfile.
+/// Returns a folder of `count` synthetic records of two horizontals, one text file, and a flatfile.
 fn records(count: usize) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let below = folder.path().join("records/below");
     fs::create_dir_all(&below).unwrap();
     let mut flatfile = "RSN,magnitude,rrup,vs30\n".to_owned();
     for k in 0..count {
-        // Noise of a color of its own under an envelope.
+        // Filtered noise of different bandwidth under an envelope.
         let motion = |seed: usize| -> Vec<f64> {
             let mut random = Random::new(seed as u64);
             let (memory, mut last) = (0.5 + 0.04 * k as f64, 0.0);
@@ -85,7 +85,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let parquet = fs::read(out.join("records.parquet")).unwrap();
     assert!(parquet.starts_with(b"PAR1"));
 
-    // As a kill leaves it: half of the lines, the last one cut.
+    // As a killed process leaves it: half of the lines, the last one truncated.
     let journal = out.join("rows.jsonl");
     let whole = fs::read_to_string(&journal).unwrap();
     let lines: Vec<&str> = whole.lines().collect();
@@ -97,7 +97,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     assert_eq!(fs::read_to_string(out.join("records.csv")).unwrap(), table);
     assert_eq!(fs::read(out.join("records.parquet")).unwrap(), parquet);
 
-    // A touched file is not done again, a changed one is.
+    // A touched file is not repeated, a changed one is.
     let one = records.join("below/RSN1_made.txt");
     let bytes = fs::read(&one).unwrap();
     fs::write(&one, &bytes).unwrap();
@@ -110,7 +110,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     refused(&other.map(str::to_owned), "holds the table of another command");
     refused(&["info", text(&records)].map(str::to_owned), "--out DIR");
 
-    // Nothing of others is overwritten, nor is a folder shared.
+    // Files of others are not overwritten, nor is a folder shared.
     let all = all.map(str::to_owned);
     let kept = fs::read(&journal).unwrap();
     let lock = fs::File::open(&journal).unwrap();
@@ -122,7 +122,7 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
         refused(&all, "a rows.jsonl that is none of this program");
         assert_eq!(fs::read_to_string(&journal).unwrap(), foreign);
     }
-    // A head that a kill cut is begun anew.
+    // A truncated head is written anew.
     fs::write(&journal, &kept[..20]).unwrap();
     assert!(motion(&all.each_ref().map(String::as_str)).starts_with("6 records measured, 1 file"));
 }
@@ -140,7 +140,7 @@ fn a_folder_is_processed_converted_and_drawn() {
     motion(&["plot", text(&records), "--out", text(&out("d"))]);
     let png = fs::read(out("d").join("below/RSN1_made.txt.png")).unwrap();
     assert!(png.starts_with(b"\x89PNG"));
-    // What is gone is made anew.
+    // Missing files are made again.
     fs::remove_file(out("d").join("below/RSN1_made.txt.png")).unwrap();
     let told = motion(&["plot", text(&records), "--out", text(&out("d"))]);
     assert!(told.starts_with("2 records measured (1 of them before)"), "{told}");

@@ -21,14 +21,14 @@ fn told(arguments: &[&str]) -> String {
     stdout(&output)
 }
 
-/// What `motion` says where it refuses.
+/// Returns the error of `motion`.
 fn refused(arguments: &[&str]) -> String {
     let output = barrelstack([&["motion"], arguments].concat());
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     stderr(&output)
 }
 
-/// Two components and a vertical that shake for eight seconds.
+/// Returns two components and a vertical that shake for eight seconds.
 fn record(folder: &Path) -> std::path::PathBuf {
     let mut rows = String::from("# acceleration (m/s2)\ntime (s),90,0,UP\n");
     for k in 0..1600 {
@@ -160,7 +160,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
         };
         document["records"][0]["channels"].as_array().unwrap().iter().map(channel).collect()
     };
-    // The largest of the wave, 2 sin(9 t) exp(-0.3 t), is 1.898 m/s2; measured 1.89898.
+    // The maximum of the wave, 2 sin(9 t) exp(-0.3 t), is 1.898 m/s2; measured 1.89898.
     let near = |value: f64, expected: f64| (value - expected).abs() < 2e-3;
     for (axes, along, across) in [("strike:40", 1, 0), ("strike:400", 1, 0), ("strike:130", 0, 1)] {
         let channels = turned(axes);
@@ -240,7 +240,7 @@ fn components_of_two_stations_are_taken_together_only_where_told() {
     let mixed = say(&spectrum(&there, &["--allow-mixed"]));
     assert!(!rows(&same).is_empty());
     assert_eq!(rows(&mixed), rows(&same));
-    // One direction twice makes no pair, told or not.
+    // Equal directions do not form a pair, even with --allow-mixed.
     let twin = file("d.txt", "There", 0, 1.0);
     let all = spectrum(&twin, &["--allow-mixed"]);
     let said = refused(&all.iter().map(String::as_str).collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! Figures, films and pictures in the terminal, as people ask for them.
+//! Figures, films and pictures in the terminal, end to end.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -8,14 +8,14 @@ use std::fs;
 
 use common::{barrelstack, names, refused, stderr, stdout};
 
-/// A stack that has come down by its end, in a fraction of a second.
+/// A stack that collapses before its end, in a fraction of a second.
 const FALLEN: [&str; 4] =
     ["run", "candia-8-barrels", "--set=run.stop_after_collapse=0.8 s", "--variants=0"];
 
-/// A run of a moment.
+/// A short run.
 const BLOCK: [&str; 4] = ["render", "rocking-block", "--set=run.duration=0.5 s", "--quiet"];
 
-/// The lines of the picture in a summary.
+/// Returns the lines of the picture in a summary.
 fn picture(text: &str) -> Vec<&str> {
     text.lines().skip_while(|line| !line.starts_with("  at the end, ")).skip(1).collect()
 }

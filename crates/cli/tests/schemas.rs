@@ -1,4 +1,4 @@
-//! Every document for programs has the schema that the program prints for it, whatever came of the work.
+//! Every document for programs satisfies the schema that the program prints for it, in every outcome.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -13,7 +13,7 @@ use std::time::Duration;
 use common::{HEAD, STUDY, barrelstack, program, stderr, stdout};
 use serde_json::Value;
 
-/// A step near the critical one under dampers too strong for it, and no settling that would show it.
+/// A step near the critical one under dampers too strong for it, without settling, which would show it.
 const BROKEN: [&str; 5] = [
     "run",
     "candia-8-barrels",
@@ -22,7 +22,7 @@ const BROKEN: [&str; 5] = [
     "--set=interface.barrel-rack.damping=\"3000 N s/cm\"",
 ];
 
-/// A schema and the objects that it refers to.
+/// A schema with the objects that it refers to.
 struct Schema(Value);
 
 impl Schema {
@@ -32,8 +32,8 @@ impl Schema {
         Self(serde_json::from_str(&stdout(&output)).unwrap())
     }
 
-    /// Everything in a value that the schema does not allow. Strict: a word of a schema that is not known here is
-    /// an error, too.
+    /// Returns all violations of the schema in a value. Strict: an unsupported keyword of the schema is a violation,
+    /// too.
     fn errors(&self, value: &Value) -> Vec<String> {
         let mut errors = Vec::new();
         self.check(&self.0, value, "$", &mut errors);
@@ -120,7 +120,7 @@ fn is(kind: &Value, value: &Value) -> bool {
     }
 }
 
-/// Whether a field holds numbers that are not whole.
+/// `true` if a field holds numbers that are not integers.
 fn counts(field: &Value) -> bool {
     if !field.is_object() {
         return false;
@@ -133,18 +133,18 @@ fn counts(field: &Value) -> bool {
     kinds || inner || field["anyOf"].as_array().is_some_and(|all| all.iter().any(counts))
 }
 
-/// The names that the program lists.
+/// Returns the names that the program lists.
 fn listed() -> BTreeSet<String> {
     let list = stdout(&barrelstack(["schema"]));
     list.lines().map(|line| line.split(' ').next().unwrap().to_owned()).collect()
 }
 
-/// Documents that were seen, by the name of their schema.
+/// Number of checked documents, by the name of their schema.
 #[derive(Default)]
 struct Seen(BTreeMap<String, usize>);
 
 impl Seen {
-    /// Standard output is one document, which has the schema of the name that it says itself.
+    /// Checks that a text is one document that satisfies the schema that it names.
     fn document(&mut self, what: &str, text: &str) -> Value {
         let value: Value =
             serde_json::from_str(text).unwrap_or_else(|e| panic!("{what}: {e}: {text}"));
@@ -170,7 +170,7 @@ impl Seen {
     }
 }
 
-/// Sends a signal to a program after a moment and gives what it said.
+/// Sends a signal to a program shortly after its start and returns its output.
 #[cfg(unix)]
 fn interrupted(arguments: &[&str]) -> Output {
     let child = program(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -246,7 +246,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     seen.run(&["study", "report", &done, "--hazard", &hazard], 0);
     let decision = fs::read_to_string(folder.path().join("study/decision.json")).unwrap();
     seen.document("decision.json", &decision);
-    // A study of which a part is there.
+    // A partly finished study.
     let part = at("part");
     assert!(
         barrelstack(["study", "run-chunk", &study, "--chunk=1", "--out", &part]).status.success()
@@ -280,7 +280,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
         }
     }
 
-    // What takes minutes is seen by the test below.
+    // Slow documents are checked by the test below.
     let slow = ["heights", "protect", "rockscore"].map(str::to_owned);
     let seen: BTreeSet<String> = seen.0.into_keys().chain(slow).collect();
     assert_eq!(seen, listed());

@@ -1,4 +1,4 @@
-//! `barrelstack run` of a stack in space: its files, its words, and what it refuses.
+//! `barrelstack run` of a stack in space: its files, its text, and its refusals.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -40,7 +40,7 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
     for view in ["Across the barrels", "Along the barrels", "From above"] {
         assert!(page.contains(view), "{view}");
     }
-    // What was written reads back, to the same stack.
+    // The written scenario reads back, to the same stack.
     let again =
         barrelstack(["run", &out.join("scenario.toml").display().to_string(), "--json", "-q"]);
     assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
@@ -60,7 +60,7 @@ fn what_space_does_not_know_is_refused_before_any_work() {
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
     }
-    // And what works in a plane says so.
+    // Commands that work in a plane say so.
     let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
     let output = barrelstack([&["compare", "demo-napa"], &more[..]].concat());
     assert_eq!(output.status.code(), Some(2));

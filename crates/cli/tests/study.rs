@@ -1,4 +1,4 @@
-//! `barrelstack study` as a user, a cluster and a power cut know it.
+//! `barrelstack study` under users, clusters and power failures.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -38,7 +38,7 @@ fn killed_at_any_instant_and_resumed_it_gives_the_uninterrupted_table() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 
     let broken = path("broken");
-    // Instants spread over the whole run, in an order without order.
+    // Instants spread over the whole run, in irregular order.
     for share in [37, 5, 71, 18, 90, 53, 2, 64, 29, 83] {
         let mut child = program(run(&file, &broken, "2")).stdout(Stdio::null()).spawn().unwrap();
         std::thread::sleep(took.mul_f64(f64::from(share) / 300.0));
@@ -198,7 +198,7 @@ fn mistakes_are_told_before_anything_is_made() {
 fn a_folder_that_cannot_be_made_is_told_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
-    // Nothing can be made below a file; a folder below /proc cannot be made at all.
+    // Nothing can be created below a file; a folder below /proc cannot be created at all.
     let inside = folder.path().join("study.toml").join("out").display().to_string();
     let output = barrelstack(run(&file, &inside, "1"));
     assert_eq!(output.status.code(), Some(2));
@@ -226,7 +226,7 @@ fn job_files_name_every_chunk() {
         let text = emit(engine, &[]);
         assert!(text.contains(word) && text.contains("run-chunk"), "{text}");
         assert!(text.contains(&file) && Path::new(&file).is_absolute(), "{text}");
-        // The script is one that a shell can read.
+        // A shell can parse the script.
         let script = folder.path().join(engine);
         fs::write(&script, &text).unwrap();
         let check = std::process::Command::new("sh").arg("-n").arg(&script).status().unwrap();
@@ -242,7 +242,7 @@ fn job_files_name_every_chunk() {
             assert!(python.args(["-c", compile, &text]).status().unwrap().success(), "{text}");
         }
     }
-    // No array is longer than the scheduler takes, and every chunk is in one.
+    // No array is longer than the scheduler's limit, and every chunk is in one.
     let limits = ["--array-limit", "4", "--walltime", "00:10:00", "--throttle", "2"];
     let text = emit("slurm", &limits);
     for word in ["submit 0 3 ", "submit 4 3 ", "submit 8 1 ", "0-$last%2", "--time='00:10:00'"] {
@@ -268,7 +268,7 @@ fn job_files_name_every_chunk() {
     let waits: Vec<_> = log.lines().map(|job| job.split_once("--dependency=afterany:")).collect();
     let waits = waits.iter().map(|wait| wait.map(|(_, jobs)| jobs.split(' ').next().unwrap()));
     assert_eq!(waits.collect::<Vec<_>>(), [None, Some("1"), Some("2"), Some("1:2:3")], "{log}");
-    // What says nothing to an engine is refused, not left out in silence.
+    // Options that do not apply to an engine are refused, not silently ignored.
     for (engine, option) in
         [("dask", "--throttle"), ("parallel", "--walltime"), ("hyperqueue", "--array-limit")]
     {

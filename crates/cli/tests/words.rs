@@ -1,4 +1,4 @@
-//! What a person reads who has a minute: names, labels, advice, and nothing of the machine.
+//! Text for people: names, labels, advice, and no paths of the machine.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -11,7 +11,7 @@ use std::path::Path;
 use common::{barrelstack, stderr, stdout};
 use serde_json::Value;
 
-/// A record of a second as the PEER database writes it.
+/// Returns a record of a second in the format of the PEER database.
 fn peer(folder: &Path, header: &str) -> String {
     let mut text = format!(
         "PEER STRONG MOTION DATABASE RECORD\n{header}\nACCELERATION TIME HISTORY IN UNITS OF G\nNPTS=  200, \
@@ -80,7 +80,7 @@ fn the_command_of_the_advice_makes_the_comparison_that_it_promises() {
     let command = remedy["comparison"].as_str().unwrap();
     let level = remedy["height"]["levels"].as_u64().unwrap();
     let out = folder.path().join("both");
-    // The words of the command as a shell would take them.
+    // Splits the command into words as a shell does.
     let split = std::process::Command::new("sh")
         .args(["-c", &format!("printf '%s\\n' {command}")])
         .output()

@@ -1,4 +1,4 @@
-//! `barrelstack calibrate`: from a user's tests to contact parameters with their uncertainty.
+//! `barrelstack calibrate`: contact parameters with their uncertainty, from a user's tests.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,7 +21,7 @@ use crate::printer;
 use crate::progress::Progress;
 use crate::typed::{typed, word};
 
-/// What the help ends with.
+/// End of the help.
 const AFTER_HELP: &str = "\
 Files are CSV with a header whose columns carry their unit, such as
   penetration (mm),force (kN)
@@ -118,7 +118,7 @@ struct ChangeArgs {
 }
 
 impl ChangeArgs {
-    /// A scenario of this name with the changes.
+    /// Returns a scenario of this name with the changes.
     fn of(&self, name: &str) -> ScenarioArgs {
         let (set, record) = (self.set.clone(), self.record.clone());
         ScenarioArgs { scenario: name.to_owned(), set, record }
@@ -238,7 +238,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         Test::Response(args) => &args.result,
         Test::Collapse(args) => &args.result,
     };
-    // A folder that cannot be written is told before the work.
+    // Fail early if the folder cannot be written.
     let folder = result.out.as_ref().map(|out| Folder::prepare(out, result.overwrite));
     let folder = folder.transpose()?;
     let found = match &args.test {
@@ -284,7 +284,7 @@ fn striker(args: &DropArgs) -> anyhow::Result<Option<Striker>> {
     }))
 }
 
-/// The value (SI) of an option that is a positive quantity.
+/// Returns the value (SI) of an option that is a positive quantity.
 fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     let suggestion = Quantity::suggestion(text, &[dimension]);
     let example = || format!("{option}: expected {dimension} such as \"{suggestion}\"");
@@ -293,7 +293,7 @@ fn positive(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f6
     Ok(value)
 }
 
-/// The parameters that were asked for, each once.
+/// Returns the requested parameters, each once.
 fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     let mut parameters: Vec<Parameter> = Vec::new();
     for fitted in fit {
@@ -308,7 +308,7 @@ fn parameters(fit: &[Fitted]) -> anyhow::Result<Vec<Parameter>> {
     Ok(parameters)
 }
 
-/// An error of a calibration with the scenario it comes from.
+/// Adds the scenario to an error of a calibration.
 fn placed(error: CalibrateError, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     match error {
         CalibrateError::Run(failure) => super::placed(failure, scenario, args),

@@ -1,4 +1,4 @@
-//! `barrelstack check`: is the scenario sound, and does the stack stand before it is shaken?
+//! `barrelstack check`: validates a scenario and tests that the stack stands before it is shaken.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,7 @@ use barrelstack::variants;
 use crate::args::CheckArgs;
 use crate::printer;
 
-/// Reads, builds and settles, and prints what was found.
+/// Reads, builds and settles, and prints the findings.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);

@@ -15,7 +15,7 @@ use crate::args::{ScenarioArgs, VariantArgs};
 use crate::interrupt::{Interrupt, Stopped};
 use crate::printer;
 
-/// What the help of `compare` ends with.
+/// End of the help of `compare`.
 const EXAMPLES: &str = "\
 Examples:
   barrelstack compare demo-napa --against stack.levels=4
@@ -75,7 +75,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     compare::check(&scenarios)?;
     for ((_, scenario), (_, one)) in scenarios.iter().zip(&asked) {
-        // What cannot be shown is told before the work.
+        // Fail early if a run cannot be shown.
         if scenario.is_spatial() {
             return Err(super::placed(AssembleError::Space.into(), scenario, one));
         }
@@ -113,13 +113,13 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
         let (done, all) = (answers.len(), scenarios.len());
         printer::note(&format!("stopped; {done} of {all} runs are compared"));
     }
-    // A stop in this last part leaves what is shown so far.
+    // A stop in this last part keeps the runs shown so far.
     let interrupt = Interrupt::listen();
     let answers = compare::aligned(answers, &mut |_| interrupt.flow())?;
     let sides = compare::sides(answers);
     let document = compare::document(&sides);
     crate::interrupt::writes_to(folder.path());
-    // The verdict is printed even where it cannot be written.
+    // Print the verdict even if the files cannot be written.
     let written = folder.write_page(&document);
     let differing = differences(sides.iter().map(|side| &*side.run.stated));
     if args.json {
@@ -140,7 +140,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     Ok(super::status(broken))
 }
 
-/// Keeps the one run that was done, or begun, when the comparison was stopped: as its own report.
+/// Writes the one run that was finished, or begun, when the comparison was stopped, as its own report.
 fn alone(
     args: &CompareArgs,
     folder: &Folder,
@@ -168,11 +168,11 @@ fn alone(
     Ok(ExitCode::SUCCESS)
 }
 
-/// The runs asked for, with a short name for each.
+/// Returns the requested runs, with a short name for each.
 fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
-        // What is changed in one run is changed from what all have.
+        // Changes of one run apply on top of those of all runs.
         set: args
             .set
             .iter()
@@ -189,18 +189,18 @@ fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     files.chain(changed).collect()
 }
 
-/// The name of a file without its folders and its ending.
+/// Returns the name of a file without its folders and its extension.
 fn short(name: &str) -> String {
     let stem = Path::new(name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     stem.unwrap_or_else(|| name.to_owned())
 }
 
-/// The path of a change.
+/// Returns the path of a change.
 fn path(change: &str) -> &str {
     change.split_once('=').map_or(change, |(path, _)| path).trim()
 }
 
-/// A change as it is read: `stack.levels = 4`.
+/// Formats a change for reading: `stack.levels = 4`.
 fn spaced(change: &str) -> String {
     change.split_once('=').map_or_else(
         || change.to_owned(),
@@ -208,7 +208,7 @@ fn spaced(change: &str) -> String {
     )
 }
 
-/// The differences as lines: the input, then its value in each run.
+/// Lists the differences: the input, then its value in each run.
 fn table(differing: &[Difference]) -> Vec<String> {
     let mut lines = vec![String::new()];
     for one in differing {

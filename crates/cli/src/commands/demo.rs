@@ -1,4 +1,4 @@
-//! `barrelstack demo`: the first thing a newcomer sees.
+//! `barrelstack demo`: a first run for newcomers.
 
 use std::process::ExitCode;
 
@@ -13,7 +13,7 @@ use crate::printer;
 /// The scenario.
 const NAME: &str = "demo-napa";
 
-/// Runs the demo scenario and says in a few sentences what happened.
+/// Runs the demo scenario and summarizes the result in a few sentences.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = Scenario::builtin(NAME, &args.set)?;
     let asked = super::run::asked(&mut scenario, args.variants)?;
@@ -27,7 +27,7 @@ pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;
     }
     crate::interrupt::finished();
-    // The verdict is printed even where it cannot be written.
+    // Print the verdict even if the files cannot be written.
     let written = folder.write(&answer, None);
     let Shown { run, summary, .. } = &answer.decides;
     printer::lines(barrelstack::report::sentences(run, summary))?;

@@ -1,4 +1,4 @@
-//! `barrelstack heights`: how high is safe, on one page.
+//! `barrelstack heights`: safe heights, on one page.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
     args.page.end(file, &found.document, &found.to_document(), lines(&found), &found.warnings)
 }
 
-/// The table for people.
+/// Returns the table for people.
 fn lines(found: &Heights) -> Vec<String> {
     let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
     for view in View::ALL {

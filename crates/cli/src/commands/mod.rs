@@ -1,4 +1,4 @@
-//! One file for every subcommand.
+//! One file per subcommand.
 
 pub(crate) mod calibrate;
 mod check;
@@ -29,10 +29,10 @@ use barrelstack::{RunFailure, Scenario};
 
 use crate::args::{Args, Command, ScenarioArgs};
 
-/// Most of standard input (bytes) that is taken for a scenario; more than any scenario has.
+/// Largest scenario (bytes) read from standard input.
 const INPUT_LIMIT: u64 = 16 << 20;
 
-/// Does what was typed.
+/// Runs the given subcommand.
 pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
     match args.command {
         Command::Run(args) => run::run(&args),
@@ -56,7 +56,7 @@ pub(crate) fn dispatch(args: Args) -> anyhow::Result<ExitCode> {
 
 /// Loads a scenario file, standard input (`-`), or a built-in scenario, with its changes.
 ///
-/// A name that is a file is a file; any other name without a dot or a separator is a built-in scenario.
+/// An existing file takes precedence; any other name without a dot or a separator is a built-in scenario.
 fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     let mut overrides = args.set.clone();
     if let Some(record) = &args.record {
@@ -91,7 +91,7 @@ fn load(args: &ScenarioArgs) -> anyhow::Result<Scenario> {
     Ok(scenario)
 }
 
-/// A name that is neither a file nor a built-in scenario, with the one that looks most like it.
+/// Returns the error for a name that is neither a file nor a built-in scenario, with the most similar name.
 fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     let next = if let Problem::UnknownName { nearest: Some(nearest), .. } = error.problem() {
         format!("did you mean `{nearest}`?")
@@ -101,13 +101,13 @@ fn no_such(name: &str, error: &ScenarioError) -> anyhow::Error {
     anyhow::anyhow!("there is no file {name:?} and no built-in scenario of that name; {next}")
 }
 
-/// The exit status of runs, as the help of the program lists them; that of stopped work is set where the program ends.
+/// Returns the exit status of runs, as listed in the help; that of stopped work is set where the program ends.
 fn status(broken: bool) -> ExitCode {
     if broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
-/// An error of a run with the place in the scenario that it is about, or with the scenario; a record named on the
-/// command line stands in none.
+/// Adds the place in the scenario, or the scenario, to an error of a run; a record named on the command line has no
+/// place there.
 fn placed(error: RunFailure, scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Error {
     if args.record.is_some()
         && let RunFailure::Ground(error) = error

@@ -1,4 +1,4 @@
-//! What commands share that tell the results of studies on a page.
+//! Helpers of commands that present the results of studies on a page.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,7 +27,7 @@ pub(super) struct PageArgs {
 }
 
 impl PageArgs {
-    /// Looks at the folder, and says that what was run is kept there.
+    /// Checks the folder, and registers a note that results are kept there.
     pub(super) fn begin(&self, out: &Path) -> anyhow::Result<(RunOptions, Progress)> {
         writable(out)?;
         keeps(format!(
@@ -38,7 +38,7 @@ impl PageArgs {
         Ok((options, Progress::new(!self.quiet)))
     }
 
-    /// Writes the page and the document under its name, and prints what was found.
+    /// Writes the page and the document under its name, and prints the findings.
     pub(super) fn end(
         &self,
         (out, name): (&Path, &str),
@@ -47,7 +47,7 @@ impl PageArgs {
         mut lines: Vec<String>,
         warnings: &[String],
     ) -> anyhow::Result<ExitCode> {
-        // The answer is printed even where it cannot be written.
+        // Print the answer even if the files cannot be written.
         let written = write_both(out, name, page, document);
         if self.json {
             printer::document(document)?;
@@ -84,7 +84,7 @@ pub(super) fn write(out: &Path, page: &Document) -> anyhow::Result<()> {
     bundle.files.iter().try_for_each(|file| store(&figures.join(&file.name), &file.bytes))
 }
 
-/// Where the page is, below what was found.
+/// Returns the path of the page, to be printed below the findings.
 pub(super) fn place(out: &Path) -> [String; 2] {
     [String::new(), format!("page: {}", out.join("index.html").display())]
 }

@@ -1,4 +1,4 @@
-//! `barrelstack protect`: what protects a stack best for what it costs, on one page.
+//! `barrelstack protect`: ranks protections of a stack by benefit and cost, on one page.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &ProtectArgs) -> anyhow::Result<ExitCode> {
         }
         other => other?,
     };
-    // The ranking is finished, and is kept where these two runs are stopped.
+    // The ranking is finished, and is kept if these two runs are stopped.
     before_and_after(args, &mut found)?;
     crate::interrupt::finished();
     let file = (args.out.as_path(), "protect.json");
@@ -107,7 +107,7 @@ fn request(args: &ProtectArgs) -> anyhow::Result<Request> {
     })
 }
 
-/// Velocities (m/s) as typed, ascending, each once.
+/// Parses velocities (m/s), ascending, each once.
 fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
     let read = |text: &String| {
         let said =
@@ -136,7 +136,7 @@ fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<(
     }
 }
 
-/// The table for people.
+/// Returns the table for people.
 fn lines(found: &Ranking) -> Vec<String> {
     let mut lines = printer::verdict(&found.document.verdict);
     lines.push(String::new());

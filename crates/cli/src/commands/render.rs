@@ -76,7 +76,7 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 impl RenderArgs {
-    /// The parts, each once, in the order of the help.
+    /// Returns the parts, each once, in the order of the help.
     fn parts(&self) -> Vec<Part> {
         let asked = |part: &Part| {
             self.only.is_empty() || self.only.iter().any(|name| Part::from(*name) == *part)
@@ -84,7 +84,7 @@ impl RenderArgs {
         Part::ALL.into_iter().filter(asked).collect()
     }
 
-    /// The first part that was asked for by name and that runs in space do not have.
+    /// Returns the first part requested by name that runs in space do not have.
     pub(super) fn lacking_in_space(&self) -> Option<Part> {
         let asked = self.only.iter().map(|name| Part::from(*name));
         asked.into_iter().find(|part| *part != Part::Paraview)
@@ -116,7 +116,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         between: args.between()?,
         largest: args.size,
     };
-    // The folder is looked at before the work is done, not after.
+    // Check the folder before the work is done.
     let folder = RenderFolder::prepare(&args.out, &args.parts(), args.overwrite)?;
     for part in args.parts() {
         crate::interrupt::writes_to(&args.out.join(part.place()));

@@ -22,7 +22,7 @@ use crate::progress::Progress;
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
     let asked = asked(&mut scenario, args.variants)?;
-    // The folder is looked at before the work is done, not after.
+    // Check the folder before the work is done.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() {
         return super::space::run(args, &scenario, asked, folder.as_ref());
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let verification =
         args.verify.then(|| repeated(run, !args.quiet)).transpose().map_err(placed)?;
     crate::interrupt::finished();
-    // The verdict is printed even where it cannot be written.
+    // Print the verdict even if the files cannot be written.
     let written = folder.as_ref().map_or(Ok::<(), ExportError>(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         folder.write(&answer, verification.as_ref())?;
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     Ok(status(&answer))
 }
 
-/// The page that holds the program.
+/// Reads the page that holds the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
     let page = std::fs::read_to_string(path)
         .with_context(|| format!("cannot read the page {}", path.display()))?;
@@ -81,7 +81,7 @@ fn engine(path: &Path) -> anyhow::Result<String> {
     Ok(page)
 }
 
-/// Which run is to be shown; the number of variants is set as it was asked for.
+/// Returns the run to show; sets the number of variants as requested.
 pub(super) fn asked(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<Asked> {
     let count = match &mut scenario.scene {
         Scene::Stack { imperfections, .. } => {
@@ -118,7 +118,7 @@ pub(super) fn answered(
     Ok(answer)
 }
 
-/// Looks for what would have kept the stack up, with a progress bar and Ctrl-C.
+/// Searches a remedy, with a progress bar and Ctrl-C.
 pub(super) fn remedied(
     answer: &mut Answer,
     command: &Command<'_>,
@@ -141,7 +141,7 @@ fn repeated(run: &Run, show: bool) -> Result<Verification, RunFailure> {
     verify(run, &mut |reached| progress.at(reached))
 }
 
-/// The exit status of runs, as the help of the program lists them.
+/// Returns the exit status of runs, as listed in the help.
 pub(super) fn status(answer: &Answer) -> ExitCode {
     let mut runs = std::iter::once(&answer.decides).chain(&answer.other).map(|shown| &shown.run);
     super::status(runs.any(|run| matches!(run.outcome, Outcome::Invalid { .. })))

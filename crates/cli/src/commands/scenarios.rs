@@ -1,4 +1,4 @@
-//! `barrelstack scenarios`: what comes with the program, and what a scenario may say.
+//! `barrelstack scenarios`: the built-in scenarios, and the fields of a scenario.
 
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ pub(crate) fn scenarios(args: &ScenariosArgs) -> anyhow::Result<ExitCode> {
         Some(ScenariosAction::List { json }) => list(*json || args.json)?,
         Some(_) if args.json => bail!("--json is for the list of scenarios; leave it out"),
         Some(ScenariosAction::Show { name, resolved: false }) => {
-            // Loading it gives the error, with the nearest name, where there is none of this name.
+            // Loading it gives the error, with the nearest name, if there is none of this name.
             Scenario::builtin(name, &[])?;
             printer::text(builtin::get(name).unwrap_or_default())?;
         }
@@ -64,7 +64,7 @@ fn list(json: bool) -> anyhow::Result<()> {
     printer::lines(scenarios.iter().map(|one| format!("{:widest$}  {}", one.name, one.title)))
 }
 
-/// The rows of the reference that hold a text, under the heads of their tables.
+/// Returns the rows of the reference that contain a text, under the headings of their tables.
 fn filtered(reference: &str, filter: &str) -> anyhow::Result<Vec<String>> {
     let wanted = filter.to_lowercase();
     let (mut lines, mut head, mut named) = (Vec::new(), Vec::new(), false);

@@ -1,4 +1,4 @@
-//! `barrelstack schema`: what the documents for programs hold.
+//! `barrelstack schema`: the schemas of the documents for programs.
 
 use std::process::ExitCode;
 
@@ -71,7 +71,7 @@ pub(crate) fn schema(args: &SchemaArgs) -> anyhow::Result<ExitCode> {
         printer::lines(lines)?;
         return Ok(ExitCode::SUCCESS);
     };
-    // What a document says of itself has its version behind its name.
+    // The name in a document has its version appended.
     let wanted = name.split('/').next().unwrap_or(name);
     let Some(known) = DOCUMENTS.iter().find(|known| known.name == wanted) else {
         let names: Vec<&str> = DOCUMENTS.iter().map(|known| known.name).collect();

@@ -55,7 +55,7 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-/// The table for people.
+/// Returns the table for people.
 fn lines(sheet: &Sheet) -> Vec<String> {
     let mut lines = printer::verdict(&sheet.document.verdict);
     let velocities = &sheet.protocol.velocities;

@@ -1,4 +1,4 @@
-//! `barrelstack completions` and `barrelstack man`: what shells and readers of manuals ask for.
+//! `barrelstack completions` and `barrelstack man`: output for shells and manuals.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,7 +25,7 @@ pub(crate) struct ManArgs {
     dir: PathBuf,
 }
 
-/// Prints what a shell reads.
+/// Prints the completion script of a shell.
 pub(crate) fn completions(args: &CompletionsArgs) -> anyhow::Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Args::command(), "barrelstack", &mut script);

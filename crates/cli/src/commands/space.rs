@@ -1,4 +1,4 @@
-//! Bodies in space, from file to verdict: what `run` and `render` do where a scenario has a stack or a free scene there.
+//! Bodies in space, from file to verdict: `run` and `render` for a stack or a free scene in space.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -40,7 +40,7 @@ pub(super) fn run(
     let answer = answered(scenario, asked, !args.quiet)
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
     crate::interrupt::finished();
-    // The verdict is printed even where it cannot be written.
+    // Print the verdict even if the files cannot be written.
     let written = folder.map_or(Ok(()), |folder| {
         crate::interrupt::writes_to(folder.path());
         let files = export::files(&answer, &scenario.to_resolved_toml());
@@ -99,17 +99,17 @@ fn answered(scenario: &Scenario, asked: Asked, show: bool) -> Result<Answer, Run
     Ok(answer)
 }
 
-/// The exit status of runs, as the help of the program lists them.
+/// Returns the exit status of runs, as listed in the help.
 fn status(answer: &Answer) -> ExitCode {
     super::status(matches!(answer.run.outcome, Outcome::Invalid { .. }))
 }
 
-/// The way to a plane, behind what is not known in space.
+/// Returns a hint on plane analysis, to be appended to refusals in space.
 fn in_a_plane(scenario: &Scenario) -> &'static str {
     if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }
 
-/// The answer for people.
+/// Returns the answer for people.
 fn lines(answer: &Answer) -> Vec<String> {
     let Answer { run, summary, .. } = answer;
     let mut lines = vec![summary.title.clone(), format!("  {}", words::headline(run, summary))];

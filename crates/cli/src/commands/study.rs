@@ -24,7 +24,7 @@ use crate::interrupt::{Interrupt, Stopped, keeps};
 use crate::lanes::LanesArgs;
 use crate::printer;
 
-/// What the help ends with.
+/// End of the help.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack study example > mine.toml           a commented study to change
@@ -146,7 +146,7 @@ enum Action {
     Schema,
 }
 
-/// Does what was typed.
+/// Runs the given subcommand.
 pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
     match &args.action {
         None => return run(&args.run),
@@ -167,7 +167,7 @@ pub(crate) fn study(args: &StudyArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A study file, or a built-in study by name: a name that is a file is a file.
+/// Loads a study file, or a built-in study by name; an existing file takes precedence.
 fn load(study: &str) -> Result<Study, StudyError> {
     let path = Path::new(study);
     if path.is_file() || study.contains(['.', '/', '\\']) {
@@ -178,7 +178,7 @@ fn load(study: &str) -> Result<Study, StudyError> {
 }
 
 fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
-    // The parser asks for both.
+    // The parser requires both.
     let (Some(study), Some(out)) = (&args.study, &args.out) else {
         anyhow::bail!("name a study and a folder: barrelstack study STUDY --out DIR");
     };
@@ -323,7 +323,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// An error of a study, or that it was stopped.
+/// Converts an error of a study, or its cancellation.
 fn stopped(error: StudyError) -> anyhow::Error {
     if let StudyError::Stopped = error { Stopped.into() } else { error.into() }
 }
@@ -336,7 +336,7 @@ fn status(args: &FolderArgs) -> anyhow::Result<()> {
     printer::lines(answer::status(&status))
 }
 
-/// What the shards of a folder say, and what they come from; writes the table.
+/// Reads the results of the shards of a folder, and their provenance; writes the table.
 fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), StudyError> {
     let mut answer = answer::Answer::default();
     let made = study::collect(folder, &mut |_, rows| {
@@ -346,8 +346,8 @@ fn collected(folder: &Path) -> Result<(answer::Answer, study::Provenance), Study
     Ok((answer, made))
 }
 
-/// Writes the table of what is there, and fails where some is missing: what follows in a script must not take a part for
-/// the whole.
+/// Writes the table of the finished chunks, and fails if any are missing: later commands of a script must not mistake a
+/// part for the whole.
 fn collect(args: &FolderArgs) -> anyhow::Result<ExitCode> {
     let (answer, made) = collected(&args.folder)?;
     if args.json {
@@ -379,7 +379,7 @@ fn example(name: Option<&str>, list: bool) -> anyhow::Result<()> {
     if let Some(text) = study::builtin(name) {
         return printer::text(text);
     }
-    // The error of the library names those there are.
+    // The error of the library lists the existing names.
     Study::built_in(name)?;
     Ok(())
 }

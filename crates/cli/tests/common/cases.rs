@@ -1,4 +1,4 @@
-//! The program under hostile hands, in bounded time and memory.
+//! The program under hostile input, in bounded time and memory.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 use crate::common::{names, stderr, stdout};
 
-/// The longest that an answer may take; measured 0.02 to 2 s.
+/// Time limit of an answer; measured 0.02 to 2 s.
 const AT_MOST: Duration = Duration::from_secs(30);
 
-/// The most memory (kB) that may be asked for: some two and a half times that of a recording at its limit.
+/// Memory limit (kB): about two and a half times that of the largest recording.
 const MEMORY: u32 = 5_000_000;
 
-/// Words of which an error has one: what was expected, or what to do.
+/// Words of which every error contains one: the expectation, or the remedy.
 const NEXT: [&str; 39] = [
     "lengthen",
     "there are:",
@@ -56,10 +56,10 @@ const NEXT: [&str; 39] = [
     "choose",
 ];
 
-/// Cases that are run one after the other, and what was wrong with them.
+/// Cases that are run one after the other, with their failures.
 pub(crate) struct Cases {
     folder: tempfile::TempDir,
-    /// What the program says goes to files, so that no pipe is full before it ends.
+    /// Output of the program goes to files, so that it does not block on a full pipe.
     said: tempfile::TempDir,
     count: usize,
     wrong: Vec<String>,
@@ -116,7 +116,7 @@ impl Cases {
         Some(Output { status, stdout: read("stdout"), stderr: read("stderr") })
     }
 
-    /// What holds whatever becomes of it.
+    /// Checks properties of all outputs.
     pub(crate) fn clean(&mut self, what: &str, output: &Output) {
         let (told, said) = (stdout(output), stderr(output));
         let mut require = |holds: bool, why: &str| {
@@ -132,7 +132,7 @@ impl Cases {
         require(said.len() < 4000, "a flood");
     }
 
-    /// It is refused, with these words, and leaves nothing behind.
+    /// Checks that the program refuses the arguments with these words, and leaves nothing behind.
     pub(crate) fn refused(&mut self, arguments: &[&str], words: &[&str]) {
         let before = names(self.folder.path());
         let what = format!("{arguments:?}");
@@ -162,7 +162,7 @@ impl Cases {
         }
     }
 
-    /// It does its work or refuses it, and neither harms.
+    /// Checks that the program either works or refuses, without harm.
     pub(crate) fn harmless(&mut self, arguments: &[&str]) {
         let what = format!("{arguments:?}");
         if let Some(output) = self.run(arguments) {

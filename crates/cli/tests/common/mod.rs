@@ -1,4 +1,4 @@
-//! The built program, run as a user runs it.
+//! Runs the built program as a user does.
 
 #![allow(dead_code, reason = "each suite uses a part")]
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Two barrels on two levels; the time for which they are shaken comes behind.
+/// Two barrels on two levels; the duration of shaking is appended.
 pub(crate) const HEAD: &str = "\
 schema = 1
 title = \"two barrels for a moment\"
@@ -18,7 +18,7 @@ columns = 2
 [base.run]
 ";
 
-/// Forty short cases in ten chunks, behind [`HEAD`].
+/// Forty short cases in ten chunks, after [`HEAD`].
 pub(crate) const STUDY: &str = "\
 duration = \"0.4 s\"
 [base.motion.pulse]
@@ -37,13 +37,13 @@ kind = \"full-factorial\"
 chunk = 4
 ";
 
-/// Says what was not tested.
+/// Reports a skipped test.
 pub(crate) fn skipped(why: &str) {
-    // Straight to the terminal: the runner keeps what tests that pass print by the usual way.
+    // Write to the terminal directly: the runner captures `print!` of passing tests.
     std::io::stdout().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
 }
 
-/// Whether a program of others answers; says so where it does not.
+/// `true` if an external program works; otherwise reports a skipped test.
 pub(crate) fn there(command: &str, arguments: &[&str]) -> bool {
     let found = Command::new(command).args(arguments).output().is_ok_and(|o| o.status.success());
     if !found {
@@ -52,7 +52,7 @@ pub(crate) fn there(command: &str, arguments: &[&str]) -> bool {
     found
 }
 
-/// The program, with nothing to read on standard input.
+/// Returns the program, with empty standard input.
 pub(crate) fn program<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_barrelstack"));
     command.args(arguments).stdin(Stdio::null());
@@ -64,17 +64,17 @@ pub(crate) fn barrelstack<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S
     program(arguments).output().unwrap()
 }
 
-/// What was printed as the result.
+/// Returns standard output.
 pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What was printed beside it.
+/// Returns standard error.
 pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// What a folder holds, sorted; none where there is no folder.
+/// Returns the entries of a folder, sorted; `None` if there is no folder.
 pub(crate) fn names(folder: &Path) -> Option<Vec<String>> {
     let entries = std::fs::read_dir(folder).ok()?;
     let mut names: Vec<String> =
@@ -83,7 +83,7 @@ pub(crate) fn names(folder: &Path) -> Option<Vec<String>> {
     Some(names)
 }
 
-/// A user's mistake: one error that starts as errors start and contains all of `words`, status 2,
+/// Checks the response to a mistake: one error with the usual prefix that contains all of `words`, status 2,
 /// nothing on standard output, nothing written to `out`.
 pub(crate) fn refused(what: &str, output: &Output, out: &Path, words: &[&str]) {
     let message = stderr(output);

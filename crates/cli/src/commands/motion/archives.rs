@@ -17,10 +17,10 @@ struct Opened {
     names: Vec<String>,
 }
 
-/// The archive that was opened last, as its files are read one after another.
+/// The most recently opened archive, since its files are read one after another.
 static LAST: Mutex<Option<Arc<Opened>>> = Mutex::new(None);
 
-/// The archive of a file of the disk; `None` where it is none.
+/// Opens a file on the disk as an archive; `None` if it is not one.
 fn open(path: &Path) -> anyhow::Result<Option<Arc<Opened>>> {
     if !path.is_file() {
         return Ok(None);
@@ -42,12 +42,12 @@ fn open(path: &Path) -> anyhow::Result<Option<Arc<Opened>>> {
     Ok(Some(opened))
 }
 
-/// Whether a file of the disk is named as archives are, and is one that can be opened.
+/// `true` if a file on the disk has the name of an archive and can be opened as one.
 pub(super) fn is_archive(path: &Path) -> bool {
     Archive::is_named(&path.to_string_lossy()) && open(path).is_ok_and(|opened| opened.is_some())
 }
 
-/// Names of the files of an archive of the disk, relative to it; `None` where it is no archive.
+/// Returns the names of the files of an archive on the disk, relative to it; `None` if it is not an archive.
 ///
 /// # Errors
 /// If the archive cannot be read.
@@ -58,7 +58,7 @@ pub(super) fn names(path: &Path) -> anyhow::Result<Option<Vec<String>>> {
     Ok(open(path)?.map(|opened| opened.names.clone()))
 }
 
-/// The bytes of a file inside an archive; `None` where the path leads into none.
+/// Returns the bytes of a file inside an archive; `None` if the path leads into none.
 pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     if path.exists() {
         return Ok(None);
@@ -69,9 +69,9 @@ pub(super) fn bytes_inside(path: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     Ok(Some(bytes))
 }
 
-/// Files of a folder inside an archive, without those of the folders below; none where it is none.
+/// Returns the files of a folder inside an archive, without those of subfolders; empty if it is not in one.
 pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
-    // The archive itself is a folder here.
+    // The archive itself counts as a folder here.
     let named = folder.join("file");
     let Some((archive, inner)) = Archive::path_inside(&named) else { return Vec::new() };
     let Ok(Some(opened)) = open(&archive) else { return Vec::new() };

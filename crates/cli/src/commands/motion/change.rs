@@ -1,4 +1,4 @@
-//! `barrelstack motion convert`, and what every command that writes a motion prints.
+//! `barrelstack motion convert`, and the output of all commands that write a motion.
 
 use std::process::ExitCode;
 
@@ -12,7 +12,7 @@ use super::output::{Form, Output, Target};
 use crate::printer;
 use crate::typed::word;
 
-/// What the forms are, at the end of the help.
+/// Forms of motion files, at the end of the help.
 const FORMS: &str = "\
 Forms:
   .txt  the program's own, exact: lines that start with #, then one column to a channel in m/s2
@@ -68,9 +68,9 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes a motion, then prints what was done to it, its measures and where it is.
+/// Writes a motion, then prints its processing, its measures and its path.
 ///
-/// Nothing is printed that was not written.
+/// If writing fails, nothing is printed.
 pub(super) fn finish(
     target: &Target,
     read: &Record,
@@ -83,7 +83,7 @@ pub(super) fn finish(
     lines.extend(measures);
     lines.extend([String::new(), format!("written: {}", target.path.display())]);
     printer::lines(lines)?;
-    // A motion that was processed here is raw no more.
+    // A motion that was processed here is no longer raw.
     info::warn(&Record { stage: made.stage, ..read.clone() });
     for loss in losses {
         printer::warning(&loss);

@@ -1,4 +1,4 @@
-//! `barrelstack motion info`: what a file holds, so that a wrong unit or step is seen.
+//! `barrelstack motion info`: the contents of a file, to check units and steps.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -84,7 +84,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
     folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
 }
 
-/// Neighboring files of one event, station and step are one record.
+/// Combines neighboring files of one event, station and step to one record.
 fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     let mut groups: Vec<Vec<Record>> = Vec::new();
     for record in records {
@@ -104,7 +104,7 @@ fn together(records: &[Record]) -> anyhow::Result<Vec<Record>> {
     groups.iter().map(|group| Ok(Record::gather(group)?)).collect()
 }
 
-/// Tells what should be known of a record beside its numbers.
+/// Prints warnings on a record besides its numbers.
 pub(super) fn warn(record: &Record) {
     for warning in &record.warnings {
         printer::warning(&format!("{}: {warning}", record.file));
@@ -194,7 +194,7 @@ fn stage(stage: Stage) -> &'static str {
     }
 }
 
-/// Where a channel points, in words.
+/// Describes the direction of a channel.
 fn direction(channel: &Channel) -> String {
     match (channel.direction.azimuth, channel.direction.orientation) {
         (Some(azimuth), _) => format!("azimuth {azimuth}°"),
@@ -204,7 +204,7 @@ fn direction(channel: &Channel) -> String {
     }
 }
 
-/// Corners of every channel, one sentence each; process takes them with `--corners auto`.
+/// Describes the corners of every channel, one sentence each; `process --corners auto` uses them.
 fn corners(record: &Record) -> Vec<String> {
     let criterion = NoiseCriterion::default();
     let found = record.channels.iter().zip(record.noise_corners(&criterion));
@@ -216,11 +216,11 @@ fn corners(record: &Record) -> Vec<String> {
         .collect()
 }
 
-/// What a channel has in one column.
+/// Formats a channel for one column.
 type Cell<'a> = &'a dyn Fn(&Channel) -> String;
 
-/// When and where each channel was recorded, as far as the file tells; columns that would be empty
-/// are left out.
+/// Tabulates time and place of each channel, as stated in the file; columns that would be empty are left
+/// out.
 fn recorded(record: &Record) -> Table {
     let degrees = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.4}"));
     let meters = |value: Option<f64>| value.map_or_else(String::new, number);
@@ -249,7 +249,7 @@ fn recorded(record: &Record) -> Table {
     table
 }
 
-/// Peaks of the header beside those of the numbers.
+/// Tabulates peaks of the header beside those of the samples.
 fn stated(record: &Record) -> Table {
     let mut table = Table::new(3, ["channel", "stated peak", "unit", "header", "numbers", "agree"]);
     for channel in &record.channels {

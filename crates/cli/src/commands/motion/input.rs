@@ -1,4 +1,4 @@
-//! What the commands read: files, joined or gathered, and the components chosen from them.
+//! Input of the commands: files, joined or gathered, and the components chosen from them.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub(super) struct Input {
 }
 
 typed! {
-    /// What an instrument recorded.
+    /// Quantity recorded by an instrument.
     pub(super) enum Recorded of motion::Quantity {
         /// Accelerations, whatever the channel code says.
         Acceleration = Self::Acceleration,
@@ -92,7 +92,7 @@ pub(super) enum Chain {
 }
 
 impl Chain {
-    /// The chain for a record of this stage.
+    /// Returns the chain for a record of this stage.
     pub(super) fn of(self, stage: Stage) -> Processing {
         match (self, stage) {
             (Self::Default, Stage::Raw) | (Self::Compact, _) => Processing::compact(),
@@ -105,19 +105,19 @@ impl Chain {
 }
 
 impl Input {
-    /// Every file by itself.
+    /// Reads every file as a record of its own.
     pub(super) fn read_each(&self) -> anyhow::Result<Vec<Record>> {
         self.files.iter().map(|file| self.read_alone(file)).collect()
     }
 
-    /// The record of one file.
+    /// Reads the record of one file.
     pub(super) fn read_alone(&self, file: &str) -> anyhow::Result<Record> {
         let mut record = self.read_one(file, &self.options()?)?;
         record.mixed = self.allow_mixed;
         Ok(record)
     }
 
-    /// Whether a folder, or an archive of several records, is among the files.
+    /// `true` if a folder, or an archive of several records, is among the files.
     pub(super) fn has_folder(&self) -> bool {
         let several = |path: &Path, file: &str| {
             let options = self.options().unwrap_or_default();
@@ -131,7 +131,7 @@ impl Input {
         })
     }
 
-    /// What was told of the files, as words.
+    /// Returns the options about files, as text.
     pub(super) fn told(&self) -> String {
         format!(
             "unit {:?}, step {:?}, sensitivity {:?} of {:?}, as {:?}, mixed {}",
@@ -158,7 +158,7 @@ impl Input {
         })
     }
 
-    /// The sensitivities that were typed, and those of the `StationXML` that was named.
+    /// Returns the sensitivities given as options, and those of the `StationXML`.
     fn sensitivities(&self) -> anyhow::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         for text in &self.sensitivity {
@@ -181,7 +181,7 @@ impl Input {
         Ok(options)
     }
 
-    /// Reads one file; counts without a sensitivity are looked up in the `StationXML` beside it.
+    /// Reads one file; looks up missing sensitivities of counts in the `StationXML` beside it.
     fn read_one(&self, file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
         let first = read_file(file, options);
         let lacking = first.as_ref().is_err_and(|error| {
@@ -197,7 +197,7 @@ impl Input {
         let mut more = options.clone();
         let mut used = Vec::new();
         for path in &beside {
-            // A file beside that is no StationXML does not concern this record.
+            // A file that is not StationXML does not concern this record.
             let Ok(found) = instruments_of_file(path) else { continue };
             more.instruments.extend(found);
             used.push(path.display().to_string());
@@ -214,12 +214,12 @@ impl Input {
         first.map_err(with_option)
     }
 
-    /// All files as one record.
+    /// Reads all files as one record.
     pub(super) fn read(&self) -> anyhow::Result<Record> {
         self.unite(&self.read_each()?)
     }
 
-    /// Several records as one.
+    /// Combines several records.
     pub(super) fn unite(&self, records: &[Record]) -> anyhow::Result<Record> {
         if self.join {
             return Ok(Record::join(records)?);
@@ -227,7 +227,7 @@ impl Input {
         if self.allow_mixed {
             return Ok(Record::gather_mixed(records)?);
         }
-        // What differs between the files can be overruled; steps and times cannot.
+        // Differences of station and publisher can be overruled; steps and times cannot.
         Record::gather(records).map_err(|error| match Record::gather_mixed(records) {
             Ok(_) => anyhow!("{error}, or add --allow-mixed"),
             Err(_) => error.into(),
@@ -236,8 +236,8 @@ impl Input {
 }
 
 impl Choice {
-    /// The chosen components of a record, cut to the shortest and processed by the chain that is
-    /// asked for, else by the command's `usual` one; what was done stands in the notes.
+    /// Returns the chosen components of a record, cut to the shortest and processed by the requested chain, or
+    /// else by the command's `usual` one; the notes list the processing.
     pub(super) fn take(&self, record: &Record, usual: Chain) -> anyhow::Result<Record> {
         let mut chosen = record.clone();
         let from = format!(
@@ -247,7 +247,7 @@ impl Choice {
             record.stage
         );
         if record.format == "barrelstack" {
-            // The file brings its own past along.
+            // The file carries its own history.
             for note in &mut chosen.notes {
                 if let Some(step) = note.strip_prefix("processing: ") {
                     *note = step.to_owned();
@@ -279,7 +279,7 @@ impl Choice {
     }
 }
 
-/// File names without folders.
+/// Returns file names without folders.
 fn base_names(record: &Record) -> String {
     let names: Vec<&str> = record
         .file
@@ -289,7 +289,7 @@ fn base_names(record: &Record) -> String {
     names.join(", ")
 }
 
-/// A component as people name it: the channel's own name first, then an azimuth in degrees.
+/// Parses the name of a component: the channel's own name first, then an azimuth in degrees.
 pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component> {
     let by_name = Component::Name(name.to_owned());
     if record.component(&by_name).is_ok() {
@@ -302,11 +302,11 @@ pub(super) fn component(record: &Record, name: &str) -> anyhow::Result<Component
     })
 }
 
-/// A quantity with its unit in SI; the option is named where it is wrong.
+/// Parses a quantity with its unit to SI; errors name the option.
 pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     let suggestion = Quantity::suggestion(text, &[dimension]);
     let example = match dimension {
-        // Where nothing is known to be better, the examples of the option.
+        // Without a better suggestion, the examples of the option.
         _ if suggestion != dimension.example() => suggestion,
         Dimension::FREQUENCY => "0.1 Hz".to_owned(),
         Dimension::TIME if option == "--time-step" => "0.01 s".to_owned(),
@@ -321,12 +321,12 @@ pub(super) fn quantity(option: &str, text: &str, dimension: Dimension) -> anyhow
         .map_err(|error| anyhow!("{option}: {error}; write for example \"{example}\""))
 }
 
-/// A step (s), if one is given.
+/// Parses a step (s), if given.
 pub(super) fn time_step(text: Option<&str>) -> anyhow::Result<Option<f64>> {
     text.map(|text| quantity("--time-step", text, Dimension::TIME)).transpose()
 }
 
-/// A plain number, or a quantity with its unit in SI.
+/// Parses a plain number, or a quantity with its unit to SI.
 pub(super) fn number_or(option: &str, text: &str, dimension: Dimension) -> anyhow::Result<f64> {
     text.trim().parse().or_else(|_| quantity(option, text, dimension))
 }
@@ -341,7 +341,7 @@ fn read_file(file: &str, options: &ReadOptions) -> anyhow::Result<Record> {
     Ok(read(&bytes, file, options)?)
 }
 
-/// The reader knows what is missing, this program where to state it.
+/// Adds to a reading error the option that states the missing information.
 fn with_option(error: anyhow::Error) -> anyhow::Error {
     let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
     let option = match cause.refusal {
@@ -364,7 +364,7 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     anyhow!("{error}: {option}")
 }
 
-/// The channels of a `StationXML` file, or of all those in a folder.
+/// Reads the channels of a `StationXML` file, or of all those in a folder.
 fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     if !path.is_dir() {
         return instruments_of_file(path);
@@ -380,7 +380,7 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// The channels of a `StationXML` file.
+/// Reads the channels of a `StationXML` file.
 fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let text = bytes(path)?;
     let found =
@@ -391,13 +391,13 @@ fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     Ok(found)
 }
 
-/// Files beside one whose ending is that of `StationXML`, in the order of their names.
+/// Returns files beside one that have the extension of `StationXML`, sorted by name.
 fn beside(file: &Path) -> Vec<PathBuf> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     xml_files(folder.unwrap_or(Path::new(".")))
 }
 
-/// Files of a folder that end with .xml, in the order of their names.
+/// Returns the files of a folder that end with .xml, sorted by name.
 fn xml_files(folder: &Path) -> Vec<PathBuf> {
     let inside = archives::files_below(folder);
     if !inside.is_empty() {
@@ -413,7 +413,7 @@ fn xml_files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The bytes of a file of at most 256 MB.
+/// Returns the bytes of a file of at most 256 MB.
 pub(super) fn bytes(path: &Path) -> anyhow::Result<Vec<u8>> {
     let refused = || format!("cannot read {}", path.display());
     if let Some(bytes) = archives::bytes_inside(path)? {

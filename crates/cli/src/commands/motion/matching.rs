@@ -62,7 +62,7 @@ pub(super) struct MatchArgs {
 const NEAR: u8 = 3;
 
 typed! {
-    /// How the motion is changed.
+    /// Method of matching.
     enum Method of MatchMethod {
         /// Wavelets at the times of the peak responses; keeps the character of the motion.
         Time = Self::Time,
@@ -123,7 +123,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Which channel is matched.
+/// Returns the index of the channel to match.
 fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
     let Some(name) = &args.of else {
         return Ok(record.channels.iter().position(|c| !c.is_vertical()).unwrap_or(0));
@@ -135,7 +135,7 @@ fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
     }
 }
 
-/// The matched record, and the periods that it misses, in words, if it misses any.
+/// Returns the matched record, and a description of the periods that it misses, if any.
 fn matched(
     args: &MatchArgs,
     before: &Record,
@@ -156,7 +156,7 @@ fn matched(
     Ok((after, missed))
 }
 
-/// Spectra before, after and wanted at some periods.
+/// Tabulates spectra before, after and required at some periods.
 fn comparison(
     [before, after]: [&Channel; 2],
     spectrum: &TargetSpectrum,

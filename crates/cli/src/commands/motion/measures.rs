@@ -1,4 +1,4 @@
-//! Measures in the units that people read, and tables of them.
+//! Measures in customary units, and tables of them.
 
 use barrelstack_motion::{
     Channel, IntensityMeasure, MotionError, PulseFit, Quantity, Record, RotatedPeak,
@@ -7,10 +7,10 @@ use barrelstack_motion::{
 
 use super::table::{Table, number};
 
-/// A measure under the name that is printed.
+/// A measure with its printed name.
 pub(super) type Shown = (&'static str, IntensityMeasure);
 
-/// What is always shown.
+/// Measures that are always printed.
 pub(super) const USUAL: &[Shown] = &[
     ("PGA", IntensityMeasure::Pga),
     ("PGV", IntensityMeasure::Pgv),
@@ -24,7 +24,7 @@ pub(super) const USUAL: &[Shown] = &[
     ("mean period Tm", IntensityMeasure::MeanPeriod),
 ];
 
-/// What is shown in addition when all is asked for.
+/// Further measures on request.
 pub(super) const FURTHER: &[Shown] = &[
     ("CAV, standardized", IntensityMeasure::CavStandardized),
     ("RMS acceleration", IntensityMeasure::Rms),
@@ -38,7 +38,7 @@ pub(super) const FURTHER: &[Shown] = &[
     ("Sa(1.0 s), 5 %", IntensityMeasure::Sa { period: 1.0, damping: 0.05 }),
 ];
 
-/// The unit in which people read a measure, and how many of it are one SI unit.
+/// Returns the customary unit of a measure, and how many of it make one SI unit.
 pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     match measure {
         IntensityMeasure::Pga | IntensityMeasure::Rms | IntensityMeasure::Sa { .. } => {
@@ -60,7 +60,7 @@ pub(super) fn reading(measure: &IntensityMeasure) -> (&'static str, f64) {
     }
 }
 
-/// The unit in which people read a quantity, how many of it are one SI unit, and what its peak is called.
+/// Returns the customary unit of a quantity, how many of it make one SI unit, and the name of its peak.
 pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static str) {
     match quantity {
         Quantity::Acceleration => ("g", 1.0 / STANDARD_GRAVITY, "PGA"),
@@ -69,7 +69,7 @@ pub(super) fn peak_reading(quantity: Quantity) -> (&'static str, f64, &'static s
     }
 }
 
-/// Every measure (rows) of every column.
+/// Tabulates measures (rows) of all columns.
 pub(super) fn table(
     columns: &[(String, &Channel)],
     measures: &[Shown],
@@ -92,17 +92,17 @@ pub(super) fn table(
     Ok(table)
 }
 
-/// What is always shown of every channel of a record.
+/// Tabulates the usual measures of every channel of a record.
 pub(super) fn usual(record: &Record) -> Result<Table, MotionError> {
     table(&columns(record), USUAL)
 }
 
-/// The channels of a record under their names.
+/// Returns the channels of a record under their names.
 pub(super) fn columns(record: &Record) -> Vec<(String, &Channel)> {
     record.channels.iter().map(|channel| (channel.name.clone(), channel)).collect()
 }
 
-/// Measures before and after, side by side for every channel that is in both.
+/// Tabulates measures before and after, side by side for every channel in both.
 pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, MotionError> {
     let mut columns = Vec::new();
     for (k, new) in after.channels.iter().enumerate() {
@@ -114,13 +114,13 @@ pub(super) fn before_after(before: &Record, after: &Record) -> Result<Table, Mot
     table(&columns, USUAL)
 }
 
-/// The dominant velocity pulse, from 0.3 to 12 s where the record allows.
+/// Returns the dominant velocity pulse, from 0.3 to 12 s where the record allows.
 pub(super) fn pulse(motion: &Sampled) -> Result<PulseFit, MotionError> {
     let shortest = (8.0 * motion.time_step()).max(0.3);
     dominant_pulse(motion, shortest, (0.5 * motion.duration()).min(12.0))
 }
 
-/// The dominant velocity pulse of every channel, one sentence each.
+/// Describes the dominant velocity pulse of every channel, one sentence each.
 pub(super) fn pulses(record: &Record) -> Vec<String> {
     let sentence = |channel: &Channel| match channel.sampled().and_then(|motion| pulse(&motion)) {
         Ok(fit) => format!(
@@ -148,7 +148,7 @@ pub(super) struct Rotated {
     pub(super) peak: RotatedPeak,
 }
 
-/// `RotD50` and `RotD100` of the two horizontals.
+/// Computes `RotD50` and `RotD100` of the two horizontals.
 pub(super) fn rotated(record: &Record) -> Result<Vec<Rotated>, MotionError> {
     let (one, two) = record.horizontal_pair()?;
     let (first, second) = (one.sampled()?, two.sampled()?);

@@ -1,4 +1,4 @@
-//! `barrelstack motion`: read, look at, change and make ground motions.
+//! `barrelstack motion`: read, inspect, change and synthesize ground motions.
 
 mod archives;
 mod change;
@@ -24,7 +24,7 @@ use std::process::ExitCode;
 
 use clap::Subcommand;
 
-/// What `motion --help` ends with.
+/// End of `motion --help`.
 const AFTER_HELP: &str = "\
 Start with:
   barrelstack motion info my-site.AT2                    duration, PGA, PGV, PGD: is the unit right?
@@ -72,7 +72,7 @@ enum MotionCommand {
     Synth(synth::SynthArgs),
 }
 
-/// Does what was typed.
+/// Runs the given subcommand.
 pub(crate) fn motion(args: &MotionArgs) -> anyhow::Result<ExitCode> {
     match &args.command {
         MotionCommand::Info(args) => return info::info(args),

@@ -1,4 +1,4 @@
-//! What the commands write: motion files by their ending, never half there, never over another.
+//! Output of the commands: motion files by their extension, written atomically, never replaced unasked.
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ pub(super) struct Target {
 }
 
 impl Form {
-    /// Writes a record into a file of this form, in a folder that is made where it is missing.
+    /// Writes a record into a file of this form, and creates its folder if missing.
     pub(super) fn write(self, source: &Source, out: &Path, record: &Record) -> anyhow::Result<()> {
         let path = source.beside(out, &word(self));
         make_folder_of(&path)?;
@@ -71,7 +71,7 @@ impl Output {
 }
 
 impl Target {
-    /// Writes the record and gives what the reader of the file should know.
+    /// Writes the record and returns warnings for readers of the file.
     pub(super) fn write(&self, record: &Record) -> anyhow::Result<Vec<String>> {
         let bytes = match self.form {
             Form::At2 if record.channels.len() != 1 => {
@@ -93,7 +93,7 @@ impl Target {
         Ok(self.losses(record))
     }
 
-    /// What the file does not say.
+    /// Describes the information that the file cannot hold.
     fn losses(&self, record: &Record) -> Vec<String> {
         let mut losses = Vec::new();
         if self.form != Form::At2 {
@@ -107,7 +107,7 @@ impl Target {
             );
         }
         for channel in &record.channels {
-            // What rounding leaves at the edge of a pulse is no velocity.
+            // Rounding errors at the edge of a pulse are not a velocity.
             if channel.initial_velocity.abs() > 1e-6 * channel.pgv() {
                 losses.push(format!(
                     "channel {} starts with a velocity of {} cm/s, for which AT2 has no place but the \
@@ -121,7 +121,7 @@ impl Target {
     }
 }
 
-/// Refuses a file that is there, and one whose folder is not.
+/// Refuses an existing file, and one in a missing folder.
 pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("{} is a folder, not a file", path.display());
@@ -141,7 +141,7 @@ pub(super) fn vacant(path: &Path, overwrite: bool) -> anyhow::Result<()> {
     }
 }
 
-/// Makes the folder of a file where it is missing.
+/// Creates the folder of a file if missing.
 pub(super) fn make_folder_of(path: &Path) -> anyhow::Result<()> {
     path.parent().map_or(Ok(()), folder)
 }

@@ -1,4 +1,4 @@
-//! Pages of what became of a record: every component, spectra and tables, before and after.
+//! Pages on changed records: every component, spectra and tables, before and after.
 
 use std::path::Path;
 
@@ -13,15 +13,15 @@ use super::panels;
 use crate::printer;
 use crate::store::store;
 
-/// What a page tells beside its figures.
+/// Text of a page besides its figures.
 pub(super) struct PageText {
     /// The answer in one sentence.
     pub(super) headline: String,
-    /// What it was and what it is, in numbers.
+    /// Numbers before and after.
     pub(super) tables: Vec<Table>,
 }
 
-/// Whether a file is to be a page.
+/// `true` if a file is to be a page.
 fn is_page(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"))
 }
@@ -32,8 +32,8 @@ pub(super) fn vacant_figure(path: Option<&Path>, overwrite: bool) -> anyhow::Res
     if is_page(path) { vacant(path, overwrite) } else { panels::vacant_picture(path, overwrite) }
 }
 
-/// Writes the panels of a record before and after as its ending says: as a page with what is told, or
-/// as a picture; and says where.
+/// Writes the panels of a record before and after by the extension of the path: as a page with text, or as a
+/// picture; prints the path.
 pub(super) fn write(
     path: &Path,
     figure: &Figure,
@@ -51,7 +51,7 @@ pub(super) fn write(
 fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
-    // The spectra, which are the last row, tell most.
+    // The spectra, which are the last row, come first: they matter most.
     if let Some((spectra, components)) = panels.rows.split_last() {
         blocks.push(heading("Spectra"));
         blocks.extend(spectra.iter().enumerate().map(|(at, plot)| live("spectra", at, plot)));
@@ -80,7 +80,7 @@ fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
     }
 }
 
-/// A plot that can be looked at closely.
+/// Returns a plot that can be zoomed.
 fn live(id: &str, at: usize, plot: &Plot) -> Block {
     let what = match plot.y.label.split_once(": ") {
         Some((channel, quantity)) => format!("{quantity} of {channel}"),
@@ -94,12 +94,12 @@ fn live(id: &str, at: usize, plot: &Plot) -> Block {
     ))
 }
 
-/// A table of the terminal as one of a page.
+/// Converts a table of the terminal to one of a page.
 pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
     let Some((head, rows)) = rows.split_first() else { return Table::new(caption, &[]) };
     let columns: Vec<(&str, &str)> = head.iter().map(|name| (name.as_str(), "")).collect();
     let mut table = Table::new(caption, &columns);
-    // With the digits that it is told with.
+    // Keep the digits of the terminal.
     let digits = |text: &str| {
         let told = text.trim_start_matches(['-', '0', '.']);
         told.chars().filter(char::is_ascii_digit).count()

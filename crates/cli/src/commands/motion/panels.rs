@@ -17,17 +17,17 @@ use crate::store::store;
 
 /// Damping ratio of the spectra.
 const DAMPING: f64 = 0.05;
-/// Dots per inch of pictures as pixels: three plots beside each other have some 2000 at this.
+/// Dots per inch of pixel pictures: three plots beside each other have some 2000 at this.
 const DPI: f64 = 96.0;
-/// How much of the velocity's axis lies beyond the peak after processing: what drifts before it
-/// leaves the picture.
+/// Range of the velocity's axis relative to the peak after processing: drift before processing is cut
+/// off.
 const BEYOND: f64 = 1.5;
 
 /// The quantities of one component over time.
 const QUANTITIES: [Quantity; 3] =
     [Quantity::Acceleration, Quantity::Velocity, Quantity::Displacement];
 
-/// Values in the unit of reading.
+/// Returns values in the customary unit.
 fn history(quantity: Quantity, motion: &Sampled) -> Vec<f64> {
     let (_, factor, _) = peak_reading(quantity);
     let values = match quantity {
@@ -42,9 +42,9 @@ fn axis(quantity: Quantity, channel: &str) -> Axis {
     Axis::new(format!("{channel}: {quantity}"), peak_reading(quantity).0)
 }
 
-/// A record: acceleration, velocity and displacement of every component with their peaks, build-up of
-/// the Arias intensity, response spectra, and Fourier amplitudes with the corners that the noise of
-/// the record as `read` suggests.
+/// Plots a record: acceleration, velocity and displacement of every component with their peaks, build-up of
+/// the Arias intensity, response spectra, and Fourier amplitudes with the corners suggested by the noise of
+/// the record as `read`.
 pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     let mut rows = Vec::new();
     for channel in &record.channels {
@@ -69,12 +69,12 @@ pub(super) fn record(record: &Record, read: &Record) -> anyhow::Result<Figure> {
     Ok(figure(record, "panels", "components, build-up of the Arias intensity, and spectra", rows))
 }
 
-/// A record before and after processing: every component, response spectra, Fourier amplitudes.
+/// Plots a record before and after processing: every component, response spectra, Fourier amplitudes.
 pub(super) fn before_after(before: &Record, after: &Record) -> anyhow::Result<Figure> {
     compared(before, after, None)
 }
 
-/// As [`before_after`], with the spectrum that was matched.
+/// Plots the same as [`before_after`], with the spectrum that was matched.
 pub(super) fn compared(
     before: &Record,
     after: &Record,
@@ -84,7 +84,7 @@ pub(super) fn compared(
     let mut channels = Vec::new();
     for (old, new) in before.channels.iter().zip(&after.channels) {
         let (was, is) = (old.sampled()?, new.sampled()?);
-        // What is longer has pads at both ends: the recorded part begins later.
+        // The longer one has pads at both ends: the recorded part begins later.
         let shift = 0.5 * (new.duration() - old.duration());
         let row = QUANTITIES.map(|quantity| {
             let values = history(quantity, &is);
@@ -108,7 +108,7 @@ pub(super) fn compared(
     Ok(figure(after, "before-after", "before and after", rows))
 }
 
-/// Writes a picture; its ending says the format.
+/// Writes a picture in the format of its extension.
 pub(super) fn write(path: &Path, figure: &Figure) -> anyhow::Result<()> {
     store(path, &figure.to_bytes(known_format(path)?, DPI))
 }
@@ -124,13 +124,13 @@ fn known_format(path: &Path) -> anyhow::Result<Format> {
         .ok_or_else(|| anyhow!("{}: figures are written as .svg, .png or .pdf", path.display()))
 }
 
-/// The format that the name of a file asks for; none for a folder.
+/// Returns the format of a file by its extension; `None` for a folder.
 pub(super) fn format_of(path: &Path) -> Option<Format> {
     let ending = path.extension()?;
     Format::ALL.into_iter().find(|format| ending.eq_ignore_ascii_case(format.extension()))
 }
 
-/// The panels of a channel picked by `--of`, for records of several.
+/// Returns a record of one channel, chosen by `--of`, for records of several.
 pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
     let Some(channel) = record.channels.get(place) else { bail!("there is no such component") };
     Ok(Record { channels: vec![channel.clone()], ..record.clone() })
@@ -139,7 +139,7 @@ pub(super) fn only(record: &Record, place: usize) -> anyhow::Result<Record> {
 fn figure(record: &Record, id: &str, what: &str, rows: Vec<Vec<Plot>>) -> Figure {
     let parts = [record.station.as_str(), record.event.as_str()];
     let known: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    // A picture goes to others, whom the folders of this machine tell nothing.
+    // A picture goes to others, to whom the folders of this machine mean nothing.
     let file = Path::new(&record.file).file_name().unwrap_or_default().to_string_lossy();
     let title = if known.is_empty() { file.to_string() } else { known.join(", ") };
     let mut lines = vec![format!("{file}, format {}, stage {}", record.format, record.stage)];
@@ -160,7 +160,7 @@ pub(super) fn times(channel: &Channel) -> Vec<f64> {
     (0..channel.acceleration.len()).map(|k| k as f64 * channel.time_step).collect()
 }
 
-/// Sample of the largest absolute value.
+/// Returns the sample of the largest absolute value.
 fn at_peak(values: &[f64]) -> f64 {
     let larger =
         |best: usize, k: usize| if values[k].abs() > values[best].abs() { k } else { best };
@@ -175,7 +175,7 @@ fn peak_mark(quantity: Quantity, time_step: f64, values: &[f64]) -> Option<Mark>
     (!values.is_empty()).then_some(Mark { at, label })
 }
 
-/// Husid plots, the strong part of the strongest component shaded.
+/// Draws Husid plots, with the strong part of the strongest component shaded.
 fn build_up(record: &Record) -> Plot {
     let mut plot =
         Plot { x: time(), y: Axis::new("share of the Arias intensity", ""), ..Plot::default() };
@@ -195,7 +195,7 @@ fn build_up(record: &Record) -> Plot {
     plot
 }
 
-/// Response spectra, with both horizontals over all directions and the target where there are any.
+/// Plots response spectra, with both horizontals over all directions and the target, if any.
 fn response(
     channels: &[(String, &Channel)],
     whole: Option<&Record>,
@@ -235,19 +235,19 @@ fn response(
     Ok(plot)
 }
 
-/// The axes of Fourier amplitudes.
+/// Returns the axes of Fourier amplitudes.
 pub(super) fn fourier_axes() -> (Axis, Axis) {
     (Axis::new("frequency", "Hz").log(), Axis::new("Fourier amplitude", "m/s").log())
 }
 
-/// Fourier amplitudes of a channel.
+/// Returns the Fourier amplitudes of a channel.
 pub(super) fn fourier_series(name: &str, channel: &Channel) -> Series {
     let spectrum = FourierSpectrum::new(channel.time_step, &channel.acceleration);
-    // The logarithm has no place for frequency 0.
+    // A logarithmic axis has no frequency 0.
     Series::new(name, spectrum.frequency[1..].to_vec(), spectrum.amplitude[1..].to_vec())
 }
 
-/// Fourier amplitudes, the corners marked that the noise suggests.
+/// Plots Fourier amplitudes, with the corners suggested by the noise.
 fn fourier(channels: &[(String, &Channel)], corners: &[(f64, f64)]) -> Plot {
     let (x, y) = fourier_axes();
     let mut plot = Plot {

@@ -143,17 +143,17 @@ fn is_file(output: &Path) -> bool {
     format_of(output).is_some()
 }
 
-/// What every figure is written as.
+/// Returns the formats of all figures.
 fn formats(args: &PlotArgs) -> Vec<Format> {
     format_of(&args.output).map_or_else(|| args.formats.formats(), |format| vec![format])
 }
 
-/// Endings of the files that go with a figure.
+/// Returns the extensions of the files of a figure.
 fn endings(args: &PlotArgs) -> impl Iterator<Item = &'static str> {
     formats(args).into_iter().map(Format::extension).chain(["csv"])
 }
 
-/// Which figure goes into which file.
+/// Assigns figures to files.
 fn files(args: &PlotArgs) -> anyhow::Result<Vec<(Kind, PathBuf)>> {
     let mut kinds = args.figure.clone();
     if is_file(&args.output) {
@@ -195,7 +195,7 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
         return panels::record(record, read);
     }
     let mut plot = Plot::default();
-    // The strongest first: the weaker ones are drawn over it and stay in sight.
+    // The strongest first: the weaker ones are drawn over it and stay visible.
     let mut channels: Vec<&Channel> = record.channels.iter().collect();
     channels.sort_by(|a, b| b.pga().total_cmp(&a.pga()));
     for channel in &channels {
@@ -219,14 +219,14 @@ fn figure(kind: Kind, record: &Record, read: &Record, damping: &[f64]) -> anyhow
     Ok(Figure::new(kind.file(), caption, plot))
 }
 
-/// What the record is called in a caption.
+/// Returns the name of the record in a caption.
 fn title(record: &Record) -> String {
     let mut parts = vec![record.event.as_str(), record.station.as_str()];
     parts.retain(|part| !part.is_empty());
     if parts.is_empty() { record.file.clone() } else { parts.join(", ") }
 }
 
-/// From 5 to 95 % of the Arias intensity.
+/// Returns the interval from 5 to 95 % of the Arias intensity.
 fn strong_part(channel: &Channel) -> Option<Band> {
     let build_up = husid(&channel.acceleration);
     let time = |share: f64| {

@@ -1,4 +1,4 @@
-//! `barrelstack motion process`: from a raw record to one that can be integrated, in visible steps.
+//! `barrelstack motion process`: makes a raw record fit for integration, in explicit steps.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -72,14 +72,14 @@ pub(super) struct ProcessArgs {
     folder: FolderArgs,
 }
 
-/// Where corners come from.
+/// Source of corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum CornersFrom {
     /// From the noise before the first arrival.
     Auto,
 }
 
-/// Directions that the horizontals are turned to.
+/// Directions to which the horizontals are turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Axes {
     Strike(f64),
@@ -103,7 +103,7 @@ impl FromStr for Axes {
 }
 
 typed! {
-    /// Which mean is removed.
+    /// Mean to remove.
     enum Mean of MeanRemoval {
         /// None.
         Keep = Self::Keep,
@@ -115,7 +115,7 @@ typed! {
 }
 
 typed! {
-    /// What becomes of pads.
+    /// Treatment of pads.
     enum Fate of Pads {
         /// They stay.
         Keep = Self::Kept,
@@ -135,7 +135,7 @@ typed! {
 }
 
 impl ProcessArgs {
-    /// All that decides what becomes of a record, as words.
+    /// Returns all settings that the result depends on, as text.
     fn settings(&self) -> String {
         let Self { form, component, chain, mean, detrend, taper, .. } = self;
         let Self { high_pass, low_pass, order, pads, close, corners, rotate, .. } = self;
@@ -168,7 +168,7 @@ impl ProcessArgs {
         Ok(chain)
     }
 
-    /// The record as chosen and turned, and the same processed.
+    /// Returns the record as chosen and turned, before and after processing.
     fn both(&self, read: &Record) -> anyhow::Result<(Record, Record)> {
         let choice = input::Choice { component: self.component.clone(), processing: None };
         let mut before = choice.take(read, Chain::None)?;
@@ -195,7 +195,7 @@ impl ProcessArgs {
     }
 }
 
-/// Every channel after the chain with the corners of its own noise.
+/// Applies the chain to every channel with the corners of its own noise.
 fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     let criterion = NoiseCriterion::default();
     let mut after = before.clone();
@@ -220,7 +220,7 @@ fn by_noise(before: &Record, chain: &Processing) -> anyhow::Result<Record> {
     Ok(after)
 }
 
-/// A share as a plain number or in percent.
+/// Parses a share as a plain number or in percent.
 pub(super) fn share(option: &str, text: &str) -> anyhow::Result<f64> {
     let value = number_or(option, text, Dimension::NONE)?;
     if !value.is_finite() {

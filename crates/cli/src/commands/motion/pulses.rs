@@ -1,4 +1,4 @@
-//! Pulses of a formula as they are asked for on the command line.
+//! Options of pulses given by formulas.
 
 use anyhow::bail;
 use barrelstack::scenario::{Dimension, Quantity};
@@ -55,14 +55,14 @@ pub(super) struct Wavelet {
 }
 
 impl Wavelet {
-    /// The phase (rad).
+    /// Returns the phase (rad).
     pub(super) fn phase(&self) -> anyhow::Result<f64> {
         quantity("--phase", &self.phase, Dimension::ANGLE)
     }
 }
 
 impl Size {
-    /// A pulse of unit amplitude, made with the period (s), scaled to the peak that was asked for.
+    /// Scales a pulse of unit amplitude, made with the period (s), to the requested peak.
     pub(super) fn motion(
         &self,
         name: &str,
@@ -84,7 +84,7 @@ impl Size {
             bail!("--peak: expected a quantity above 0, found {}", self.peak);
         }
         let unit = GroundMotion::from_pulse(name, pulse)?;
-        // What the user asked for stands in the file, not the pulse of unit amplitude.
+        // The provenance states the request, not the pulse of unit amplitude.
         let mut motion = unit.scaled(unit.scale_factor(measure, peak.value)?);
         motion.provenance =
             vec![format!("made by formula: {name}, period {period} s, {measure} {}", self.peak)];

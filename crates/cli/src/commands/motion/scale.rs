@@ -1,4 +1,4 @@
-//! `barrelstack motion scale`: to a measure, by a factor, to another length; all components alike.
+//! `barrelstack motion scale`: to a measure, by a factor, to another length; all components by one factor.
 
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
@@ -67,7 +67,7 @@ pub(super) fn scale(args: &ScaleArgs) -> anyhow::Result<()> {
     super::change::finish(&target, &read, &after, table.lines())
 }
 
-/// The factor, and the name of the component it comes from.
+/// Returns the factor, and the name of the component that determines it.
 fn factor_to(
     args: &ScaleArgs,
     record: &Record,
@@ -111,7 +111,7 @@ fn froude(record: &mut Record, length: f64) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// `MEASURE=VALUE` in SI units.
+/// Parses `MEASURE=VALUE` to SI units.
 fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let (name, value) = text.rsplit_once('=').ok_or_else(|| {
         anyhow!("--to {text}: expected a measure and its value, such as \"pgv=60 cm/s\"")
@@ -119,7 +119,7 @@ fn goal(text: &str) -> anyhow::Result<(IntensityMeasure, f64)> {
     let measure: IntensityMeasure =
         name.parse().map_err(|error| anyhow!("--to {text}: {error}"))?;
     if measure == IntensityMeasure::Fajfar {
-        // Its unit, m/s^0.75, is one of no other quantity.
+        // No other quantity has the unit m/s^0.75.
         let plain = value.trim().strip_suffix("m/s^0.75").unwrap_or(value).trim();
         return match plain.parse::<f64>() {
             Ok(goal) if goal.is_finite() && goal > 0.0 => Ok((measure, goal)),

@@ -56,13 +56,13 @@ struct Spectra {
     rotated: Option<Rotated>,
 }
 
-/// Peaks over all directions, and where the largest point.
+/// Peaks over all directions, with the directions of the largest.
 struct Rotated {
     peaks: Vec<RotatedPeak>,
     /// Degrees clockwise from north where both azimuths are known, else from the first component
     /// towards the second.
     directions: Vec<f64>,
-    /// What the directions are counted from.
+    /// Reference of the directions.
     from: &'static str,
 }
 

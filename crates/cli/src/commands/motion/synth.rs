@@ -84,7 +84,7 @@ struct Made<T: clap::Args> {
 }
 
 impl Made<Size> {
-    /// Makes and writes a pulse that has a size and a period alone.
+    /// Makes and writes a pulse defined by size and period alone.
     fn pulse(&self, name: &str, shape: impl FnOnce(f64) -> Pulse) -> anyhow::Result<()> {
         write(&self.common, |_| self.kind.motion(name, |period| Ok(shape(period))))
     }
@@ -198,7 +198,7 @@ impl Source {
     fn build(&self) -> anyhow::Result<BooreSource> {
         let kilometers = quantity("--distance", &self.distance, Dimension::LENGTH)? / 1000.0;
         let mut source = BooreSource::western(self.magnitude, kilometers);
-        // The formula has its stress in bar.
+        // The formula uses stress in bar.
         let pascal = quantity("--stress", &self.stress, Dimension::STIFFNESS_PER_LENGTH)?;
         source.stress = pascal / 1e5;
         source.path.kappa = quantity("--kappa", &self.kappa, Dimension::TIME)?;
@@ -220,7 +220,7 @@ impl Source {
     }
 }
 
-/// Two numbers with a comma between.
+/// Parses two numbers with a comma between.
 fn pair(text: &str) -> Option<(f64, f64)> {
     let (one, two) = text.split_once(',')?;
     Some((one.trim().parse().ok()?, two.trim().parse().ok()?))
@@ -248,7 +248,7 @@ impl Source {
     }
 }
 
-/// The motion with the first step of its provenance in the words of the command line, which have
+/// Replaces the first step of a motion's provenance by one in the terms of the command line, with
 /// units.
 fn told(mut motion: GroundMotion, made: String) -> GroundMotion {
     match motion.provenance.first_mut() {
@@ -360,7 +360,7 @@ pub(super) fn synth(args: &SynthArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Step of random motions when none is given (s).
+/// Default step of random motions (s).
 const RANDOM_STEP: f64 = 0.005;
 
 /// Makes a motion with a step (s), samples it and writes it.

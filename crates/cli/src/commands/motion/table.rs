@@ -1,4 +1,4 @@
-//! Tables of text: names to the left, numbers to the right, every column as wide as it must be.
+//! Text tables: names left-aligned, numbers right-aligned, columns as wide as their contents.
 
 use barrelstack_report::significant;
 
@@ -11,27 +11,27 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// An empty table; the first `left` columns are words.
+    /// Creates an empty table; the first `left` columns are words.
     pub(crate) fn new(left: usize, header: impl IntoIterator<Item: Into<String>>) -> Self {
         Self { rows: vec![header.into_iter().map(Into::into).collect()], left }
     }
 
-    /// One more row.
+    /// Adds a row.
     pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Whether there is nothing below the header.
+    /// `true` if there are no rows below the header.
     pub(super) fn is_empty(&self) -> bool {
         self.rows.len() < 2
     }
 
-    /// The table for a page.
+    /// Returns the table for a page.
     pub(super) fn on_page(&self, caption: &str) -> barrelstack_report::Table {
         super::page::table(caption, &self.rows)
     }
 
-    /// The rows as lines, indented by two.
+    /// Returns the rows as lines, indented by two.
     pub(crate) fn lines(&self) -> Vec<String> {
         let width = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| row.get(column));
@@ -54,12 +54,12 @@ impl Table {
     }
 }
 
-/// A share in percent, without the noise of the last binary digit.
+/// Formats a share in percent, without binary rounding errors.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", (share * 1e8).round() / 1e6)
 }
 
-/// A number with four significant digits; a dash where there is none.
+/// Formats a number with four significant digits; a dash for NaN.
 pub(super) fn number(value: f64) -> String {
     significant(value, 4).replace('\u{2212}', "-")
 }

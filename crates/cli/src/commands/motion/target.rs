@@ -1,4 +1,4 @@
-//! Target spectra as they are typed: a code and its parameters, or a table of a file.
+//! Target spectra on the command line: a code and its parameters, or a table of a file.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ Targets (accelerations in g; damping ratio 0.05 where none is given):
   FILE.csv                                     a header such as \"period (s), Sa (g)\", then rows;
                                                \"period (s), Sa (g) at 2 %\" for another damping";
 
-/// A target as typed: a code with its parameters, or the file of a table.
+/// Parses a target: a code with its parameters, or the file of a table.
 pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
     match text.split_once(':').filter(|(code, _)| code.len() > 1) {
         Some(_) => text.parse().map_err(|error: MotionError| anyhow!("target {error}")),
@@ -28,7 +28,7 @@ pub(super) fn target(text: &str) -> anyhow::Result<TargetSpectrum> {
     }
 }
 
-/// A table of periods and accelerations.
+/// Reads a table of periods and accelerations.
 fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     let mut damping = 0.05;
     let columns = "a period and an acceleration with a comma between";
@@ -44,8 +44,8 @@ fn table(path: &Path) -> anyhow::Result<TargetSpectrum> {
     Ok(spectrum)
 }
 
-/// The rows of a table of periods (s) and accelerations (m/s²), which may have further columns; the header states the
-/// unit of the accelerations, and what stands `behind` it is told with its place.
+/// Reads the rows of a table of periods (s) and accelerations (m/s²), which may have further columns; the header states
+/// the unit of the accelerations, and the text after it is passed to `behind` with its place.
 pub(super) fn rows<const N: usize>(
     path: &Path,
     columns: &str,

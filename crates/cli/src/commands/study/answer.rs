@@ -1,4 +1,4 @@
-//! What a study says when it is done, or half done: in words and as JSON.
+//! Results of a study, finished or not: in words and as JSON.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -10,26 +10,26 @@ use barrelstack_report::described;
 
 use crate::printer::counted;
 
-/// A probability with its interval, in percent.
+/// Formats a probability with its interval, in percent.
 fn percent((p, [low, high]): (f64, [f64; 2])) -> String {
-    // Rounding may leave a bound a hair below nothing.
+    // Rounding may leave a bound slightly below zero.
     let shown = |share: f64| 100.0 * share.max(0.0);
     format!("{:.1} % ({:.1} to {:.1} %)", shown(p), shown(low), shown(high))
 }
 
-/// What a study says of its cases, added up part by part.
+/// Results of the cases of a study, accumulated in parts.
 #[derive(Default)]
 pub(crate) struct Answer {
     tally: Tally,
     endings: Endings,
     modes: BTreeMap<String, usize>,
     errors: BTreeMap<String, usize>,
-    /// Levels that cases share, with how their cases ended; one too many where there are too many.
+    /// Levels shared by cases, with counts by outcome; one too many if there are too many.
     levels: Vec<(f64, Tally)>,
     unit: String,
 }
 
-/// Most levels that are told one by one, and most reasons that are told apart.
+/// Maximum number of levels and of reasons listed individually.
 const MOST: usize = 30;
 
 impl Answer {
@@ -63,7 +63,7 @@ impl Answer {
         }
     }
 
-    /// Levels that several cases share, ascending; none where levels are drawn.
+    /// Returns the levels that several cases share, ascending; empty where levels are drawn.
     fn levels(&self) -> Vec<(f64, Tally)> {
         let mut levels = self.levels.clone();
         levels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -73,17 +73,17 @@ impl Answer {
     }
 }
 
-/// Reasons beyond those that are told apart.
+/// Name of all further reasons.
 const OTHERS: &str = "others";
 
-/// Counts, the largest first and what is not told apart last.
+/// Sorts counts, the largest first and further reasons last.
 fn sorted(counts: &BTreeMap<String, usize>) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = counts.iter().map(|(k, n)| (k.as_str(), *n)).collect();
     counts.sort_by_key(|(name, count)| (*name == OTHERS, Reverse(*count), *name));
     counts
 }
 
-/// How many cases collapse, and the share of them where the cases are a sample: levels and hunts go where collapses are.
+/// Describes the number of collapses, with their share if the cases are a sample: levels and hunts depend on results.
 fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     let share = tally.collapse()?;
     let share =
@@ -91,7 +91,7 @@ fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     Some(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged))
 }
 
-/// The summary for people.
+/// Returns the summary for people.
 pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> Vec<String> {
     let tally = answer.tally;
     let mut lines = vec![provenance.title.clone()];
@@ -152,7 +152,7 @@ pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> 
     lines
 }
 
-/// How far a study is, for people.
+/// Describes the progress of a study, for people.
 pub(super) fn status(status: &Status) -> Vec<String> {
     let provenance = &status.provenance;
     let mut lines = vec![

@@ -1,4 +1,4 @@
-//! Job files with which schedulers run the chunks of a study.
+//! Job files for schedulers that run the chunks of a study.
 
 use std::fmt::Write as _;
 use std::num::NonZero;
@@ -31,7 +31,7 @@ pub(super) struct EmitArgs {
     array_limit: Option<NonZero<usize>>,
 }
 
-/// What runs the chunks.
+/// Scheduler of the chunks.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Engine {
     /// A shell script that submits array jobs and, behind them, one that collects the table.
@@ -46,19 +46,19 @@ enum Engine {
     Pylauncher,
 }
 
-/// A word of a shell command, quoted.
+/// Quotes a word of a shell command.
 fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', "'\\''"))
 }
 
-/// A path from the root, since jobs start in folders of their own.
+/// Returns an absolute path, since jobs start in folders of their own.
 fn absolute(path: &Path) -> anyhow::Result<String> {
     let whole = std::path::absolute(path)
         .with_context(|| format!("cannot tell where {} is", path.display()))?;
     Ok(whole.display().to_string())
 }
 
-/// What a job file is made of.
+/// Data of a job file.
 struct Job {
     program: String,
     study: String,
@@ -67,7 +67,7 @@ struct Job {
 }
 
 impl Job {
-    /// The shell command of a chunk, whose number is given as shell words.
+    /// Returns the shell command of a chunk, whose number is given as shell words.
     fn chunk(&self, number: &str) -> String {
         let [program, study, out] = [&self.program, &self.study, &self.out].map(|w| quoted(w));
         format!("{program} study run-chunk {study} --chunk {number} --out {out}")
@@ -112,10 +112,10 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
     })
 }
 
-/// Stands where the number of a chunk comes.
+/// Placeholder for the number of a chunk.
 const PLACE: &str = "\u{0}";
 
-/// A text that the shell leaves as it is inside a here-document.
+/// Escapes a text for a here-document of the shell.
 fn in_document(text: &str) -> String {
     text.replace('\\', "\\\\").replace('$', "\\$").replace('`', "\\`")
 }
@@ -125,7 +125,7 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
     let time =
         args.walltime.as_ref().map_or_else(String::new, |t| format!(" --time={}", quoted(t)));
     let most = args.throttle.map_or_else(String::new, |most| format!("%{most}"));
-    // The limit is one of each array: they follow each other where there are several.
+    // The throttle applies to each array: with several, they run one after another.
     let after = if args.throttle.is_some() { " ${job:+--dependency=afterany:$job}" } else { "" };
     let mut text = format!(
         "#!/bin/sh\n\
@@ -152,7 +152,7 @@ fn slurm(job: &Job, args: &EmitArgs) -> String {
         let last = limit.min(job.chunks - first) - 1;
         let _ = writeln!(text, "submit {first} {last} \"$@\"");
     }
-    // After any end: a table of what is there says what is missing.
+    // After any end: the collected table states which chunks are missing.
     let _ = writeln!(
         text,
         "sbatch --parsable --cpus-per-task=1 --dependency=\"afterany$jobs\" \"$@\" <<'END'\n\
@@ -183,12 +183,12 @@ fn hyperqueue(job: &Job) -> String {
     )
 }
 
-/// A text as a literal of Python, which JSON's are.
+/// Returns a text as a literal of Python, of which JSON strings are a subset.
 fn literal(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-/// The lines with which both Python scripts begin.
+/// Returns the lines with which both Python scripts begin.
 fn constants(job: &Job) -> String {
     let [program, study, out] = [&job.program, &job.study, &job.out].map(|text| literal(text));
     format!("PROGRAM = {program}\nSTUDY = {study}\nOUT = {out}\nCHUNKS = {}\n", job.chunks)

@@ -22,7 +22,7 @@ pub(super) struct ExportArgs {
     asset: String,
 }
 
-/// Writes the files, and says what is not in them.
+/// Writes the files, and prints what they lack.
 pub(super) fn export(args: &ExportArgs) -> anyhow::Result<()> {
     let (decision, made) = decide_folder(&args.folder, &Request::default())?;
     let found = exported(&decision, &made, &args.asset)?;

@@ -1,4 +1,4 @@
-//! A line on the terminal while a study runs, and Ctrl-C that keeps what was done.
+//! Progress line of a running study, and Ctrl-C that keeps finished chunks.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -13,11 +13,11 @@ use crate::interrupt::Interrupt;
 use crate::printer;
 use crate::progress::{Bar, Lines, style};
 
-/// Tells how far a study is, and whether the user wants it to stop.
+/// Progress display and cancellation of a study.
 pub(super) struct Live {
     bar: Bar,
     lines: Lines,
-    /// Whether the cases are a sample, so that their share of collapse means something.
+    /// `true` if the cases are a sample, so that their share of collapse is meaningful.
     sample: bool,
     interrupt: Interrupt,
     damaged: AtomicUsize,
@@ -25,24 +25,24 @@ pub(super) struct Live {
     waiting: Waiting,
 }
 
-/// Says once who holds a chunk for which this process waits, when it has waited for a while: a process that was stopped
-/// holds its chunk for ever.
+/// Reports once the holder of a chunk for which this process has waited for a while: a stopped process holds its chunk
+/// indefinitely.
 pub(super) struct Waiting {
     folder: PathBuf,
-    /// The chunk, since when, and whether it was said.
+    /// The chunk, the start of the wait, and `true` if it was reported.
     state: Mutex<Option<(usize, Instant, bool)>>,
 }
 
-/// Time before anything is said.
+/// Waiting time before the report.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 impl Waiting {
-    /// Of the chunks of a folder.
+    /// Watches the chunks of a folder.
     pub(super) fn new(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), state: Mutex::new(None) }
     }
 
-    /// Knows the chunk that is waited for, if any, many times a second.
+    /// Updates the awaited chunk, if any; called many times a second.
     pub(super) fn at(&self, chunk: Option<usize>) {
         let Ok(mut state) = self.state.lock() else { return };
         let Some(chunk) = chunk else { return };
@@ -63,7 +63,7 @@ impl Waiting {
     }
 }
 
-/// A time as people say it: "40 s", "12 min", "3 h".
+/// Formats a time for people: "40 s", "12 min", "3 h".
 fn age_in_words(age: Duration) -> String {
     match age.as_secs() {
         seconds @ ..120 => format!("{seconds} s"),
@@ -73,7 +73,7 @@ fn age_in_words(age: Duration) -> String {
 }
 
 impl Live {
-    /// Starts; shows a line only when asked to and only on a terminal.
+    /// Starts the display; shows a line only if requested and only on a terminal.
     pub(super) fn new(show: bool, sample: bool, folder: &Path) -> Self {
         let bar = Bar::new(show, || {
             let bar = ProgressBar::no_length();
@@ -92,17 +92,17 @@ impl Live {
         }
     }
 
-    /// How many shards were damaged and set aside.
+    /// Returns the number of shards that were damaged and set aside.
     pub(super) fn damaged(&self) -> usize {
         self.damaged.load(Ordering::Relaxed)
     }
 
-    /// Whether the manifest was damaged and has been written anew.
+    /// `true` if the manifest was damaged and has been written anew.
     pub(super) fn manifest_healed(&self) -> bool {
         self.healed.load(Ordering::Relaxed)
     }
 
-    /// Shows how far it is.
+    /// Shows the progress.
     pub(super) fn at(&self, progress: &Progress) -> ControlFlow<()> {
         self.damaged.store(progress.damaged, Ordering::Relaxed);
         self.healed.store(progress.manifest_healed, Ordering::Relaxed);

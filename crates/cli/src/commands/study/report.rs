@@ -1,4 +1,4 @@
-//! `barrelstack study report`: from the table of a study to its page.
+//! `barrelstack study report`: makes the page of a study from its table.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use barrelstack_campaign::decision::{Decision, Request, SiteHazard, decide_folde
 use crate::commands::page;
 use crate::printer;
 
-/// What the help ends with.
+/// End of the help.
 const AFTER_HELP: &str = "\
 A hazard curve is a table (CSV) of the intensity, with its unit, and the annual rate at which it is exceeded:
 
@@ -37,7 +37,7 @@ pub(super) struct ReportArgs {
     json: bool,
 }
 
-/// Reads the folder, writes the page, prints what it says.
+/// Reads the folder, writes the page, prints a summary.
 pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
     let hazard = args.hazard.as_deref().map(SiteHazard::load).transpose()?;
     let request = Request { hazard, years: Some(f64::from(args.years)) };
@@ -56,7 +56,7 @@ pub(super) fn report(args: &ReportArgs) -> anyhow::Result<()> {
 
 /// Writes the page of a study that was run.
 ///
-/// A study without a single verdict has none, which is no reason to fail: its table says why.
+/// A study without a single verdict has none, which is not an error: its table states the reasons.
 pub(super) fn write_page(out: &Path) -> anyhow::Result<Option<PathBuf>> {
     match decide_folder(out, &Request::default()) {
         Ok((decision, _)) => {

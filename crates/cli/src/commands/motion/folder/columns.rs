@@ -1,11 +1,11 @@
-//! The columns of the table of records: what the header, the flatfile and the measures say.
+//! The columns of the table of records: data of the header, of the flatfile, and measures.
 
 use barrelstack_campaign::study::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_motion::{ClassifiedPulse, FlatRow, Measured, MeasuredComponent};
 
 use super::{Source, Worked, stage_of};
 
-/// All that a row tells.
+/// Data of a row.
 pub(super) struct Found<'a> {
     pub(super) source: &'a Source,
     pub(super) worked: &'a Worked,
@@ -16,9 +16,9 @@ pub(super) struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// File of a horizontal, counted from 0, and what it is called there: `#1` for its first channel.
+    /// Returns the file of a horizontal, counted from 0, and its channel there: `#1` for the first.
     ///
-    /// None where several files hold several channels each, which is told by no file name.
+    /// `None` where several files hold several channels each, so that file names do not identify them.
     fn place(&self, horizontal: usize) -> Option<(String, String)> {
         let (paths, channels) = (self.source.paths(), &self.worked.record.channels);
         let flat = channels.iter().enumerate().filter(|(_, channel)| !channel.is_vertical());
@@ -54,7 +54,7 @@ fn integer(name: impl Into<String>, value: Option<usize>) -> Cell {
     (spec(name.into(), "", Role::Motion, ValueKind::Integer), value)
 }
 
-/// All columns in order, with the values of a row; without values where none is given.
+/// Returns all columns in order, with the values of a row, if given.
 pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     let mut cells = header(found);
     let horizontal = |k: usize| found.and_then(|f| f.measured.horizontals.get(k));
@@ -95,7 +95,7 @@ pub(super) fn cells(found: Option<&Found<'_>>, periods: &[f64]) -> Vec<Cell> {
     cells
 }
 
-/// What is known beside the numbers; a flatfile knows better than a header.
+/// Returns the descriptive columns; a flatfile takes precedence over a header.
 fn header(found: Option<&Found<'_>>) -> Vec<Cell> {
     let record = found.map(|f| &f.worked.record);
     let first = record.and_then(|record| record.channels.first());
@@ -170,7 +170,7 @@ fn component(cells: &mut Vec<Cell>, place: &str, measured: Option<&MeasuredCompo
     cells.push(number(of("fiv3_1s"), "m/s", im, measured.map(|m| m.fiv3)));
 }
 
-/// Whether it is pulse-like (1 or 0), how surely, and the period.
+/// Adds the pulse class (1 or 0), its indicator, and the period.
 fn pulse(cells: &mut Vec<Cell>, how: &str, pulse: Option<&ClassifiedPulse>) {
     let im = Role::Intensity;
     cells.push(integer(format!("pulse_{how}"), pulse.map(|p| usize::from(p.pulse_like))));

@@ -1,4 +1,4 @@
-//! What was done already, one line a record, so that a stop loses nothing.
+//! Journal of finished records, one line each, so that an interruption loses nothing.
 
 use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::commands::motion::input;
 
-/// One record: its row, or none, and the files that were refused.
+/// One record: its row, if any, and the files that were refused.
 #[derive(Debug)]
 pub(super) struct Entry {
     pub(super) record: String,
@@ -25,8 +25,7 @@ pub(super) struct Entry {
     pub(super) refused: Vec<(String, String)>,
 }
 
-/// The file of what was done. Where the line of each record lies is kept, the lines are not: thousands of
-/// them would fill the memory.
+/// The journal file. Only the positions of lines are kept in memory: thousands of lines would fill it.
 pub(super) struct Journal {
     path: PathBuf,
     specs: Vec<ColumnSpec>,
@@ -35,7 +34,7 @@ pub(super) struct Journal {
 
 struct Inner {
     file: File,
-    /// Bytes that are written.
+    /// Number of bytes written.
     length: u64,
     lines: BTreeMap<String, Line>,
 }
@@ -58,9 +57,9 @@ struct Line {
 }
 
 impl Journal {
-    /// Opens the journal of a folder, or begins one.
+    /// Opens the journal of a folder, or creates one.
     ///
-    /// A line that is cut, as a kill leaves it, counts as not done.
+    /// A truncated line, as a killed process leaves it, counts as not done.
     pub(super) fn open(out: &Path, settings: &str, specs: &[ColumnSpec]) -> anyhow::Result<Self> {
         let path = out.join("rows.jsonl");
         let cannot = |what: &str| format!("cannot {what} {}", path.display());
@@ -69,7 +68,7 @@ impl Journal {
         let head = json!({ "barrelstack": version, "settings": settings, "columns": names });
         let file =
             system::open_to_change(&path).map_err(input::plain).with_context(|| cannot("write"))?;
-        // Where a file system has no locks, two commands are not told from each other.
+        // File systems without locks cannot keep two commands apart.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let out = out.display();
             bail!("another command is at work in {out}: wait for it, or name another folder");
@@ -83,7 +82,7 @@ impl Journal {
             let read = reader.read_until(b'\n', &mut line).map_err(input::plain);
             let read = read.with_context(|| cannot("read"))? as u64;
             let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
-            // A cut head, as a kill leaves it, is ours as well.
+            // A truncated head, as a killed process leaves it, is ours as well.
             if at == 0 && !head.as_bytes().starts_with(&line) {
                 let settings = found.as_ref().and_then(|first| first["settings"].as_str());
                 let whose = settings.map_or_else(
@@ -113,13 +112,14 @@ impl Journal {
         Ok(Self { path, specs, inner: Mutex::new(inner) })
     }
 
-    /// Whether a record is noted whose files are still the same, and was measured.
+    /// Returns `true` if a record is in the journal and was measured; `None` if it is not, or if its files have
+    /// changed.
     pub(super) fn known(&self, record: &str, hash: u64) -> Option<bool> {
         let inner = self.inner.lock().ok()?;
         inner.lines.get(record).filter(|line| line.hash == hash).map(|line| line.measured)
     }
 
-    /// Notes a record as done.
+    /// Adds a finished record.
     pub(super) fn note(&self, entry: &Entry) -> anyhow::Result<()> {
         let text = format!("{}\n", entry.line());
         let Ok(mut inner) = self.inner.lock() else { bail!("another thread failed to write") };
@@ -129,7 +129,7 @@ impl Journal {
         Ok(())
     }
 
-    /// What is noted for a record.
+    /// Reads the entry of a record.
     pub(super) fn entry(&self, record: &str) -> anyhow::Result<Entry> {
         let damaged = || format!("{} was changed meanwhile: run it again", self.path.display());
         let Ok(inner) = self.inner.lock() else { bail!(damaged()) };
@@ -163,7 +163,7 @@ impl Entry {
         line
     }
 
-    /// What a line says; none where it is not as it was written.
+    /// Parses a line; `None` if it is not as it was written.
     fn of(found: &serde_json::Value, specs: &[ColumnSpec]) -> Option<Self> {
         let mut bare = found.clone();
         let stated = bare.as_object_mut()?.remove("line")?;
@@ -186,12 +186,12 @@ impl Entry {
     }
 }
 
-/// The fingerprint of a line without it.
+/// Returns the fingerprint of a line without the field of the fingerprint.
 fn seal(line: &serde_json::Value) -> String {
     format!("{:016x}", fnv1a(line.to_string().as_bytes()))
 }
 
-/// A value of a column's kind; the outer None where it is of another.
+/// Parses a value of a column's kind; the outer `None` if it is of another kind.
 #[expect(clippy::option_option, reason = "no value and a wrong value are two things")]
 fn cell(value: &serde_json::Value, kind: ValueKind) -> Option<Option<Value>> {
     if value.is_null() {

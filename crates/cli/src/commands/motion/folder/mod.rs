@@ -1,4 +1,4 @@
-//! Whole folders: every record read, worked on and measured, one row of a table each.
+//! Batch processing of whole folders: every record is read, processed and measured, one row of a table each.
 
 mod columns;
 mod journal;
@@ -26,12 +26,12 @@ use columns::{Found, cells};
 use journal::{Entry, Journal};
 pub(super) use tree::Source;
 
-/// Periods (s) of the spectra where none are named.
+/// Default periods (s) of the spectra.
 const PERIODS: [f64; 20] = [
     0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0,
     4.0, 5.0, 10.0,
 ];
-/// Refused files that are named on the terminal; the table has all.
+/// Maximum number of refused files listed on the terminal; the table has all.
 const NAMED: usize = 5;
 
 /// What goes with folders.
@@ -50,7 +50,7 @@ pub(super) struct FolderArgs {
 }
 
 impl FolderArgs {
-    /// Periods (s) of the table.
+    /// Returns the periods (s) of the table.
     fn periods(&self) -> anyhow::Result<Vec<f64>> {
         if self.periods.is_empty() {
             return Ok(PERIODS.to_vec());
@@ -66,24 +66,24 @@ impl FolderArgs {
     }
 }
 
-/// What is done to every record of folders.
+/// Processing of all records of folders.
 pub(super) struct Batch<'a> {
     /// Files and folders.
     pub(super) input: &'a Input,
-    /// Where everything goes.
+    /// Folder of all output.
     pub(super) out: &'a Path,
     /// Flatfile, periods.
     pub(super) folder: &'a FolderArgs,
-    /// What the rows depend on beside the files, as words: another word is another table.
+    /// Settings on which the rows depend besides the files, as text: another text is another table.
     pub(super) settings: String,
-    /// Periods (s) of the spectra; those of the arguments without.
+    /// Periods (s) of the spectra; those of the arguments by default.
     pub(super) periods: Option<Vec<f64>>,
-    /// Ending of the file that is made of every record: what is gone is made anew.
+    /// Extension of the file made of every record: a missing file is made again.
     pub(super) ending: Option<String>,
 }
 
 impl<'a> Batch<'a> {
-    /// Of records that are measured alone, with the periods of the arguments.
+    /// Creates a batch that only measures records, with the periods of the arguments.
     pub(super) fn new(
         input: &'a Input,
         out: &'a Path,
@@ -94,53 +94,53 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// A record as it is to be measured, and how.
+/// A record to be measured, with the processing for that.
 pub(super) struct Worked {
-    /// The record, after what was done to it.
+    /// The record, processed.
     pub(super) record: Record,
-    /// What is done to it before it is measured.
+    /// Further processing before it is measured.
     pub(super) before: Processing,
 }
 
 impl Worked {
-    /// As read, measured after what a scenario would do to it.
+    /// Wraps a record as read, measured after the default processing of a scenario.
     pub(super) fn as_read(record: Record) -> Self {
         let before = Chain::Default.of(record.stage);
         Self { record, before }
     }
 
-    /// What was done here, measured as it is.
+    /// Wraps a processed record, measured as it is.
     pub(super) fn done(record: Record) -> Self {
         Self { record, before: Processing::none() }
     }
 }
 
-/// What came of a batch.
+/// Results of a batch.
 pub(super) struct Measurements {
-    /// One row a record, sorted by name.
+    /// One row per record, sorted by name.
     pub(super) table: StudyTable,
     refused: Vec<(String, String)>,
     before: usize,
-    /// Whether it was stopped before its end.
+    /// `true` if it was stopped before its end.
     stopped: bool,
     out: PathBuf,
 }
 
-/// What became of one record.
+/// Result of one record.
 enum Done {
-    /// It stands in the journal.
+    /// It is in the journal.
     Noted,
-    /// Refused, files and reasons, and tried again the next time.
+    /// Refused, with files and reasons, and tried again the next time.
     Unsure(Vec<(String, String)>),
     /// The command was stopped before.
     Stopped,
 }
 
-/// Does `work` to every record, on all cores, and writes the table: `records.csv`,
+/// Applies `work` to every record, on all cores, and writes the table: `records.csv`,
 /// `records.parquet`, and `refused.csv` with the reasons.
 ///
-/// What is done is noted in `rows.jsonl` as it is done, under the fingerprint of the files' bytes: the
-/// same command goes on where it was stopped, and does anew what has changed.
+/// Each finished record is added to `rows.jsonl`, with the fingerprint of the bytes of its files: the same command
+/// resumes after an interruption, and repeats records that have changed.
 pub(super) fn run(
     batch: &Batch<'_>,
     work: &(dyn Fn(&Source, &Record) -> anyhow::Result<Worked> + Sync),
@@ -233,7 +233,7 @@ impl Measurements {
         store(&self.out.join("refused.csv"), text.as_bytes())
     }
 
-    /// Tells what was done, and gives the status: 130 if it was stopped.
+    /// Prints a summary and returns the exit status: 130 if it was stopped.
     pub(super) fn tell(&self) -> anyhow::Result<ExitCode> {
         let before = (self.before > 0).then(|| format!(" ({} of them before)", self.before));
         let mut lines = vec![format!(
@@ -260,7 +260,7 @@ impl Measurements {
     }
 }
 
-/// Fingerprint of the bytes of the files of a source; of one that cannot be read, as of none.
+/// Returns the fingerprint of the bytes of the files of a source; an unreadable file counts as empty.
 fn fingerprint_of(source: &Source) -> u64 {
     let mut all = Vec::new();
     for path in source.paths() {
@@ -270,10 +270,10 @@ fn fingerprint_of(source: &Source) -> u64 {
     fnv1a(&all)
 }
 
-/// Reads, works on and measures one record.
+/// Reads, processes and measures one record.
 ///
-/// Files that cannot be read, and records that cannot be worked on, are refused with the reason; what
-/// may be due to the disk alone is not sure, and is tried again the next time.
+/// Files that cannot be read, and records that cannot be processed, are refused with the reason; failures that
+/// may be due to the disk are not final, and are tried again the next time.
 fn entry(
     input: &Input,
     source: &Source,
@@ -297,7 +297,7 @@ fn entry(
     }
     let whole =
         source.paths().iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
-    // The reason, and whether it will be the same the next time.
+    // The reason, and `true` if it is final.
     let refused = |reason: String, sure: bool| (format!("{whole}: {reason}"), sure);
     let row = input
         .unite(&records)
@@ -329,7 +329,7 @@ fn flatfile(path: &Path) -> anyhow::Result<(Flatfile, u64)> {
     Ok((Flatfile::parse(&path.display().to_string(), &text)?, fnv1a(&bytes)))
 }
 
-/// The stage in one word, raw records told as processed where they are measured so.
+/// Returns stage and processing in words; raw records are processed for the measures.
 fn stage_of(worked: &Worked) -> (String, &'static str) {
     let processing = match (worked.record.stage, worked.before.is_none()) {
         (Stage::Raw, false) => "compact, for the measures",

@@ -1,4 +1,4 @@
-//! The files under folders, in one order on every machine.
+//! The files under folders, in the same order on every machine.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use barrelstack_motion::{RecordFiles, group_files};
 
 use crate::commands::motion::{archives, input};
 
-/// Deepest folder within a folder; a chain of links cannot be followed for ever.
+/// Maximum depth of folders; stops cycles of links.
 const DEEPEST: usize = 32;
 
 /// The files of one record and the folder that they were found under.
@@ -19,20 +19,20 @@ pub(in crate::commands::motion) struct Source {
 }
 
 impl Source {
-    /// Its files.
+    /// Returns its files.
     pub(in crate::commands::motion) fn paths(&self) -> Vec<PathBuf> {
         self.record.files.iter().map(|file| self.root.join(file)).collect()
     }
 
-    /// Where something made of it goes under a folder: its own name with another ending.
+    /// Returns the path of an output file under a folder: its own name with another extension.
     pub(in crate::commands::motion) fn beside(&self, out: &Path, ending: &str) -> PathBuf {
         let name = self.record.name.replace('?', "X");
         out.join(format!("{name}.{ending}"))
     }
 }
 
-/// The records of files and folders, those of every folder sorted; hidden files and what lies under
-/// `out` are left alone.
+/// Returns the records of files and folders, those of every folder sorted; skips hidden files and those under
+/// `out`.
 pub(super) fn sources(given: &[String], out: &Path) -> anyhow::Result<Vec<Source>> {
     let out =
         out.canonicalize().map_err(input::plain).context("cannot find the folder to write")?;

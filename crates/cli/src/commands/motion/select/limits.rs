@@ -1,4 +1,4 @@
-//! Which records may be chosen: ranges of magnitude, distance and site, and the pulse class.
+//! Eligibility of records: ranges of magnitude, distance and site, and the pulse class.
 
 use std::str::FromStr;
 
@@ -58,7 +58,7 @@ pub(super) struct Limits {
     pulses: Pulses,
 }
 
-/// Which pulse class.
+/// Pulse class of eligible records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Pulses {
     /// All.
@@ -69,16 +69,16 @@ enum Pulses {
     None,
 }
 
-/// How many records each limit left out, and for how many it could not be told.
+/// Numbers of records excluded by each limit, and of those without the data for it.
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
-    /// Records whose distance is that to the epicenter.
+    /// Number of records whose distance is that to the epicenter.
     by_epicenter: usize,
     counts: Vec<(&'static str, usize, usize)>,
 }
 
 impl Limits {
-    /// The rows within all limits, and what became of the others.
+    /// Returns the rows within all limits, and counts of the others.
     pub(super) fn rows(&self, table: &StudyTable) -> (Vec<usize>, LeftOut) {
         let mut rows: Vec<usize> = (0..table.rows()).collect();
         let mut left_out = LeftOut::default();
@@ -135,7 +135,7 @@ impl LeftOut {
         self.counts.push((name, outside, unknown));
     }
 
-    /// Of how many records how many may be chosen, and why not the others.
+    /// Describes the number of candidates among all records, and the reasons for excluding the others.
     pub(super) fn sentence(&self, all: usize, candidates: usize, spectrum: &str) -> String {
         let mut reasons = Vec::new();
         let mut lost = 0;

@@ -18,7 +18,7 @@ use super::input::Input;
 use crate::printer;
 use limits::{Limits, Range};
 
-/// What the help ends with.
+/// End of the help.
 const AFTER_HELP: &str = "\
 Targets:
   FILE.csv     a ground-motion model's table: \"period (s), median (g), sigma\", sigma that of ln Sa;
@@ -81,7 +81,7 @@ pub(super) struct SelectArgs {
     folder: FolderArgs,
 }
 
-/// Which spectrum of a record counts.
+/// Spectrum of a record to be matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Spectrum {
     /// Median over all directions of both horizontals.
@@ -152,10 +152,10 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Size of a set where none is asked for.
+/// Default size of a set.
 const USUAL_COUNT: usize = 30;
 
-/// The largest set of the usual size or less that the candidates give.
+/// Returns the largest set up to the default size that the candidates allow.
 fn as_many_as_there_are(
     target: &SelectionTarget,
     candidates: &[Candidate],
@@ -168,7 +168,7 @@ fn as_many_as_there_are(
     first.or_else(|error| smaller().ok_or(error))
 }
 
-/// Rows with a whole spectrum, as candidates; records of one event are a group.
+/// Returns rows with a complete spectrum, as candidates; records of one event form a group.
 fn candidates(
     args: &SelectArgs,
     table: &StudyTable,

@@ -73,7 +73,7 @@ fn document(
     }
 }
 
-/// Every chosen spectrum, the set's median and the target's with two standard deviations.
+/// Plots all chosen spectra, the set's median and the target's with two standard deviations.
 fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) -> Figure {
     let periods = target.periods().to_vec();
     let line = |label: &str, values: Vec<f64>, style: SeriesStyle| Series {
@@ -126,7 +126,7 @@ fn spectra(set: &Set<'_>, target: &SelectionTarget, candidates: &[Candidate]) ->
     Figure::new("spectra", caption, plot)
 }
 
-/// Standard deviations of ln Sa.
+/// Plots the standard deviations of ln Sa.
 fn spread(set: &Set<'_>, target: &SelectionTarget) -> Figure {
     let periods = target.periods().to_vec();
     let plot = Plot {

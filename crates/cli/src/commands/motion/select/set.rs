@@ -1,4 +1,4 @@
-//! The set as files: its table, and a study that takes it as it is.
+//! A set as files: its table, and a study that uses it directly.
 
 use std::fmt::Write as _;
 
@@ -9,28 +9,28 @@ use barrelstack_selection::{Chosen, Selection, SelectionTarget};
 use super::SelectArgs;
 use crate::store::store;
 
-/// A set and where it comes from.
+/// A set with its source.
 pub(super) struct Set<'a> {
     pub(super) args: &'a SelectArgs,
     pub(super) table: &'a StudyTable,
-    /// Row of the table of every candidate.
+    /// Row of every candidate in the table.
     pub(super) rows: &'a [usize],
     pub(super) selection: &'a Selection,
 }
 
 impl Set<'_> {
-    /// The records with their rows of the table.
+    /// Returns the records with their rows of the table.
     pub(super) fn chosen(&self) -> impl Iterator<Item = (usize, &Chosen)> {
         self.selection.chosen.iter().map(|chosen| (self.rows[chosen.candidate], chosen))
     }
 
-    /// A text of the table.
+    /// Returns a text of the table.
     pub(super) fn text(&self, column: &str, row: usize) -> &str {
         let texts = self.table.texts(column).unwrap_or_default();
         texts.get(row).and_then(Option::as_deref).unwrap_or_default()
     }
 
-    /// A number of the table.
+    /// Returns a number of the table.
     pub(super) fn number(&self, column: &str, row: usize) -> Option<f64> {
         self.table.numbers(column)?.get(row).copied().flatten()
     }
@@ -65,7 +65,7 @@ impl Set<'_> {
         text
     }
 
-    /// A study of the set: every horizontal a motion of its own, with the factor of its record.
+    /// Returns a study of the set: every horizontal is a motion of its own, with the factor of its record.
     fn study(&self) -> anyhow::Result<String> {
         let a = self.args;
         let mut text = format!(
@@ -105,7 +105,7 @@ impl Set<'_> {
         Ok(text)
     }
 
-    /// What was chosen and how near it comes, for people.
+    /// Summarizes the set and its fit for people.
     pub(super) fn summary(&self, target: &SelectionTarget) -> Vec<String> {
         let out = self.args.out.display();
         vec![
@@ -115,7 +115,7 @@ impl Set<'_> {
         ]
     }
 
-    /// How near the set comes.
+    /// Describes the fit of the set.
     pub(super) fn fit(&self, target: &SelectionTarget) -> String {
         let selection = self.selection;
         let spread = target.deviation().iter().any(|s| *s > 0.0);
@@ -141,7 +141,7 @@ impl Set<'_> {
     }
 }
 
-/// A text as TOML has it.
+/// Quotes a text for TOML.
 fn quoted(text: &str) -> anyhow::Result<String> {
     // A JSON string is a basic string of TOML.
     Ok(serde_json::to_string(text)?)

@@ -1,4 +1,4 @@
-//! What a selection is asked to look like, as typed.
+//! The target of a selection, from the options.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::SelectArgs;
 use crate::commands::motion::input::{number_or, quantity};
 use crate::commands::motion::target as code;
 
-/// The target within the periods that count.
+/// Returns the target within the requested periods.
 pub(super) fn target(args: &SelectArgs) -> anyhow::Result<SelectionTarget> {
     let shortest = quantity("--shortest", &args.shortest, Dimension::TIME)?;
     let longest = quantity("--longest", &args.longest, Dimension::TIME)?;
