@@ -1,38 +1,38 @@
-//! The choice: one record to each simulated spectrum, then exchanges while they help.
+//! Greedy selection: one record for each simulated spectrum, then exchanges while they improve the set.
 
 use barrelstack_motion::{MotionError, Random};
 
 use crate::target::SelectionTarget;
 
-/// Sets of simulated spectra, from each of which a set of records is made; the best is taken.
+/// Number of sets of simulated spectra, each of which gives a set of records; the best is kept.
 const TRIALS: usize = 5;
-/// Weight of the error of the standard deviation beside that of the mean, which has 1.
+/// Weight of the error of the standard deviation relative to that of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// The same for a target without spread, which nearness to its mean alone can not bring about.
+/// The same weight for a target without spread, which selection by distance from the mean cannot reach.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
-/// Most rounds of exchanges; they end when no exchange helps.
+/// Largest number of rounds of exchanges; they end when no exchange helps.
 const ROUNDS: usize = 20;
 
-/// A record that may be chosen.
+/// A record available for selection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// Its name, for messages.
     pub name: String,
     /// Pseudo-accelerations (m/s²) at the target's periods.
     pub spectrum: Vec<f64>,
-    /// Candidates of one group are alternatives: at most [`Choosing::most_of_group`] of them are
-    /// chosen, as of the records of one earthquake.
+    /// Candidates of one group are alternatives, such as the records of one earthquake: at most
+    /// [`Choosing::most_of_group`] of them are selected.
     pub group: String,
 }
 
-/// How many are chosen, and within which limits.
+/// Size of the set, and its limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choosing {
     /// Size of the set, at least 2.
     pub count: usize,
     /// Smallest and largest factor on a record.
     pub scale: [f64; 2],
-    /// Most candidates of one group; none for no limit.
+    /// Largest number of candidates of one group; `None` for no limit.
     pub most_of_group: Option<usize>,
     /// Seed of the simulated spectra.
     pub seed: u64,
@@ -41,13 +41,13 @@ pub struct Choosing {
 /// One record of the set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
-    /// Its place among the candidates.
+    /// Its index among the candidates.
     pub candidate: usize,
-    /// Its factor.
+    /// Its scale factor.
     pub scale: f64,
 }
 
-/// The set, and how near it comes.
+/// The selected set and its fit to the target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     /// The records, in the order of the candidates.
@@ -56,21 +56,21 @@ pub struct Selection {
     pub mean: Vec<f64>,
     /// Standard deviation of ln Sa of the set, with `n − 1`.
     pub deviation: Vec<f64>,
-    /// Candidates that were left within the limits of scale.
+    /// Number of candidates within the limits of scale.
     pub eligible: usize,
-    /// Rounds of exchanges.
+    /// Number of rounds of exchanges.
     pub rounds: usize,
 }
 
 impl Selection {
-    /// Largest relative error of the median over the periods.
+    /// Returns the largest relative error of the median over the periods.
     pub fn median_error(&self, target: &SelectionTarget) -> f64 {
         let errors = self.mean.iter().zip(target.mean());
         errors.fold(0.0, |worst, (ours, wanted)| worst.max((libm::exp(ours - wanted) - 1.0).abs()))
     }
 
-    /// Largest relative error of the standard deviation over the periods that have one; absolute,
-    /// where the target has none anywhere.
+    /// Returns the largest relative error of the standard deviation over the periods that have one; absolute
+    /// if the target has no spread.
     pub fn deviation_error(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let pairs = self.deviation.iter().zip(target.deviation());
@@ -81,8 +81,8 @@ impl Selection {
         })
     }
 
-    /// What sets are compared by: an error of the median counts as one of the standard deviation twice
-    /// as large.
+    /// Returns the error by which sets are compared: an error of the median counts like one of the standard
+    /// deviation twice as large.
     fn worst(&self, target: &SelectionTarget) -> f64 {
         let spread = target.deviation().iter().any(|s| *s > 0.0);
         let deviation = if spread { 0.5 * self.deviation_error(target) } else { 0.0 };
@@ -90,14 +90,14 @@ impl Selection {
     }
 }
 
-/// Standard deviation of ln Sa below which an error relative to it says nothing.
+/// Standard deviation of ln Sa below which a relative error is meaningless.
 const SMALLEST: f64 = 0.01;
 
-/// Chooses records whose spectra have the target's mean and spread (Jayaram, Lin and Baker 2011,
+/// Selects records whose spectra have the target's mean and spread (Jayaram, Lin and Baker 2011,
 /// Earthquake Spectra 27:797-815).
 ///
-/// Where the target is conditional, every record is scaled to it at the given period; else to the
-/// mean of ln Sa of the simulated spectrum that it stands for.
+/// If the target is conditional, every record is scaled to it at the given period; else to the
+/// mean of ln Sa of its simulated spectrum.
 /// A set is a function of target, candidates and settings; of equal choices the first is taken.
 ///
 /// # Errors
@@ -131,7 +131,7 @@ pub fn select(
             best = Some(found);
         }
     }
-    // There is one trial or more, and each gives a set.
+    // There is at least one trial, and each gives a set.
     best.ok_or_else(|| too_few(&pool, candidates.len(), 0, choosing))
 }
 
@@ -183,16 +183,16 @@ struct Row {
     candidate: usize,
     /// ln Sa.
     spectrum: Vec<f64>,
-    /// What is brought to the level of a spectrum by scaling: ln Sa at the given period, or the mean.
+    /// The quantity that scaling matches: ln Sa at the given period, or its mean.
     level: f64,
     group: usize,
 }
 
-/// All candidates.
+/// All candidates, before scaling.
 struct Pool {
     rows: Vec<Row>,
     groups: usize,
-    /// Place of the given period.
+    /// Index of the given period.
     given: Option<usize>,
     /// Smallest and largest logarithm of a factor.
     limits: [f64; 2],
@@ -208,7 +208,7 @@ impl Pool {
             rows: Vec::new(),
             groups: names.len(),
             given: target.condition().map(|(at, _)| at),
-            // A factor at the limit is within it.
+            // The margin keeps a factor at the limit within it.
             limits: [libm::log(choosing.scale[0]) - 1e-12, libm::log(choosing.scale[1]) + 1e-12],
             most: choosing.most_of_group.unwrap_or(usize::MAX),
         };
@@ -230,13 +230,13 @@ impl Pool {
         (self.limits[0]..=self.limits[1]).contains(&(level - self.rows[row].level))
     }
 
-    /// How many candidates reach the target's mean.
+    /// Returns the number of candidates that reach the target's mean.
     fn eligible(&self, target: &SelectionTarget) -> usize {
         let level = self.level(target.mean());
         (0..self.rows.len()).filter(|row| self.reaches(*row, level)).count()
     }
 
-    /// The free candidate of the least squared distance from a spectrum.
+    /// Returns the available candidate with the smallest squared distance from a spectrum.
     fn nearest(&self, spectrum: &[f64], level: f64, set: &Set<'_>) -> Option<usize> {
         let mut best = (f64::INFINITY, None);
         for (k, row) in self.rows.iter().enumerate() {
@@ -254,17 +254,17 @@ impl Pool {
     }
 }
 
-/// The set so far, with the sums that its moments follow from.
+/// The set so far, with the sums for its moments.
 struct Set<'a> {
     target: &'a SelectionTarget,
-    /// Rows of the pool, each with the level that it is scaled to.
+    /// Rows of the pool, each with the level to which it is scaled.
     members: Vec<(usize, f64)>,
-    /// Sums of ln Sa less the target's mean, which keeps their digits.
+    /// Sums of ln Sa minus the target's mean, which preserves digits.
     sums: Vec<f64>,
     squares: Vec<f64>,
     /// Weight of the error of the standard deviation.
     weight: f64,
-    /// Whether the largest error counts rather than the sum of all squares.
+    /// `true` to minimize the largest error rather than the sum of squares.
     largest: bool,
 }
 
@@ -290,7 +290,7 @@ impl<'a> Set<'a> {
         }
     }
 
-    /// Whether a row may join when the one at `leaving` goes.
+    /// `true` if a row may join when the member at `leaving` leaves.
     fn takes(&self, pool: &Pool, row: usize, leaving: Option<usize>) -> bool {
         let group = pool.rows[row].group;
         let mut same = 0;
@@ -306,8 +306,8 @@ impl<'a> Set<'a> {
         same < pool.most
     }
 
-    /// Weighted sum of the squared errors of mean and standard deviation; where the largest counts, of
-    /// their eighth powers, those of the standard deviation relative to it.
+    /// Returns the weighted sum of the squared errors of mean and standard deviation; for the largest error,
+    /// of their eighth powers, with the standard deviation relative to the target.
     fn error(&self) -> f64 {
         (0..self.sums.len()).map(|k| self.error_at(k, self.sums[k], self.squares[k])).sum()
     }
@@ -319,12 +319,12 @@ impl<'a> Set<'a> {
         if !self.largest {
             return mean * mean + self.weight * apart * apart;
         }
-        // As in [`Selection::worst`]; in hundredths, lest the powers vanish.
+        // As in [`Selection::worst`]; in hundredths, so that the powers do not underflow.
         let spread = if wanted > SMALLEST { 50.0 * apart / wanted } else { 0.0 };
         eighth_power(100.0 * mean) + eighth_power(spread)
     }
 
-    /// Exchanges each member for the candidate that lowers the error most; gives the rounds made.
+    /// Exchanges each member for the candidate that lowers the error most; returns the number of rounds.
     fn improve(&mut self, pool: &Pool) -> usize {
         for round in 1..=ROUNDS {
             let mut changed = false;
@@ -354,7 +354,7 @@ impl<'a> Set<'a> {
         ROUNDS
     }
 
-    /// The error with one more spectrum, given up once it exceeds `limit`.
+    /// Returns the error with one more spectrum, stopping once it exceeds `limit`.
     fn error_with(&self, spectrum: &[f64], shift: f64, limit: f64) -> f64 {
         let mut error = 0.0;
         for (k, (value, mean)) in spectrum.iter().zip(self.target.mean()).enumerate() {
@@ -378,7 +378,7 @@ impl<'a> Set<'a> {
         Selection { chosen, mean, deviation, eligible: pool.eligible(self.target), rounds }
     }
 
-    /// Mean and standard deviation of ln Sa at each period.
+    /// Returns mean and standard deviation of ln Sa at each period.
     fn moments(&self) -> (Vec<f64>, Vec<f64>) {
         let of = |(sum, squares): (&f64, &f64)| self.moments_of(*sum, *squares);
         let (mut mean, spread): (Vec<f64>, _) = self.sums.iter().zip(&self.squares).map(of).unzip();
@@ -388,7 +388,7 @@ impl<'a> Set<'a> {
         (mean, spread)
     }
 
-    /// Mean and standard deviation, with `n − 1`, that sums over the whole set have.
+    /// Returns mean and standard deviation, with `n − 1`, from sums over the whole set.
     fn moments_of(&self, sum: f64, squares: f64) -> (f64, f64) {
         let n = self.members.len() as f64;
         let mean = sum / n;

@@ -1,4 +1,4 @@
-//! Sets of ground motions: records chosen so that their spectra have a target's mean and spread.
+//! Selection of ground motions whose spectra have a target mean and spread.
 //!
 //! ```
 //! use barrelstack_selection::{Candidate, Choosing, Condition, SelectionTarget, select};
@@ -16,7 +16,7 @@
 //! # Ok::<(), barrelstack_motion::MotionError>(())
 //! ```
 
-// The same set on every machine, so transcendental functions are our own (`clippy.toml`).
+// Sets must be equal on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod correlation;

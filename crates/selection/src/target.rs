@@ -1,16 +1,16 @@
-//! What a set of spectra shall look like: mean and spread of ln Sa, given Sa at one period or not.
+//! Target of a selection: mean and spread of ln Sa, optionally conditional on Sa at one period.
 
 use barrelstack_motion::{MotionError, Random, TargetSpectrum};
 
 use crate::correlation::spectral_correlation;
 
-/// Periods (s) at which a code's spectrum is followed.
+/// Periods (s) at which a code spectrum is matched.
 pub const PERIODS: [f64; 22] = [
     0.05, 0.075, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0, 1.25, 1.5, 2.0,
     2.5, 3.0, 4.0, 5.0, 7.5,
 ];
 
-/// Spectral acceleration that is given at one period.
+/// Spectral acceleration given at one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Period (s), one of the target's.
@@ -20,27 +20,27 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Sa a number of standard deviations of ln Sa above a median (m/s²).
+    /// Creates a condition of Sa (m/s²) a number of standard deviations of ln Sa above a median.
     pub fn at_epsilon(period: f64, median: f64, deviation: f64, epsilon: f64) -> Self {
         Self { period, acceleration: median * libm::exp(deviation * epsilon) }
     }
 }
 
-/// Mean and standard deviation of the logarithm of spectral accelerations, period by period, and
-/// what correlates them.
+/// Mean, standard deviation and covariance of the logarithm of spectral accelerations at a list of
+/// periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelectionTarget {
     periods: Vec<f64>,
     /// Mean of ln Sa, Sa in m/s².
     mean: Vec<f64>,
     deviation: Vec<f64>,
-    /// Covariance of ln Sa, rows one after another.
+    /// Covariance of ln Sa, row by row.
     covariance: Vec<f64>,
     condition: Option<Condition>,
 }
 
 impl SelectionTarget {
-    /// From a ground-motion model's medians (m/s²) and standard deviations of ln Sa at ascending
+    /// Creates a target from the medians (m/s²) and standard deviations of ln Sa of a ground-motion model at ascending
     /// periods (s); with a condition, the conditional spectrum (Baker 2011, Journal of Structural
     /// Engineering 137:322-331):
     ///
@@ -105,7 +105,7 @@ impl SelectionTarget {
         Ok(Self { periods: periods.to_vec(), mean, deviation, covariance, condition })
     }
 
-    /// A spectrum that all shall follow, without spread.
+    /// Creates the target of a spectrum without spread.
     ///
     /// # Errors
     /// As [`SelectionTarget::new`].
@@ -115,28 +115,28 @@ impl SelectionTarget {
         Self::new(periods, &median, &vec![0.0; periods.len()], None)
     }
 
-    /// Periods (s), ascending.
+    /// Returns the periods (s), in ascending order.
     pub fn periods(&self) -> &[f64] {
         &self.periods
     }
 
-    /// Mean of ln Sa at each period, Sa in m/s².
+    /// Returns the mean of ln Sa at each period, Sa in m/s².
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// Standard deviation of ln Sa at each period.
+    /// Returns the standard deviation of ln Sa at each period.
     pub fn deviation(&self) -> &[f64] {
         &self.deviation
     }
 
-    /// What is given, and at which of the periods.
+    /// Returns the condition and the index of its period.
     pub fn condition(&self) -> Option<(usize, Condition)> {
         let given = self.condition?;
         Some((self.periods.iter().position(|t| *t == given.period)?, given))
     }
 
-    /// Spectra (ln Sa) drawn from the target's normal distribution.
+    /// Draws spectra (ln Sa) from the target's normal distribution.
     pub(super) fn draw(&self, count: usize, random: &mut Random) -> Vec<Vec<f64>> {
         let n = self.periods.len();
         let root = self.cholesky();
@@ -148,8 +148,8 @@ impl SelectionTarget {
         (0..count).map(|_| one(random)).collect()
     }
 
-    /// Lower triangle `L` with `L Lᵀ` the covariance; a period that is given, or follows from those
-    /// before, adds nothing. Published correlations are rounded, so small negative pivots occur.
+    /// Returns the lower triangle `L` with `L Lᵀ` the covariance; a given period, or one that depends on those
+    /// before, contributes nothing. Published correlations are rounded, so small negative pivots occur.
     fn cholesky(&self) -> Vec<f64> {
         let n = self.periods.len();
         let mut root = vec![0.0; n * n];

@@ -1,4 +1,4 @@
-//! Targets and sets of records: published correlations, the conditional spectrum, and how near a set comes.
+//! Targets and sets of records: published correlations, the conditional spectrum, and the fit of sets.
 
 #![allow(
     clippy::unwrap_used,
@@ -47,7 +47,7 @@ fn target(epsilon: Option<f64>) -> SelectionTarget {
 /// Spectra drawn from the model, correlated over the periods as published.
 fn library(count: usize) -> Vec<Candidate> {
     let n = MODEL.len();
-    // Cholesky's factor of the correlations; these are rounded, so a little stands on the diagonal.
+    // Cholesky factor of the correlations; these are rounded, so the diagonal gets a small increment.
     let mut root = vec![vec![0.0; n]; n];
     for i in 0..n {
         for j in 0..=i {
@@ -129,7 +129,7 @@ fn a_set_meets_a_published_target_in_mean_and_spread() {
     };
     // Measured: 1.3 % and 2.6 %.
     assert!(near(&found));
-    // Whatever the seed, and from a fifth of the records: measured 2.0 % and 4.1 % at most.
+    // For any seed, and from a fifth of the records: measured 2.0 % and 4.1 % at most.
     for seed in 2..6 {
         let choosing = Choosing { seed, ..choosing(40) };
         assert!(near(&select(&target, &library[..400], &choosing).unwrap()));

@@ -1,8 +1,8 @@
-//! Requests about a motion that cannot be met, as sentences with a next move.
+//! Errors of ground-motion computations, as sentences with a next move.
 
 use std::fmt;
 
-/// A request about a motion that cannot be met.
+/// The reason why a request about a motion cannot be met.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// A parameter lies outside its range.
@@ -20,10 +20,10 @@ pub enum MotionError {
     NotScalable {
         /// Name of the measure.
         measure: String,
-        /// Why no factor exists.
+        /// Reason why no factor exists.
         reason: String,
     },
-    /// The motion is zero in the measure asked for.
+    /// The requested measure of the motion is zero.
     #[error(
         "{measure} of \"{motion}\" is zero, so no factor brings it to {target}; choose another component or another record"
     )]
@@ -32,23 +32,23 @@ pub enum MotionError {
         measure: String,
         /// Name of the motion.
         motion: String,
-        /// The wanted value with its unit.
+        /// The requested value with its unit.
         target: String,
     },
-    /// No channel answers the selection.
+    /// No channel matches the selection.
     #[error("{file} has no channel {wanted}; it has {available}")]
     NoChannel {
         /// Name of the file.
         file: String,
-        /// What was asked for.
+        /// The requested channel.
         wanted: String,
-        /// What there is.
+        /// The available channels.
         available: String,
     },
-    /// Two series that must be combined differ in step or do not fit.
+    /// Two series to be combined differ in step or do not match.
     #[error("{what}; {remedy}")]
     Mismatch {
-        /// The disagreement.
+        /// The mismatch.
         what: String,
         /// The next move.
         remedy: String,
@@ -58,11 +58,11 @@ pub enum MotionError {
     NotConverged {
         /// The iteration.
         what: String,
-        /// Best misfit reached, printed.
+        /// Best misfit reached, formatted.
         reached: String,
-        /// Rounds done.
+        /// Number of rounds.
         rounds: usize,
-        /// Tolerance, printed.
+        /// Tolerance, formatted.
         wanted: String,
         /// The next move.
         remedy: String,
@@ -70,7 +70,7 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// A number that is not what it should be: what it is, what was expected, what was found.
+    /// Creates an error of a parameter from its name, its permitted range and its value.
     pub fn parameter(
         what: impl Into<String>,
         expected: impl Into<String>,
@@ -79,15 +79,15 @@ impl MotionError {
         Self::Parameter { what: what.into(), expected: expected.into(), found: found.to_string() }
     }
 
-    /// Things that do not go together, and the next move.
+    /// Creates an error of mismatching inputs with the next move.
     pub fn mismatch(what: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Mismatch { what: what.into(), remedy: remedy.into() }
     }
 
-    /// `Ok` when a number is what it should be.
+    /// Returns `Ok` if a condition on a parameter holds.
     ///
     /// # Errors
-    /// When it is not, as [`MotionError::parameter`] says it.
+    /// [`MotionError::Parameter`] if not.
     pub fn require(
         holds: bool,
         what: impl Into<String>,
@@ -97,19 +97,19 @@ impl MotionError {
         if holds { Ok(()) } else { Err(Self::parameter(what, expected, found)) }
     }
 
-    /// `Ok` when `value` is finite and above zero.
+    /// Returns `Ok` if `value` is finite and above zero.
     ///
     /// # Errors
-    /// When it is not, in words that begin with `what` it is.
+    /// A message that begins with `what`, if not.
     pub fn require_positive(what: &str, value: f64) -> Result<(), Self> {
         let positive = value.is_finite() && value > 0.0;
         Self::require(positive, what, "a finite number above 0", value)
     }
 
-    /// `Ok` when `value` is finite.
+    /// Returns `Ok` if `value` is finite.
     ///
     /// # Errors
-    /// When it is not.
+    /// If it is not.
     pub fn require_finite(what: &str, value: f64) -> Result<(), Self> {
         Self::require(value.is_finite(), what, "a finite number", value)
     }

@@ -1,13 +1,13 @@
-//! Filtered incremental velocity: the three largest pushes that an oscillator's half swing could take.
+//! Filtered incremental velocity: the three largest velocity increments over most of an oscillator's period.
 
 use crate::math::{self, PI};
 
-/// Window of the increments over the period.
+/// Length of the time window over the period.
 const WINDOW: f64 = 0.7;
 /// Corner of the filter over the frequency of the oscillator.
 const CORNER: f64 = 0.85;
 
-/// FIV3 (m/s) of accelerations (m/s²) at an oscillator's period `period` (s):
+/// Returns FIV3 (m/s) of accelerations (m/s²) at the period `period` (s) of an oscillator:
 ///
 /// ```text
 /// V(t) = ∫ a dt from t to t + 0.7 T,   a low-passed at 0.85/T
@@ -15,8 +15,8 @@ const CORNER: f64 = 0.85;
 /// ```
 ///
 /// (Dávalos and Miranda 2019, Earthquake Engineering and Structural Dynamics 48:1300-1316).
-/// The filter is a Butterworth of second order that runs forward once; where the published words
-/// leave it open, running it both ways would lower what lies at the corner.
+/// The filter is a causal Butterworth filter of second order, applied once; the publication leaves this
+/// open, and applying it in both directions would reduce content at the corner.
 pub(crate) fn fiv3(time_step: f64, acceleration: &[f64], period: f64) -> f64 {
     let filtered = low_pass(time_step, acceleration, CORNER / period);
     let velocity = crate::sampled::running_trapezoid(time_step, &filtered);
@@ -37,8 +37,8 @@ pub(crate) fn fiv3(time_step: f64, acceleration: &[f64], period: f64) -> f64 {
     pushes(1.0).max(pushes(-1.0))
 }
 
-/// Butterworth low-pass of second order, forward in time, by the bilinear transform with its corner
-/// (Hz) held; above the Nyquist frequency nothing is filtered.
+/// Applies a causal Butterworth low-pass of second order, by the bilinear transform with prewarped corner
+/// (Hz); without effect above the Nyquist frequency.
 fn low_pass(time_step: f64, a: &[f64], corner: f64) -> Vec<f64> {
     if corner * time_step >= 0.5 {
         return a.to_vec();

@@ -1,7 +1,7 @@
 //! Discrete Fourier transform in a fixed order of operations, and the Fourier amplitude spectrum.
 //!
-//! A plain radix-2 transform of our own: its bits do not depend on the instruction set, which
-//! transforms that pick vector code at run time cannot promise.
+//! A plain radix-2 transform of our own: its bits do not depend on the instruction set, unlike those of
+//! transforms that select vector code at run time.
 
 use crate::math::{self, TAU};
 
@@ -80,8 +80,8 @@ fn transform(values: &mut [Complex], sign: f64) {
     }
 }
 
-/// Correlation of a series with another at every shift, from their transforms; where the second is real,
-/// the real and the imaginary part of the first keep apart.
+/// Correlates a series with another at every shift, from their transforms; if the second is real,
+/// the real and the imaginary part of the first remain separate.
 pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     let mut product: Vec<Complex> = series
         .iter()
@@ -92,7 +92,7 @@ pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     product
 }
 
-/// Transform of real values, padded with zeros to `length` (a power of two).
+/// Returns the transform of real values, padded with zeros to `length` (a power of two).
 pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     let mut padded: Vec<Complex> = values.iter().map(|&re| Complex { re, im: 0.0 }).collect();
     padded.resize(length, Complex::default());
@@ -101,7 +101,7 @@ pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
 }
 
 /// Multiplies the transform of a real signal of step `time_step` by a real gain of frequency (Hz),
-/// which keeps every phase.
+/// which preserves the phases.
 pub fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
     let n = spectrum.len();
     for k in 0..=n / 2 {

@@ -1,4 +1,4 @@
-//! One component's motion at any time, sampled, analytic or a sum of both.
+//! Motion of one component at any time: sampled, analytic, or a sum of both.
 
 use crate::error::MotionError;
 use crate::pulse::Pulse;
@@ -19,17 +19,17 @@ pub enum History {
     Sum(Vec<Delayed>),
 }
 
-/// A history that starts later.
+/// A delayed history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delayed {
     /// Start (s), not negative.
     pub delay: f64,
-    /// What starts then.
+    /// The history after the delay.
     pub history: History,
 }
 
 impl History {
-    /// The motion at time `t` (s).
+    /// Returns the motion at time `t` (s).
     pub fn at(&self, t: f64) -> Kinematics {
         match self {
             Self::Sampled(sampled) => sampled.at(t),
@@ -45,7 +45,7 @@ impl History {
         }
     }
 
-    /// Time after which there is no acceleration (s).
+    /// Returns the time after which there is no acceleration (s).
     pub fn duration(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.duration(),
@@ -56,13 +56,13 @@ impl History {
         }
     }
 
-    /// The same history times `factor`.
+    /// Returns the history times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// The history of a model `length_scale` times the size under the same gravity: time times
+    /// Returns the history of a model of `length_scale` times the size under the same gravity: time times
     /// `√length_scale`, displacement times `length_scale`, acceleration unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
@@ -85,7 +85,7 @@ impl History {
         }
     }
 
-    /// The step at which this history is well described by samples (s): its own step, or a 400th of
+    /// Returns the step at which samples describe this history well (s): its own step, or a 400th of
     /// the period of a pulse.
     pub fn natural_step(&self) -> f64 {
         match self {
@@ -99,7 +99,7 @@ impl History {
         }
     }
 
-    /// Accelerations at steps of at most `time_step`, integrated again.
+    /// Samples the accelerations at steps of at most `time_step`, and integrates them.
     ///
     /// A sampled history of the same step is returned as it is.
     /// The step is reduced so that the last sample falls on the end.
@@ -124,8 +124,8 @@ impl History {
         Sampled::with_initial_velocity(even, acceleration, self.at(0.0).velocity)
     }
 
-    /// The time (s) from which on its acceleration stays below a limit (m/s²): that of the sample after the last one
-    /// above it; the end of a closed form, whose shaking breaks off.
+    /// Returns the time (s) from which the acceleration stays below a limit (m/s²): that of the sample after the last
+    /// one above it; for a closed form its end, since its shaking stops abruptly.
     pub fn calm_from(&self, limit: f64) -> f64 {
         match self {
             Self::Sampled(sampled) => {
@@ -141,23 +141,23 @@ impl History {
         }
     }
 
-    /// Largest absolute acceleration (m/s²).
+    /// Returns the largest absolute acceleration (m/s²).
     pub fn pga(&self) -> f64 {
         self.peak(Sampled::pga, |k| k.acceleration)
     }
 
-    /// Largest absolute velocity (m/s); at the samples if the history is sampled.
+    /// Returns the largest absolute velocity (m/s); at the samples if the history is sampled.
     pub fn pgv(&self) -> f64 {
         self.peak(Sampled::pgv, |k| k.velocity)
     }
 
-    /// Largest absolute displacement up to the end of shaking (m); at the samples if sampled.
+    /// Returns the largest absolute displacement up to the end of shaking (m); at the samples if sampled.
     pub fn pgd(&self) -> f64 {
         self.peak(Sampled::pgd, |k| k.displacement)
     }
 
-    /// That of the samples; of others scans at the natural step and refines every local extremum by golden
-    /// section.
+    /// Returns the peak of the samples; other histories are scanned at the natural step, and every local extremum
+    /// is refined by golden section.
     fn peak(&self, sampled: fn(&Sampled) -> f64, quantity: fn(Kinematics) -> f64) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
         if let Self::Sampled(samples) = self {

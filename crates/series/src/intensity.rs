@@ -1,4 +1,4 @@
-//! Intensity measures: one number for how strong a motion is.
+//! Intensity measures of ground motion.
 
 use std::fmt;
 use std::str::FromStr;
@@ -76,13 +76,13 @@ pub enum IntensityMeasure {
     },
 }
 
-/// How a measure grows with the scale factor.
+/// Dependence of a measure on the scale factor.
 enum Growth {
-    /// With the given power of the factor.
+    /// Proportional to the given power of the factor.
     Power(f64),
-    /// Always upward, by no simple law.
+    /// Increasing, by no simple law.
     Monotone,
-    /// Not at all, or in steps.
+    /// Constant, or in steps, with the reason.
     None(&'static str),
 }
 
@@ -94,7 +94,7 @@ impl IntensityMeasure {
     /// Bracketed duration at 0.05 g.
     pub const BRACKETED: Self = Self::BracketedDuration { threshold: 0.05 * STANDARD_GRAVITY };
 
-    /// The SI unit of the number, as text; empty for a pure number.
+    /// Returns the SI unit; empty for a pure number.
     pub fn unit(&self) -> &'static str {
         self.unit_and_growth().0
     }
@@ -117,11 +117,11 @@ impl IntensityMeasure {
         }
     }
 
-    /// The factor on a motion that brings this measure to `target` (SI units); `value` gives the
-    /// measure of the motion times a factor, `name` is the motion's.
+    /// Returns the factor on a motion that brings this measure to `target` (SI units); `value` returns the
+    /// measure of the motion times a factor, `name` is that of the motion.
     ///
     /// # Errors
-    /// When the measure does not grow with the motion, or is zero.
+    /// If the measure does not grow with the motion, or is zero.
     pub fn factor(
         self,
         target: f64,
@@ -183,7 +183,7 @@ impl IntensityMeasure {
         }
     }
 
-    /// The measure of a sampled motion.
+    /// Returns the measure of a sampled motion.
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -214,8 +214,8 @@ impl IntensityMeasure {
         })
     }
 
-    /// The measure of any history; one that is not sampled is sampled at its natural step, except
-    /// for PGA, PGV and PGD, which are searched for.
+    /// Returns the measure of any history; one that is not sampled is sampled at its natural step, except
+    /// for PGA, PGV and PGD, which are found by search.
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -231,7 +231,7 @@ impl IntensityMeasure {
     }
 }
 
-/// The factor at which a growing measure reaches `target`, by bisection; none if no factor does.
+/// Finds the factor at which a growing measure reaches `target`, by bisection; `None` if no factor does.
 fn bracketed(
     target: f64,
     value: impl Fn(f64) -> Result<f64, MotionError>,
@@ -257,12 +257,12 @@ fn bracketed(
     Ok(Some(high))
 }
 
-/// Arias intensity (m/s) of accelerations (m/s²).
+/// Returns the Arias intensity (m/s) of accelerations (m/s²).
 pub fn arias(time_step: f64, acceleration: &[f64]) -> f64 {
     PI / (2.0 * STANDARD_GRAVITY) * math::trapezoid(acceleration.iter().map(|a| a * a), time_step)
 }
 
-/// The normalized build-up of the Arias intensity at the samples (Husid plot), from 0 to 1.
+/// Returns the normalized build-up of the Arias intensity at the samples (Husid plot), from 0 to 1.
 pub fn husid(acceleration: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut build_up = Vec::with_capacity(acceleration.len());
@@ -317,7 +317,7 @@ fn bracketed_duration(time_step: f64, acceleration: &[f64], threshold: f64) -> f
     else {
         return 0.0;
     };
-    // The crossing inside a step, from the sample below the threshold towards the one above.
+    // The crossing inside a step, from the sample below the threshold toward the one above.
     let part = |below: f64, above: f64| (threshold - below.abs()) / (above.abs() - below.abs());
     let start = if first == 0 {
         0.0
@@ -389,7 +389,7 @@ impl fmt::Display for IntensityMeasure {
     }
 }
 
-/// A fraction in percent without the noise of the last binary digit.
+/// Converts a fraction to percent without rounding noise.
 fn percent(fraction: f64) -> f64 {
     (fraction * 1e8).round() / 1e6
 }

@@ -1,25 +1,25 @@
-//! A motion at several steps, and the oscillators that follow it, each at the coarsest step that will do.
+//! A motion at several steps, and oscillators that each run at the coarsest sufficient step.
 //!
-//! For searches, which evaluate spectra by the thousand; what they find is checked by the exact recursion of
-//! [`crate::response`]. Peaks differ from it by 0.6 % at most where a period has 20 steps, and by 0.3 % where
-//! it has 40.
+//! For searches, which evaluate spectra thousands of times; their results are checked by the exact recursion of
+//! [`crate::response`]. Peaks differ from it by at most 0.6 % for 20 steps per period, and by 0.3 % for
+//! 40.
 
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
-/// Least number of steps to a period at a step coarser than the motion's own.
+/// Smallest number of steps per period at a step coarser than that of the motion.
 const LAYER_STEPS: f64 = 40.0;
 
-/// A piecewise-linear acceleration averaged around the samples of ever coarser steps.
+/// A piecewise-linear acceleration, averaged around the samples of successively coarser steps.
 pub struct Layers {
     time_step: f64,
-    /// At 1, 2, 4, ... steps, means weighted by a triangle of two such steps: what oscillators receive whose
+    /// At 1, 2, 4, … steps, means weighted by a triangle of two such steps: the load of oscillators whose
     /// impulse response is linear between the samples.
     layers: Vec<Vec<f64>>,
 }
 
 impl Layers {
-    /// Layers of accelerations (m/s²) of step `time_step` (s) for periods up to `longest` (s).
+    /// Creates the layers of accelerations (m/s²) of step `time_step` (s) for periods up to `longest` (s).
     pub fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
         let mut layers = vec![averaged(acceleration, 1, [4.0 / 6.0, 1.0 / 6.0])];
         let mut step = 2.0 * time_step;
@@ -31,8 +31,8 @@ impl Layers {
         Self { time_step, layers }
     }
 
-    /// Lets oscillators of up to [`TOGETHER`] ascending periods (s) follow the motion; `see` is given the
-    /// number of the motion's sample and the pseudo-accelerations (m/s²) there, sample by sample.
+    /// Runs oscillators of up to [`TOGETHER`] ascending periods (s) through the motion; `see` is called with the
+    /// index of the motion's sample and the pseudo-accelerations (m/s²) there, sample by sample.
     #[inline]
     pub fn follow(
         &self,
@@ -51,7 +51,7 @@ impl Layers {
             let (w, q) = (TAU / period, (1.0 - damping * damping).sqrt());
             let (s, c) = math::sin_cos(w * q * step);
             let decay = math::exp(-damping * w * step);
-            // What linear interpolation takes from a sine at the oscillator's own frequency.
+            // Attenuation of a sine at the oscillator's frequency by linear interpolation.
             let half = 0.5 * w * step;
             let taken = math::powi(math::sin(half) / half, 2);
             [2.0 * decay * c, decay * decay, -step * decay * s * w / q / taken]
@@ -69,7 +69,7 @@ impl Layers {
         }
     }
 
-    /// Peak pseudo-accelerations (m/s²) at ascending periods (s).
+    /// Returns the peak pseudo-accelerations (m/s²) at ascending periods (s).
     pub fn pseudo_accelerations(&self, periods: &[f64], damping: f64) -> Vec<f64> {
         let mut out = Vec::with_capacity(periods.len());
         for some in periods.chunks(TOGETHER) {
@@ -83,7 +83,7 @@ impl Layers {
     }
 }
 
-/// Every `stride`th sample with its two neighbors, by their weights.
+/// Averages every `stride`th sample with its two neighbors, by their weights.
 fn averaged(values: &[f64], stride: usize, [own, beside]: [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let one = |k: usize| {

@@ -1,10 +1,10 @@
 //! Time series of ground motion: samples and their exact integrals, analytic pulses, response spectra,
 //! intensity measures, target spectra, and the transforms behind them.
 //!
-//! Numbers are SI and carry no names: files, stations and components belong to `barrelstack-motion`, which
-//! gives out what users need of this crate under its own name.
+//! Numbers are SI: files, stations and components belong to `barrelstack-motion`, which
+//! re-exports the public parts of this crate.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,

@@ -9,23 +9,23 @@ pub use libm::{
 /// Standard gravity (m/s²), used for every conversion from g.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// Integer power by repeated multiplication, in a fixed order.
+/// Raises to an integer power by repeated multiplication, in a fixed order.
 pub fn powi(x: f64, n: u32) -> f64 {
     (0..n).fold(1.0, |product, _| product * x)
 }
 
-/// `n + 1` values from `first` to `last`, evenly spaced in the logarithm.
+/// Returns `n + 1` values from `first` to `last`, equally spaced in the logarithm.
 pub fn log_space(first: f64, last: f64, n: usize) -> Vec<f64> {
     let step = ln(last / first) / n as f64;
     (0..=n).map(|i| if i == n { last } else { first * exp(step * i as f64) }).collect()
 }
 
-/// Largest absolute value, 0 for an empty slice.
+/// Returns the largest absolute value, 0 for an empty slice.
 pub fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()))
 }
 
-/// Takes the mean off and gives it.
+/// Subtracts the mean and returns it.
 pub fn take_mean(values: &mut [f64]) -> f64 {
     let mean = mean(values);
     for value in values {
@@ -34,12 +34,12 @@ pub fn take_mean(values: &mut [f64]) -> f64 {
     mean
 }
 
-/// Arithmetic mean, 0 for an empty slice.
+/// Returns the arithmetic mean, 0 for an empty slice.
 pub fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
 }
 
-/// Trapezoid integral of equally spaced values.
+/// Integrates equally spaced values by trapezoids.
 pub fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
     let mut sum = 0.0;
     let mut previous: Option<f64> = None;
@@ -52,7 +52,7 @@ pub fn trapezoid(values: impl Iterator<Item = f64>, step: f64) -> f64 {
     sum
 }
 
-/// Piecewise-linear interpolation through points of ascending abscissa, held at both ends.
+/// Interpolates linearly between points of ascending abscissa, constant beyond both ends.
 pub fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let n = x.len().min(y.len());
     if n == 0 {

@@ -1,10 +1,10 @@
 //! Least squares with a ridge.
 
-/// Ridge relative to the largest diagonal entry, which keeps neighbors from fighting.
+/// Ridge relative to the largest diagonal entry, which regularizes correlated unknowns.
 const RIDGE: f64 = 1e-4;
 
-/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many demands on few wavelets, solved by Cholesky
-/// factors.
+/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many conditions on few wavelets, solved by Cholesky
+/// factorization.
 pub struct System {
     size: usize,
     normal: Vec<f64>,
@@ -17,7 +17,7 @@ impl System {
         Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
     }
 
-    /// Adds one demand: its row and what is demanded.
+    /// Adds one condition: its row and its right-hand side.
     pub fn add(&mut self, row: &[f64], value: f64) {
         for j in 0..self.size {
             self.right[j] += row[j] * value;
@@ -28,7 +28,7 @@ impl System {
         }
     }
 
-    /// The unknowns.
+    /// Solves for the unknowns.
     pub fn solve(mut self) -> Vec<f64> {
         let n = self.size;
         let m = &mut self.normal;

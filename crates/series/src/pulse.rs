@@ -7,7 +7,7 @@ use crate::sampled::Kinematics;
 /// A motion given by a formula, from rest at zero displacement at t = 0.
 ///
 /// Every pulse ends at [`Pulse::duration`]; afterwards the acceleration is zero, the velocity is
-/// held and the displacement grows linearly, but after a sine the ground stands still.
+/// constant and the displacement grows linearly; only after a sine the ground stands still.
 /// With `T` the period, `w = 2π/T` and `s` the time from the middle of the pulse:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pulse {
@@ -15,7 +15,7 @@ pub enum Pulse {
     /// the first and the last `ramp_cycles` periods.
     ///
     /// Without a ramp the velocity jumps from 0 to `A w` at t = 0, an impact rather than a shake,
-    /// and back to 0 after the last instant: the ground stays where the sine leaves it.
+    /// and back to 0 at the end: the ground keeps its last displacement.
     Sine {
         /// Displacement amplitude `A` (m).
         amplitude: f64,
@@ -26,7 +26,7 @@ pub enum Pulse {
         /// Length of each ramp in periods; 0 for none.
         ramp_cycles: f64,
     },
-    /// Acceleration `a = A sin(π t / duration)`: a push that leaves with velocity `2 A duration/π`.
+    /// Acceleration `a = A sin(π t / duration)`: a push that ends with velocity `2 A duration/π`.
     HalfSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
@@ -47,7 +47,7 @@ pub enum Pulse {
         /// Period `T` (s).
         period: f64,
     },
-    /// Constant acceleration; leaves with velocity `A duration`.
+    /// Constant acceleration; ends with velocity `A duration`.
     Rectangular {
         /// Acceleration `A` (m/s²).
         acceleration: f64,
@@ -116,7 +116,7 @@ pub enum Pulse {
     },
 }
 
-/// What the amplitude of a pulse measures, which decides how it scales with length.
+/// The kind of amplitude of a pulse, which determines its scaling with length.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,
@@ -125,7 +125,7 @@ enum Amplitude {
 }
 
 impl Pulse {
-    /// Length of the pulse (s).
+    /// Returns the length of the pulse (s).
     pub fn duration(&self) -> f64 {
         match *self {
             Self::Sine { period, cycles, .. } => period * cycles,
@@ -158,12 +158,12 @@ impl Pulse {
         }
     }
 
-    /// The shortest time over which the pulse changes appreciably (s): its period or length.
+    /// Returns the shortest time over which the pulse changes appreciably (s): its period or length.
     pub fn time_scale(&self) -> f64 {
         *self.clone().time_scale_mut()
     }
 
-    /// The motion at time `t` (s).
+    /// Returns the motion at time `t` (s).
     pub fn at(&self, t: f64) -> Kinematics {
         if !(t >= 0.0) {
             return Kinematics::default();
@@ -243,13 +243,13 @@ impl Pulse {
         }
     }
 
-    /// The same pulse times `factor`.
+    /// Returns the pulse times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// The pulse with time times `time` and acceleration times `factor`.
+    /// Returns the pulse with time times `time` and acceleration times `factor`.
     #[must_use]
     pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let mut pulse = *self;
@@ -319,7 +319,7 @@ impl Pulse {
     }
 }
 
-/// `a = A sin(2π t/T)` from rest.
+/// Evaluates `a = A sin(2π t/T)` from rest.
 fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);
@@ -330,7 +330,7 @@ fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
     }
 }
 
-/// `d = A r(t) sin(w t)` with `r` a half cosine up over `ramp` and down over the last `ramp`.
+/// Evaluates `d = A r(t) sin(w t)` with `r` a half cosine up over `ramp` and down over the last `ramp`.
 fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);
@@ -348,14 +348,14 @@ fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) ->
     }
 }
 
-/// `(1 - cos(π x/length))/2` with its first and second time derivative; `x` runs with `direction`.
+/// Evaluates `(1 - cos(π x/length))/2` with its first and second time derivative; `x` changes in `direction`.
 fn half_cosine(x: f64, length: f64, direction: f64) -> (f64, f64, f64) {
     let w = PI / length;
     let (s, c) = math::sin_cos(w * x);
     (0.5 * (1.0 - c), direction * 0.5 * w * s, 0.5 * w * w * c)
 }
 
-/// The root φ in (0, π/4) of
+/// Returns the root φ in (0, π/4) of
 /// `cos((2n+1)π - φ) + ((2n+1)π - 2φ) sin φ - cos φ = 0`, that is `((2n+1)π - 2φ) tan φ = 2`.
 pub fn cycloid_c_phase(cycles: u32) -> f64 {
     let turn = (2.0 * f64::from(cycles) + 1.0) * PI;
@@ -418,13 +418,13 @@ fn gabor(velocity: f64, period: f64, gamma: f64, phase: f64, t: f64) -> Kinemati
     }
 }
 
-/// Real and imaginary part of `exp(-y²) erf(x - i y)` for `y > 0`
+/// Returns real and imaginary part of `exp(-y²) erf(x - i y)` for `y > 0`
 /// (Abramowitz and Stegun 1964, 7.1.29; odd in x for the real part).
 fn damped_erf(x: f64, y: f64) -> (f64, f64) {
     let damping = math::exp(-y * y);
     let gauss = math::exp(-x * x);
     let (s, c) = math::sin_cos(2.0 * x * y);
-    // (1 - cos 2xy)/(2πx) and sin(2xy)/(2πx) keep their digits through the limit x = 0.
+    // (1 - cos 2xy)/(2πx) and sin(2xy)/(2πx) keep their digits in the limit x = 0.
     let (first_real, first_imaginary) = if x == 0.0 {
         (0.0, y / PI)
     } else {

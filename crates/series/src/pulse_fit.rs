@@ -1,4 +1,4 @@
-//! The dominant velocity pulse of a motion: its period, amplitude, place and share of the energy.
+//! The dominant velocity pulse of a motion: its period, amplitude, position and share of the energy.
 
 use crate::error::MotionError;
 use crate::fourier::{Complex, correlate, forward_real};
@@ -7,14 +7,14 @@ use crate::math::{self, TAU};
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 
-/// A velocity pulse of Mavroeidis and Papageorgiou found in a motion.
+/// A velocity pulse of Mavroeidis and Papageorgiou fitted to a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseFit {
     /// The pulse; its displacement starts from zero at [`PulseFit::start`].
     pub pulse: Pulse,
     /// Prevailing period (s).
     pub period: f64,
-    /// Velocity amplitude `A` of the formula (m/s); above the peak where the phase is not zero.
+    /// Velocity amplitude `A` of the formula (m/s); above the peak if the phase is not zero.
     pub amplitude: f64,
     /// Largest velocity of the pulse (m/s).
     pub peak_velocity: f64,
@@ -26,9 +26,9 @@ pub struct PulseFit {
     pub energy_share: f64,
 }
 
-/// Widths `γ` tried; below 1 the pulse has no zero crossing left, above 3 it is a wave train.
+/// Widths `γ` tried; below 1 the pulse has no zero crossing, above 3 it is a wave train.
 const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
-/// Periods tried to a factor of e.
+/// Number of periods tried per factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
 /// Finds the pulse that explains most of the squared velocity, with period from `shortest` to
@@ -51,7 +51,7 @@ pub fn dominant_pulse(
     let least = 8.0 * motion.time_step();
     let expected = format!("at least eight steps, {least} s");
     MotionError::require(shortest >= least, "shortest pulse period (s)", expected, shortest)?;
-    // The correlation needs no more than a sixteenth of the shortest period.
+    // The correlation needs no finer step than a sixteenth of the shortest period.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
     let every = (shortest / 16.0 / motion.time_step()).floor().max(1.0) as usize;
     let dt = motion.time_step() * every as f64;
@@ -101,7 +101,7 @@ struct Trial {
     explained: f64,
 }
 
-/// The two quadratures of the pulse at `s` from its middle.
+/// Returns the two quadratures of the pulse at `s` from its middle.
 fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     if s.abs() > 0.5 * gamma * period {
         return (0.0, 0.0);
@@ -112,7 +112,7 @@ fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     (window * cos, window * sin)
 }
 
-/// The shift that explains most, by correlation with both quadratures at once.
+/// Finds the shift that explains most, by correlation with both quadratures at once.
 fn best_shift(
     spectrum: &[Complex],
     dt: f64,
@@ -152,7 +152,7 @@ struct Projection {
     explained: f64,
 }
 
-/// Least-squares amplitudes of the two quadratures, sampled at the velocity's own times.
+/// Computes the least-squares amplitudes of the two quadratures, sampled at the velocity's own times.
 fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
     let Trial { period, gamma, center, .. } = *trial;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
@@ -179,7 +179,7 @@ fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
     Projection { even, odd, explained: even * ve + odd * vo }
 }
 
-/// Coordinate search on period, width and middle with shrinking steps.
+/// Refines period, width and middle by coordinate search with shrinking steps.
 fn refine(velocity: &[f64], dt: f64, start: Trial, shortest: f64, longest: f64) -> Trial {
     let mut best = start;
     best.explained = project(velocity, dt, &best).explained;

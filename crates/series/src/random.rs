@@ -1,7 +1,7 @@
 //! A seeded generator whose numbers are the same on every machine and in every version.
 //!
-//! xoshiro256++ (Blackman and Vigna 2021) seeded by splitmix64, from the crate `rand_xoshiro`, whose
-//! values are part of its promise; normal deviates by Box and Muller with the crate's own logarithm,
+//! xoshiro256++ (Blackman and Vigna 2021) seeded by splitmix64, from the crate `rand_xoshiro`, which
+//! guarantees its values; normal deviates by Box and Muller with this crate's logarithm,
 //! sine and cosine.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -23,22 +23,22 @@ pub struct Random {
 }
 
 impl Random {
-    /// A generator that starts from `seed`.
+    /// Creates a generator from `seed`.
     pub fn new(seed: u64) -> Self {
         Self { bits: Xoshiro256PlusPlus::seed_from_u64(seed), spare: None }
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.bits.next_u64()
     }
 
-    /// A number from 0 up to but not including 1, with 53 random bits.
+    /// Returns a number from 0 to below 1, with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
     }
 
-    /// A normal deviate of mean 0 and variance 1.
+    /// Returns a normal deviate of mean 0 and variance 1.
     pub fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

@@ -3,7 +3,7 @@
 use crate::error::MotionError;
 use crate::math::{self, TAU};
 
-/// Peak response of one damped oscillator, at the samples and while the record lasts.
+/// Peak response of one damped oscillator, at the samples and within the record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResponsePeaks {
     /// Largest relative displacement `Sd` (m).
@@ -14,11 +14,11 @@ pub struct ResponsePeaks {
     pub acceleration: f64,
     /// Pseudo-velocity `PSV = w Sd` (m/s).
     pub pseudo_velocity: f64,
-    /// Pseudo-acceleration `PSA = w² Sd` (m/s²); the ground's peak at period 0.
+    /// Pseudo-acceleration `PSA = w² Sd` (m/s²); the PGA at period 0.
     pub pseudo_acceleration: f64,
 }
 
-/// Coefficients that carry `(u, u̇)` over one step exactly when the load is linear inside it
+/// Coefficients that advance `(u, u̇)` by one step, exactly for a load that is linear within it
 /// (Nigam and Jennings 1969, BSSA 59:909-922).
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
@@ -69,7 +69,7 @@ impl Step {
         }
     }
 
-    /// Relative displacement and velocity one step later; `load` is minus the ground acceleration.
+    /// Returns relative displacement and velocity one step later; `load` is minus the ground acceleration.
     #[inline]
     pub fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
         let d = &self.displacement;
@@ -80,7 +80,7 @@ impl Step {
         )
     }
 
-    /// Absolute acceleration of the mass.
+    /// Returns the absolute acceleration of the mass.
     #[inline]
     fn total(&self, u: f64, v: f64) -> f64 {
         -2.0 * self.damping * self.frequency * v - self.frequency * self.frequency * u
@@ -90,7 +90,7 @@ impl Step {
 /// Checks a period (s, zero allowed) and a damping ratio (0 up to but not including 1).
 ///
 /// # Errors
-/// When one of them is out of its range.
+/// If one of them is out of its range.
 pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     let real = period >= 0.0 && period.is_finite();
     MotionError::require(real, "oscillator period (s)", "0 or above", period)?;
@@ -98,10 +98,10 @@ pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     MotionError::require(swings, "damping ratio", "0 to below 1 (5 % is 0.05)", damping)
 }
 
-/// Peak response of one oscillator to accelerations (m/s²) of step `time_step` (s).
+/// Computes the peak response of one oscillator to accelerations (m/s²) of step `time_step` (s).
 ///
 /// Peaks are taken at the samples, and the free vibration after the record does not count.
-/// Below ten steps a period peaks fall between samples.
+/// Below ten steps per period, peaks fall between samples.
 ///
 /// # Errors
 /// If the period is negative or the damping ratio is not in `0..1`.
@@ -140,12 +140,12 @@ pub fn response(
     })
 }
 
-/// Oscillators that advance side by side: what one waits for, the others fill.
+/// Number of oscillators that advance in parallel, which hides the latency of each recursion.
 pub const TOGETHER: usize = 8;
 
-/// Oscillators of several periods in step with one another; each has the bits of one alone.
+/// Oscillators of several periods in lockstep; each is bit-identical to one alone.
 pub struct Bank {
-    /// Coefficient by coefficient, as [`Step`] has them for one oscillator.
+    /// Coefficient by coefficient, as in [`Step`] for one oscillator.
     displacement: [[f64; TOGETHER]; 4],
     velocity: [[f64; TOGETHER]; 4],
     /// Relative displacements.
@@ -155,7 +155,7 @@ pub struct Bank {
 }
 
 impl Bank {
-    /// Oscillators at rest; where there are fewer than [`TOGETHER`], the last stands for the rest.
+    /// Creates oscillators at rest; for fewer than [`TOGETHER`], the last is repeated.
     pub fn new(steps: &[Step]) -> Self {
         let lane = |k: usize| &steps[k.min(steps.len() - 1)];
         let of = |take: fn(&Step) -> &[f64; 4]| {
@@ -169,7 +169,7 @@ impl Bank {
         }
     }
 
-    /// As [`Step::advance`].
+    /// Advances all oscillators as [`Step::advance`].
     #[inline]
     pub fn advance(&mut self, load: f64, next: f64) {
         let (d, r) = (&self.displacement, &self.velocity);
@@ -181,13 +181,13 @@ impl Bank {
     }
 }
 
-/// The larger in size; plain, so that it can be done for several side by side.
+/// Returns the larger magnitude; branch-free, so that it vectorizes.
 #[inline]
 pub fn larger(peak: f64, value: f64) -> f64 {
     if value.abs() > peak { value.abs() } else { peak }
 }
 
-/// Pseudo-accelerations (m/s²) at periods above zero, bit for bit those of [`response`].
+/// Returns the pseudo-accelerations (m/s²) at periods above zero, bit-identical to those of [`response`].
 pub fn pseudo_accelerations(
     time_step: f64,
     acceleration: &[f64],
@@ -240,13 +240,13 @@ impl ResponseSpectrum {
         Ok(Self { damping, periods: periods.to_vec(), peaks })
     }
 
-    /// Pseudo-accelerations (m/s²).
+    /// Returns the pseudo-accelerations (m/s²).
     pub fn pseudo_acceleration(&self) -> Vec<f64> {
         self.peaks.iter().map(|peaks| peaks.pseudo_acceleration).collect()
     }
 }
 
-/// Periods from 0.01 s to 10 s, `per_decade` to a decade, evenly spaced in the logarithm.
+/// Returns periods from 0.01 s to 10 s, `per_decade` per decade, equally spaced in the logarithm.
 pub fn standard_periods(per_decade: usize) -> Vec<f64> {
     math::log_space(0.01, 10.0, 3 * per_decade.max(1))
 }

@@ -1,4 +1,4 @@
-//! A sampled acceleration with the velocity and displacement that belong to it at any time.
+//! A sampled acceleration with the corresponding velocity and displacement at any time.
 
 use crate::error::MotionError;
 use crate::math;
@@ -15,7 +15,7 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// The state `elapsed` seconds later without acceleration: velocity held, displacement linear.
+    /// Returns the state `elapsed` seconds later without acceleration: constant velocity, linear displacement.
     #[must_use]
     pub fn coast(self, elapsed: f64) -> Self {
         Self {
@@ -33,10 +33,10 @@ impl Kinematics {
 /// d[k+1] = d[k] + dt v[k] + dt² (a[k]/3 + a[k+1]/6)
 /// ```
 ///
-/// Inside a step velocity is quadratic and displacement cubic, so the three are derivatives of one
+/// Within a step velocity is quadratic and displacement cubic, so the three are derivatives of one
 /// another at every time, not only at the samples.
 /// Before t = 0 all three are zero; after the last sample the acceleration is zero, the velocity is
-/// held and the displacement grows linearly.
+/// constant and the displacement grows linearly.
 ///
 /// ```
 /// use barrelstack_series::sampled::Sampled;
@@ -63,9 +63,9 @@ impl Sampled {
         Self::with_initial_velocity(time_step, acceleration, 0.0)
     }
 
-    /// As [`Sampled::new`] with a first velocity (m/s) other than zero.
+    /// Integrates like [`Sampled::new`], from an initial velocity (m/s).
     ///
-    /// Corrected records state one; it makes the velocity jump at t = 0.
+    /// Corrected records state one; the velocity then jumps at t = 0.
     ///
     /// # Errors
     /// As [`Sampled::new`], or if the velocity is not finite.
@@ -89,15 +89,15 @@ impl Sampled {
         Ok(Self { time_step, acceleration, velocity, displacement })
     }
 
-    /// Time between samples (s).
+    /// Returns the time between samples (s).
     pub fn time_step(&self) -> f64 {
         self.time_step
     }
 
-    /// Refuses another component with another step.
+    /// Checks that another component has the same step.
     ///
     /// # Errors
-    /// When they differ.
+    /// If they differ.
     pub fn require_step(&self, other: &Self) -> Result<(), MotionError> {
         let (one, two) = (self.time_step, other.time_step);
         if (two / one - 1.0).abs() > 1e-9 {
@@ -107,29 +107,29 @@ impl Sampled {
         Ok(())
     }
 
-    /// Time of the last sample (s); the first is at 0.
+    /// Returns the time of the last sample (s); the first is at 0.
     pub fn duration(&self) -> f64 {
         self.time_step * (self.acceleration.len() - 1) as f64
     }
 
-    /// Accelerations at the samples (m/s²).
+    /// Returns the accelerations at the samples (m/s²).
     pub fn acceleration(&self) -> &[f64] {
         &self.acceleration
     }
 
-    /// Velocities at the samples (m/s).
+    /// Returns the velocities at the samples (m/s).
     pub fn velocity(&self) -> &[f64] {
         &self.velocity
     }
 
-    /// Displacements at the samples (m).
+    /// Returns the displacements at the samples (m).
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
 
-    /// The motion at time `t` (s), in constant time.
+    /// Returns the motion at time `t` (s), in constant time.
     pub fn at(&self, t: f64) -> Kinematics {
-        // A NaN time fails both comparisons and ends as the state at rest.
+        // A NaN time fails the comparison and returns the state at rest.
         if !(t >= 0.0) {
             return Kinematics::default();
         }
@@ -161,37 +161,37 @@ impl Sampled {
         }
     }
 
-    /// Largest absolute acceleration (m/s²); exact, because acceleration is linear between samples.
+    /// Returns the largest absolute acceleration (m/s²); exact, because acceleration is linear between samples.
     pub fn pga(&self) -> f64 {
         math::peak(&self.acceleration)
     }
 
-    /// Largest absolute velocity at the samples (m/s), the number that records are published with.
+    /// Returns the largest absolute velocity at the samples (m/s), the value published with records.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity)
     }
 
-    /// Largest absolute displacement at the samples (m).
+    /// Returns the largest absolute displacement at the samples (m).
     pub fn pgd(&self) -> f64 {
         math::peak(&self.displacement)
     }
 
-    /// Largest absolute displacement by the trapezoid of the sampled velocities (m), as published
-    /// values and the displacement files of PEER are made.
+    /// Returns the largest absolute displacement by trapezoidal integration of the sampled velocities (m), like
+    /// published values and the displacement files of PEER.
     ///
-    /// The displacement that belongs to an acceleration linear between samples, [`Sampled::pgd`], is
-    /// another number: 0.4 % more for a record of 0.02 s with a period of 0.3 s at its peak.
+    /// The exact displacement of an acceleration linear between samples, [`Sampled::pgd`], is
+    /// different: 0.4 % larger for a record of 0.02 s with a period of 0.3 s at its peak.
     pub fn pgd_by_trapezoid(&self) -> f64 {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }
 
-    /// The same motion times `factor`.
+    /// Returns the motion times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// The same motion with time times `time` and acceleration times `factor`.
+    /// Returns the motion with time times `time` and acceleration times `factor`.
     #[must_use]
     pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let times = |values: &[f64], f: f64| values.iter().map(|v| v * f).collect();
@@ -204,7 +204,7 @@ impl Sampled {
     }
 }
 
-/// The integral of sampled values up to every sample, by trapezoids from 0.
+/// Integrates sampled values up to every sample, by trapezoids from 0.
 pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let after = values.windows(2).map(|pair| {
@@ -214,7 +214,7 @@ pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(after).collect()
 }
 
-/// Velocity and displacement at the samples of a piecewise-linear acceleration.
+/// Integrates a piecewise-linear acceleration to velocity and displacement at the samples.
 pub fn integrate(
     time_step: f64,
     acceleration: &[f64],

@@ -1,10 +1,10 @@
-//! Analytic motions in sentences with units.
+//! Descriptions of analytic motions in sentences with units.
 
 use std::fmt::{Display, Formatter, Result};
 
 use crate::pulse::Pulse;
 
-/// A number printed with six significant digits at most; the scenario or the study has all of them.
+/// A number printed with at most six significant digits; the scenario or the study has all of them.
 pub struct Short(pub f64);
 
 impl Display for Short {

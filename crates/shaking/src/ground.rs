@@ -1,4 +1,4 @@
-//! The ground motion of a scenario: read or made, scaled, and ready to drive.
+//! The ground motion of a scenario: read or generated, scaled, and ready to drive a model.
 
 mod failure;
 mod formula;
@@ -22,7 +22,7 @@ pub use failure::GroundError;
 pub use planes::{other_component, turn_to_other};
 pub use record::{RECORD_LIMIT, from_disk, held};
 
-/// What moves the ground of a run.
+/// The ground motion of a run.
 ///
 /// ```
 /// use barrelstack_motion::{GroundMotion, Pulse};
@@ -35,14 +35,14 @@ pub use record::{RECORD_LIMIT, from_disk, held};
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Ground {
-    /// The motion; none for ground at rest.
+    /// The motion; `None` for ground at rest.
     pub motion: Option<GroundMotion>,
-    /// What the readers noticed, one sentence each.
+    /// Warnings of the readers, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Ground {
-    /// Scales and stretches its motion as a scenario says.
+    /// Scales and stretches the motion according to a scenario.
     fn rescale(&mut self, spec: &MotionSpec, similitude: f64) -> Result<(), MotionError> {
         if let Some(motion) = self.motion.take() {
             self.motion = Some(scaled(motion, spec, similitude)?);
@@ -50,17 +50,17 @@ impl Ground {
         Ok(())
     }
 
-    /// From when on (s) none of its accelerations exceeds a limit (m/s²).
+    /// Returns the time (s) from which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.motion.as_ref().map_or(0.0, |motion| motion.calm_from(limit))
     }
 
-    /// When (s) its motion ends; none where there is none.
+    /// Returns the time (s) at which the motion ends; `None` without a motion.
     pub fn motion_end(&self) -> Option<f64> {
         self.motion.as_ref().map(|motion| motion.duration)
     }
 
-    /// When (s) it is still: the end of its motion, or from the start.
+    /// Returns the time (s) from which the ground is still: the end of the motion, or zero.
     pub fn end(&self) -> f64 {
         self.motion_end().unwrap_or(0.0)
     }
@@ -81,10 +81,10 @@ impl Drive<Planar> for Ground {
     }
 }
 
-/// Reads or makes a motion, scaled as it says, for a stack of a length scale.
+/// Reads or generates a motion according to its specification, scaled for a stack of a length scale.
 ///
 /// # Errors
-/// When a record cannot be read, lacks the component asked for, or cannot be scaled.
+/// If a record cannot be read, lacks the requested component, or cannot be scaled.
 pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
@@ -96,10 +96,10 @@ pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError
     Ok(ground)
 }
 
-/// The motion of a record at hand, as a table asks for it, for a stack of a length scale.
+/// Returns the motion of a loaded record according to its specification, for a stack of a length scale.
 ///
 /// # Errors
-/// When the record lacks a component asked for, or cannot be scaled.
+/// If the record lacks a requested component, or cannot be scaled.
 pub fn of_record(
     record: &Record,
     spec: &RecordMotion,
@@ -112,10 +112,10 @@ pub fn of_record(
     Ok(ground)
 }
 
-/// A motion scaled and stretched as a scenario says, for a stack of a length scale.
+/// Scales and stretches a motion according to a scenario, for a stack of a length scale.
 ///
 /// # Errors
-/// When it cannot be scaled so.
+/// If it cannot be scaled so.
 pub fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
@@ -128,7 +128,7 @@ pub fn scaled(
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
         Scale::Measure { measure, value, of } => match (horizontals(of), &spec.source) {
             (None, _) => motion = motion.scale_to(measure, value)?,
-            // Scaled where it was read, with both horizontals at hand.
+            // Scaled when it was read, with both horizontals available.
             (Some(_), MotionSource::Record(_)) => {}
             (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
                 return Err(MotionError::NotScalable {
@@ -146,10 +146,10 @@ pub fn scaled(
     Ok(motion)
 }
 
-/// The event of the record that shakes a scenario, as people say it; none where no file says.
+/// Returns the name of the event of a scenario's record; `None` if no file states it.
 ///
 /// # Errors
-/// When the record cannot be read.
+/// If the record cannot be read.
 pub fn event(spec: &MotionSpec) -> Result<Option<String>, GroundError> {
     match &spec.source {
         MotionSource::Record(record) => Ok(read(record)?.event_name()),
@@ -157,7 +157,7 @@ pub fn event(spec: &MotionSpec) -> Result<Option<String>, GroundError> {
     }
 }
 
-/// The components that a scenario asks for of a record, processed as it says.
+/// Returns the requested components of a record, processed according to the scenario.
 fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Ground, GroundError> {
     require_strong_motion(record)?;
     let mut warnings: Vec<String> =
@@ -170,7 +170,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             let vertical = component_of(record, Some(name))?;
             match record.component(&vertical) {
                 Ok(_) => record.ground_motion(&horizontal, Some(&vertical), &processing)?,
-                // A file of one's own, in place of the scenario's.
+                // A user's own file, in place of the scenario's record.
                 Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
                     let file = &record.file;
                     let told = format!("{file} has no vertical component: it shakes sideways only");
@@ -201,8 +201,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     Ok(Ground { motion: Some(motion), warnings })
 }
 
-/// A horizontal component and the first channel of the file that was named for the vertical, beginning
-/// together where both tell when they begin; and what should be known about taking them together.
+/// Aligns a horizontal component with the first channel of the separate vertical file, if both state their
+/// start; returns both, with a warning if they should not be combined.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -221,7 +221,7 @@ fn on_one_clock(
     Ok((first, second, told.into_iter().collect()))
 }
 
-/// Refuses what no ground can have done: a step of 5 ms written as 5 s, a file of three values.
+/// Rejects implausible ground motion: a step of 5 ms written as 5 s, a file of three values.
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
         None => Ok(()),
@@ -232,7 +232,7 @@ fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     }
 }
 
-/// The measure of both horizontals that a scaling is about; none if it is about one component.
+/// Returns the combination of both horizontals that a scaling refers to; `None` for one component.
 fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
     match of {
         MeasuredOn::Component => None,
@@ -242,7 +242,7 @@ fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
     }
 }
 
-/// The motion scaled by what both horizontals of its record measure, processed alike.
+/// Scales the motion by a measure of both horizontals of its record, processed alike.
 fn scaled_by_both(
     motion: GroundMotion,
     record: &Record,
@@ -261,10 +261,10 @@ fn scaled_by_both(
     Ok(scaled)
 }
 
-/// The processing that a scenario asks for; by default that of the record's stage, its pads cut off again.
+/// Returns the requested processing; by default that of the record's stage, with its pads removed.
 ///
-/// Pads hold half a minute of stillness before the first arrival, which a stack at rest does not need;
-/// what cutting them leaves at the ends is closed.
+/// Pads are half a minute of stillness before the first arrival, which a stack at rest does not need;
+/// the ends are tapered after cutting them.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {
         (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),
@@ -272,7 +272,7 @@ fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     }
 }
 
-/// A component as people name it: the channel's own name first, then an azimuth in degrees.
+/// Parses the name of a component: first as the channel's own name, then as an azimuth in degrees.
 fn component_of(record: &Record, name: Option<&str>) -> Result<Component, MotionError> {
     let Some(name) = name else {
         let horizontal = record.channels.iter().any(|channel| !channel.is_vertical());

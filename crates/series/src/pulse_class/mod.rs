@@ -1,4 +1,4 @@
-//! Whether a motion is pulse-like, by the two published classifications.
+//! Classification of pulse-like motions by two published methods.
 
 mod wavelet;
 
@@ -12,43 +12,43 @@ use wavelet::{Pair, Wavelet};
 const PERIODS: (f64, f64) = (0.25, 15.0);
 /// Scales between them, evenly spaced.
 const SCALES: usize = 50;
-/// Wavelets that make up a pulse.
+/// Number of wavelets in a pulse.
 const WAVELETS: usize = 10;
-/// How far (in scales) the middles of a pulse's wavelets lie from that of the first, and how much of
-/// the record a pulse takes from those looked for after it.
+/// Largest distance (in scales) of a pulse's wavelets from the first, and the part of
+/// the record around a pulse that later searches exclude.
 const REACH: f64 = 0.4;
-/// Prospective pulses of a pair of components.
+/// Number of candidate pulses of a pair of components.
 const PULSES: usize = 5;
-/// Step (s) to which velocities are thinned: a twenty-fifth of the shortest period.
+/// Step (s) to which velocities are decimated: a twenty-fifth of the shortest period.
 const STEP: f64 = 0.01;
 
-/// A velocity pulse extracted as a sum of wavelets, and how it was judged.
+/// A velocity pulse extracted as a sum of wavelets, with its classification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassifiedPulse {
-    /// Whether the motion is pulse-like.
+    /// `true` if the motion is pulse-like.
     pub pulse_like: bool,
     /// The pulse indicator: above 0.85 of 1 (Baker 2007), or above 0 (Shahi and Baker 2014).
     pub indicator: f64,
     /// Period of the pulse (s).
     pub period: f64,
-    /// Whether the pulse comes too late to be that of the rupture's direction.
+    /// `true` if the pulse comes too late to be a directivity pulse.
     pub late: bool,
-    /// Direction of the component that holds it (degrees from the first towards the second, 0 to
+    /// Direction of the component that contains it (degrees from the first toward the second, 0 to
     /// below 180); 0 for a single component.
     pub angle: f64,
     /// Peak velocity of that component (m/s).
     pub pgv: f64,
 }
 
-/// One component, judged by Baker (2007, BSSA 97:1486-1501):
+/// Classifies one component by Baker (2007, BSSA 97:1486-1501):
 ///
 /// ```text
 /// PI = 1/(1 + exp(−23.3 + 14.6 PGV ratio + 20.5 energy ratio))
 /// ```
 ///
 /// The ratios are those of the motion without its pulse to the motion.
-/// It is pulse-like if PI exceeds 0.85, PGV reaches 30 cm/s, and the pulse has a tenth of its energy
-/// before the motion has a fifth.
+/// It is pulse-like if PI exceeds 0.85, PGV reaches 30 cm/s, and the pulse reaches a tenth of its energy
+/// before the motion reaches a fifth.
 ///
 /// # Errors
 /// If the motion is shorter than the shortest pulse or does not move.
@@ -58,16 +58,16 @@ pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionErr
     single(&thin.first, thin.time_step, &map)
 }
 
-/// Two horizontals one by one as [`classify_component`], and together, judged in the directions of their five strongest wavelets by Shahi and Baker
-/// (2014, BSSA 104:2456-2466), with PGV in cm/s:
+/// Classifies two horizontals one by one as [`classify_component`], and together in the directions of their five
+/// strongest wavelets by Shahi and Baker (2014, BSSA 104:2456-2466), with PGV in cm/s:
 ///
 /// ```text
 /// PC = 0.63 PGV ratio + 0.777 energy ratio
 /// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
 /// ```
 ///
-/// A pulse counts if PI is above 0 and it has a twentieth of its energy before the motion has 17 %.
-/// Given is the first that counts, else the first.
+/// A pulse counts if PI is positive and it reaches a twentieth of its energy before the motion reaches 17 %.
+/// Returns the first pulse that counts, else the first.
 ///
 /// # Errors
 /// If the steps differ, or as [`classify_component`].
@@ -134,9 +134,9 @@ fn double(thin: &Thinned, mut map: Map) -> Result<ClassifiedPulse, MotionError> 
     best.ok_or_else(still)
 }
 
-/// A direction (degrees) from 0 to below 180.
+/// Reduces a direction (degrees) to 0 to below 180.
 fn half_turn(degrees: f64) -> f64 {
-    // The remainder of a little less than nothing is rounded to the whole.
+    // The remainder of a tiny negative number is rounded to 180.
     let angle = degrees.rem_euclid(180.0);
     if angle < 180.0 { angle } else { 0.0 }
 }
@@ -145,7 +145,7 @@ fn still() -> MotionError {
     MotionError::parameter("motion", "a velocity other than zero", "zero")
 }
 
-/// Velocities (m/s) thinned to what pulses need.
+/// Velocities (m/s) decimated as far as pulses allow.
 struct Thinned {
     time_step: f64,
     first: Vec<f64>,
@@ -179,10 +179,10 @@ impl Thinned {
     }
 }
 
-/// A place in time and scale with the coefficients of both components there.
+/// A position in time and scale with the coefficients of both components.
 #[derive(Clone, Copy)]
 struct Found {
-    /// Scale before and after, between which the pulse's own is looked for (s).
+    /// Neighboring scales, between which the scale of the pulse is refined (s).
     scales: (f64, f64),
     scale: f64,
     at: usize,
@@ -190,7 +190,7 @@ struct Found {
 }
 
 impl Found {
-    /// Square of the coefficients.
+    /// Returns the squared norm of the coefficients.
     fn strength(self) -> f64 {
         let (x, y) = self.coefficients;
         x * x + y * y
@@ -204,7 +204,7 @@ struct Map {
 }
 
 impl Map {
-    /// The maps of the first component, of the second, and of both together.
+    /// Computes the maps of the first component, of the second, and of both together.
     fn of(thin: &Thinned) -> [Self; 3] {
         let (least, largest) = (wavelet::scale(PERIODS.0), wavelet::scale(PERIODS.1));
         let step = (largest - least) / SCALES as f64;
@@ -234,7 +234,7 @@ impl Map {
         found.reduce(|best, next| if next.strength() > best.strength() { next } else { best })
     }
 
-    /// Leaves out the times around a pulse.
+    /// Excludes the times around a pulse.
     fn take_out(&mut self, found: Found) {
         let reach = reach(found.scale, self.time_step);
         let last = (found.at + reach).min(self.best.len() - 1);
@@ -242,21 +242,21 @@ impl Map {
     }
 }
 
-/// How many samples a pulse of a scale (s) reaches to each side.
+/// Returns the number of samples that a pulse of a scale (s) extends to each side.
 fn reach(scale: f64, time_step: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let samples = (REACH * scale / time_step).ceil() as usize;
     samples
 }
 
-/// A pulse taken out of a velocity.
+/// A pulse extracted from a velocity.
 struct Extracted {
     scale: f64,
     velocity: Vec<f64>,
 }
 
 impl Extracted {
-    /// Ten wavelets of one scale, each the strongest of what the others left near the first.
+    /// Extracts ten wavelets of one scale, each the strongest in the remainder near the first.
     fn of(velocity: &[f64], time_step: f64, found: Found) -> Self {
         let (low, high) = found.scales;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -276,7 +276,7 @@ impl Extracted {
         let overlap = wavelet.overlap();
         let reach = reach(scale, time_step);
         let mut pulse = vec![0.0; velocity.len()];
-        // Later wavelets are looked for around the one before, as the authors' program does.
+        // Later wavelets are searched around the one before, as in the authors' program.
         let mut at = found.at;
         for _ in 0..WAVELETS {
             let near = at.saturating_sub(reach)..=(at + reach).min(velocity.len() - 1);
@@ -292,7 +292,7 @@ impl Extracted {
         Self { scale, velocity: pulse }
     }
 
-    /// Peak velocity and energy of what is left, over those of the whole.
+    /// Returns peak velocity and energy of the remainder, over those of the whole.
     fn ratios(&self, whole: &[f64]) -> (f64, f64) {
         let left: Vec<f64> = whole.iter().zip(&self.velocity).map(|(a, b)| a - b).collect();
         let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
@@ -300,7 +300,7 @@ impl Extracted {
     }
 }
 
-/// Sample at which the sum of squares passes a share of the whole.
+/// Returns the sample at which the sum of squares exceeds a fraction of the total.
 fn time_of(values: &[f64], share: f64) -> usize {
     let total: f64 = values.iter().map(|v| v * v).sum();
     let mut sum = 0.0;
@@ -313,7 +313,7 @@ fn time_of(values: &[f64], share: f64) -> usize {
         .unwrap_or(0)
 }
 
-/// Share of the sum of squares before a sample.
+/// Returns the fraction of the sum of squares before a sample.
 fn energy_until(values: &[f64], sample: usize) -> f64 {
     let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
     energy(&values[..sample]) / energy(values)

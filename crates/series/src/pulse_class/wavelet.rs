@@ -1,4 +1,4 @@
-//! The Daubechies wavelet of fourth order, and how much of it a velocity holds at any time.
+//! The Daubechies wavelet of fourth order, and its coefficients in a velocity.
 
 use std::sync::OnceLock;
 
@@ -6,30 +6,30 @@ use crate::fourier::{Complex, correlate, forward, inverse};
 
 /// Length of the wavelet's support in its own units.
 const SUPPORT: usize = 7;
-/// Halvings of its table.
+/// Number of halvings in its table.
 const LEVELS: u32 = 8;
 /// Frequency of the wavelet in its own units: a pulse of scale `s` has the period `s/0.7143`.
 const CENTER_FREQUENCY: f64 = 5.0 / 7.0;
 
-/// The wavelet that the classifications use, of one scale.
+/// The wavelet of the classifications, at one scale.
 #[derive(Clone, Debug)]
 pub(super) struct Wavelet {
-    /// Values of unit norm at the samples, the middle one in the middle.
+    /// Values of unit norm at the samples, centered.
     values: Vec<f64>,
 }
 
-/// Period (s) of the pulse that a scale (s) stands for.
+/// Returns the period (s) of the pulse of a scale (s).
 pub(super) fn period(scale: f64) -> f64 {
     scale / CENTER_FREQUENCY
 }
 
-/// Scale (s) of a pulse of a period (s).
+/// Returns the scale (s) of a pulse of a period (s).
 pub(super) fn scale(period: f64) -> f64 {
     period * CENTER_FREQUENCY
 }
 
 impl Wavelet {
-    /// The wavelet of a scale (s), sampled at a step (s).
+    /// Creates the wavelet of a scale (s), sampled at a step (s).
     pub(super) fn new(scale: f64, time_step: f64) -> Self {
         let per_sample = time_step / scale;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -49,7 +49,7 @@ impl Wavelet {
         self.values.len() / 2
     }
 
-    /// How much of the wavelet a series holds with its middle at one sample.
+    /// Returns the coefficient of the wavelet centered on a sample of a series.
     pub(super) fn coefficient(&self, series: &[f64], at: usize) -> f64 {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -57,7 +57,7 @@ impl Wavelet {
         self.values[first..].iter().zip(&series[start..]).map(|(w, v)| w * v).sum()
     }
 
-    /// The transform of the wavelet with its middle at sample 0, of a length.
+    /// Returns the transform, of a given length, of the wavelet centered on sample 0.
     fn spectrum(&self, length: usize) -> Vec<Complex> {
         let half = self.half();
         let mut placed = vec![Complex::default(); length];
@@ -68,7 +68,7 @@ impl Wavelet {
         placed
     }
 
-    /// Adds the wavelet with its middle at a sample.
+    /// Adds the wavelet centered on a sample.
     pub(super) fn add_to(&self, series: &mut [f64], at: usize, factor: f64) {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -78,8 +78,8 @@ impl Wavelet {
         }
     }
 
-    /// What remains of a coefficient's neighbors when its wavelet is taken away: the wavelet's product
-    /// with itself, `0`, `1`, … samples apart.
+    /// Returns the autocorrelation of the wavelet at `0`, `1`, … samples, by which removing a wavelet changes
+    /// neighboring coefficients.
     pub(super) fn overlap(&self) -> Vec<f64> {
         let n = self.values.len();
         let length = (2 * n).next_power_of_two();
@@ -92,14 +92,14 @@ impl Wavelet {
     }
 }
 
-/// Two velocities ready for many wavelets.
+/// Two velocities prepared for many wavelets.
 pub(super) struct Pair {
     spectrum: Vec<Complex>,
     samples: usize,
 }
 
 impl Pair {
-    /// The pair's transform, with room for wavelets up to the largest.
+    /// Computes the pair's transform, padded for wavelets up to the largest.
     pub(super) fn new(first: &[f64], second: &[f64], largest: &Wavelet) -> Self {
         let length = (first.len() + largest.half()).next_power_of_two();
         let mut spectrum: Vec<Complex> =
@@ -109,16 +109,16 @@ impl Pair {
         Self { spectrum, samples: first.len() }
     }
 
-    /// How much of the wavelet both series hold, its middle at each sample.
+    /// Returns the coefficients of both series for the wavelet centered on each sample.
     pub(super) fn coefficients(&self, wavelet: &Wavelet) -> Vec<(f64, f64)> {
         let kernel = wavelet.spectrum(self.spectrum.len());
-        // A real wavelet keeps the two series apart: one in the real part, one in the other.
+        // A real wavelet keeps the two series separate: in the real and in the imaginary part.
         let both = correlate(&self.spectrum, &kernel);
         both[..self.samples].iter().map(|value| (value.re, value.im)).collect()
     }
 }
 
-/// The mother wavelet at `x` from 0 to 7, linear between the points of its table.
+/// Returns the mother wavelet at `x` from 0 to 7, linear between the points of its table.
 fn mother(x: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(table);
@@ -144,13 +144,13 @@ const FILTER: [f64; 8] = [
     -0.010_597_401_785_069_032,
 ];
 
-/// The wavelet at multiples of a power of one half, from the two-scale relation.
+/// Computes the wavelet at multiples of a power of one half, from the two-scale relation.
 fn table() -> Vec<f64> {
     let root = std::f64::consts::SQRT_2;
-    // At whole numbers the scaling function is the eigenvector of the relation for eigenvalue 1.
+    // At integers the scaling function is the eigenvector of the relation for eigenvalue 1.
     let mut scaling = vec![1.0 / SUPPORT as f64; SUPPORT + 1];
     let relation = |values: &[f64], filter: &dyn Fn(usize) -> f64, at: usize, per: usize| -> f64 {
-        // `at` counts the points of the finer result, `per` points to a unit of `values`.
+        // `at` counts the points of the finer result, `per` points per unit of `values`.
         (0..8).filter_map(|k| Some(filter(k) * values.get(at.checked_sub(k * per)?)?)).sum::<f64>()
             * root
     };
@@ -160,7 +160,7 @@ fn table() -> Vec<f64> {
         let sum: f64 = next.iter().sum();
         scaling = next.iter().map(|v| v / sum).collect();
     }
-    // Each halving gives the values between from those that are known.
+    // Each halving gives the values between the known ones.
     for level in 0..LEVELS {
         let per = 1_usize << level;
         scaling = (0..=SUPPORT * 2 * per).map(|j| relation(&scaling, &low, j, per)).collect();

@@ -3,7 +3,7 @@
 use super::{ChileanZone, NCh2745Soil, SiteClass};
 use crate::math::{self, PI, STANDARD_GRAVITY};
 
-/// The straight line through two points in the logarithm of both.
+/// Interpolates linearly between two points in the logarithms of both coordinates.
 pub(super) fn log_log(x: f64, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> f64 {
     y0 * math::powf(y1 / y0, math::ln(x / x0) / math::ln(x1 / x0))
 }
@@ -19,7 +19,7 @@ pub(super) fn asce7(sds: f64, sd1: f64, long_period: f64, damping: f64, t: f64) 
     let corner = sd1 / sds;
     let start = 0.2 * corner;
     if t < start {
-        // Damping does not change the ground's own peak.
+        // Damping does not change the peak ground acceleration.
         sds * (0.4 + (1.0 / damped - 0.4) * t / start)
     } else if t <= corner {
         sds / damped
@@ -163,7 +163,7 @@ fn nzs_near_fault(distance: f64, t: f64) -> f64 {
     }
 }
 
-/// ICC-ES AC156 with ASCE 7-16, section 6.5.1 (g): straight lines in the logarithm of both.
+/// ICC-ES AC156 with ASCE 7-16, section 6.5.1 (g): linear in the logarithms of both coordinates.
 pub(super) fn ac156(sds: f64, height_ratio: f64, t: f64) -> f64 {
     let amplification = 1.0 + 2.0 * height_ratio;
     let flexible = (sds * amplification).min(1.6 * sds);

@@ -46,12 +46,12 @@ pub enum NCh2745Soil {
 
 /// A target spectrum (m/s²).
 ///
-/// Codes that define a correction for damping have a damping; the others are for 5 %.
+/// Codes with a correction for damping have a damping parameter; the others are for 5 %.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TargetSpectrum {
     /// ASCE/SEI 7-16, section 11.4.6: design spectrum of two ordinates and the long-period
-    /// transition; other dampings by the factor `B_M` of table 17.5-1 on all but the ground's own
-    /// peak.
+    /// transition; other dampings by the factor `B_M` of table 17.5-1, except on the peak ground
+    /// acceleration.
     Asce7 {
         /// `S_DS` (g).
         sds: f64,
@@ -70,7 +70,7 @@ pub enum TargetSpectrum {
         site: SiteClass,
         /// Type 2 (small magnitudes) instead of type 1.
         small_magnitude: bool,
-        /// Damping ratio, 0.05 for `η = 1`; above 0.28 the code's floor of `η` rules.
+        /// Damping ratio, 0.05 for `η = 1`; above 0.28 the code's lower bound of `η` applies.
         damping: f64,
     },
     /// `NCh433` with decree 61 of 2011: elastic spectrum `S A0 α(T)`, importance 1, 5 % damping.
@@ -81,13 +81,13 @@ pub enum TargetSpectrum {
         site: SiteClass,
     },
     /// `NCh2745.Of2003` (base isolation): base spectrum of acceleration, velocity and displacement
-    /// branches, over the damping factor `B_D`.
+    /// branches, divided by the damping factor `B_D`.
     NCh2745 {
         /// Seismic zone, factor 3/4, 1 or 5/4.
         zone: ChileanZone,
         /// Soil.
         soil: NCh2745Soil,
-        /// Damping ratio; `B_D` is held below 0.02 and above 0.5.
+        /// Damping ratio; `B_D` is constant below 0.02 and above 0.5.
         damping: f64,
     },
     /// NZS 1170.5:2004, section 3.1: `C(T) = Ch(T) Z R N(T, D)` with `Z R` up to 0.7, `Ch` for
@@ -111,17 +111,17 @@ pub enum TargetSpectrum {
         /// Height of attachment over roof height, 0 to 1.
         height_ratio: f64,
     },
-    /// Points in ascending order of period, linear between in the logarithm of both; held outside.
+    /// Points in ascending order of period, linear between in the logarithms of both; constant outside.
     Table {
         /// Period (s) and acceleration (m/s²).
         points: Vec<(f64, f64)>,
-        /// Damping ratio of the oscillators that the accelerations are for.
+        /// Damping ratio of the accelerations.
         damping: f64,
     },
 }
 
 impl std::fmt::Display for TargetSpectrum {
-    /// The code, its parameters and their units.
+    /// Writes the code, its parameters and their units.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Asce7 { sds, sd1, long_period, .. } => {
@@ -157,7 +157,7 @@ impl TargetSpectrum {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// Names the first that is out of range.
+    /// Names the first one out of range.
     pub fn check(&self) -> Result<(), MotionError> {
         let positive = MotionError::require_positive;
         match self {
@@ -195,7 +195,7 @@ impl TargetSpectrum {
         }
     }
 
-    /// The damping ratio the spectrum is for.
+    /// Returns the damping ratio of the spectrum.
     pub fn damping(&self) -> f64 {
         match self {
             Self::Asce7 { damping, .. }
@@ -206,7 +206,7 @@ impl TargetSpectrum {
         }
     }
 
-    /// Pseudo-acceleration (m/s²) at a period (s).
+    /// Returns the pseudo-acceleration (m/s²) at a period (s).
     pub fn acceleration(&self, period: f64) -> f64 {
         let t = period.max(0.0);
         match self {

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use super::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 use crate::error::MotionError;
 
-/// Parameters of a code, each asked for once.
+/// Parameters of a code, each of which is read once.
 struct Parameters<'a> {
     code: &'a str,
     pairs: Vec<(&'a str, &'a str)>,
@@ -40,7 +40,7 @@ impl<'a> Parameters<'a> {
         MotionError::parameter(format!("{}: {key}", self.code), expected, format!("\"{found}\""))
     }
 
-    /// What is missing or too much, with what the code has.
+    /// Creates an error about a missing or surplus parameter, with those of the code.
     fn unlike(&self, key: &str, found: &str) -> MotionError {
         let all = KNOWN.iter().find(|(code, _)| *code == self.code).map_or("", |(_, all)| all);
         MotionError::parameter(format!("{}: {key}", self.code), all, found)
@@ -63,7 +63,7 @@ impl<'a> Parameters<'a> {
         value.ok_or_else(|| self.unlike(&format!("{key} is missing"), "nothing"))
     }
 
-    /// A member of a closed set.
+    /// Reads a member of a closed set.
     fn choice<T: Copy>(
         &mut self,
         key: &str,
@@ -86,12 +86,12 @@ impl<'a> Parameters<'a> {
         self.choice("zone", "1, 2 or 3", &[("1", One), ("2", Two), ("3", Three)])
     }
 
-    /// The damping ratio, 5 % if none is given.
+    /// Reads the damping ratio, 5 % if none is given.
     fn damping(&mut self) -> Result<f64, MotionError> {
         Ok(self.number("damping")?.unwrap_or(0.05))
     }
 
-    /// Nothing may be left over.
+    /// Checks that no parameter is left over.
     fn end(self) -> Result<(), MotionError> {
         match self.pairs.first() {
             None => Ok(()),
@@ -105,7 +105,7 @@ impl<'a> Parameters<'a> {
     }
 }
 
-/// A code with its parameters between commas, accelerations in g, such as `asce7:sds=1.0,sd1=0.6`,
+/// Parses a code with its parameters between commas, accelerations in g, such as `asce7:sds=1.0,sd1=0.6`,
 /// `ec8:ag=0.3,site=B`, `nch433:zone=2,soil=D`, `nch2745:zone=2,soil=II`, `nzs1170:z=0.3,site=C` or `ac156:sds=1`.
 ///
 /// ```

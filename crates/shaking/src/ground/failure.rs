@@ -1,10 +1,10 @@
-//! Why a scenario has no ground motion.
+//! Errors of the ground motion of a scenario.
 
 use std::path::PathBuf;
 
 use barrelstack_motion::{MotionError, ReadError};
 
-/// Why a scenario has no ground motion.
+/// The reason why a scenario has no ground motion.
 #[derive(Debug, thiserror::Error)]
 pub enum GroundError {
     /// The file of a record cannot be opened.
@@ -12,29 +12,29 @@ pub enum GroundError {
     Unreadable {
         /// The path that was tried.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         reason: String,
-        /// How to come by it, as a sentence that goes on from the reason; may be empty.
+        /// Advice on obtaining the file, as a clause that continues the reason; may be empty.
         obtain: String,
     },
-    /// The file is no record.
+    /// The file is not a record.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The record has no such component, or cannot be scaled so.
+    /// The record lacks the component, or cannot be scaled so.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The record has no vertical component of the name that the scenario asks for.
+    /// The record has no vertical component of the requested name.
     #[error("{error}; for a record without one say `motion.vertical = false`")]
     Vertical {
-        /// What is missing, and what there is.
+        /// The missing and the available components.
         error: MotionError,
     },
-    /// There is no bundled record of that name.
+    /// There is no bundled record of this name.
     #[error("there is no bundled record \"{name}\"; the bundled ones are: {known}")]
     UnknownBundled {
-        /// The name asked for.
+        /// The requested name.
         name: String,
-        /// The names there are.
+        /// The available names.
         known: String,
     },
     /// A unit that no file uses.
@@ -43,7 +43,7 @@ pub enum GroundError {
          1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"
     )]
     Unit {
-        /// The unit asked for (m/s²).
+        /// The requested unit (m/s²).
         unit: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! Motions that are formulas: sines and pulses of a stated peak.
+//! Analytic motions: sines and pulses of a given peak.
 
 use barrelstack_motion::{
     GroundMotion, History, IntensityMeasure, MotionError, Pulse as MotionPulse,
@@ -22,9 +22,9 @@ pub(super) fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
     Ok(directed(GroundMotion::from_pulse("sine", pulse)?, sine.direction, 0.0))
 }
 
-/// A pulse whose peak is what the scenario says.
+/// Creates a pulse with the peak that the scenario states.
 ///
-/// Each form has an amplitude of its own, of acceleration or of velocity; where the scenario states
+/// Each form is defined by an amplitude of acceleration or of velocity; if the scenario states
 /// the other one, the pulse is scaled to it.
 pub(super) fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
@@ -71,7 +71,7 @@ pub(super) fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     Ok(directed(sized, pulse.direction, pulse.start))
 }
 
-/// A horizontal motion, turned to its direction and delayed.
+/// Applies direction and delay to a horizontal motion.
 fn directed(motion: GroundMotion, direction: Direction, start: f64) -> GroundMotion {
     let history = if start == 0.0 {
         motion.horizontal

@@ -4,11 +4,11 @@ use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// A motion by the other horizontal component of its record, times the same factor; none where there is no
-/// other.
+/// Returns the motion of the other horizontal component of the record, with the same factor; `None` if there is
+/// none.
 ///
 /// # Errors
-/// When the record cannot be read, or cannot be scaled as the motion says.
+/// If the record cannot be read, or cannot be scaled accordingly.
 pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundError> {
     let MotionSource::Record(record) = &spec.source else { return Ok(None) };
     let Some(component) = other(record)? else { return Ok(None) };
@@ -27,11 +27,11 @@ pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundEr
     Ok(Some(MotionSpec { source, scale, ..spec.clone() }))
 }
 
-/// How far (degrees, 0 to 360) the other horizontal component of a motion is turned with the clock from its own, seen
-/// from above; none where no file says.
+/// Returns the clockwise angle (degrees, 0 to 360, viewed from above) from the component of a motion to the other
+/// horizontal one; `None` if no file states it.
 ///
 /// # Errors
-/// When the record cannot be read, or lacks the component asked for.
+/// If the record cannot be read, or lacks the requested component.
 pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
     let MotionSource::Record(record) = &spec.source else { return Ok(None) };
     let Some(other) = other(record)? else { return Ok(None) };
@@ -40,12 +40,12 @@ pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
         Ok(channels.component(&component_of(&channels, name)?)?.direction.azimuth)
     };
     let (own, other) = (azimuth(record.component.as_deref())?, azimuth(Some(&other))?);
-    // Azimuths grow with the clock.
+    // Azimuths increase clockwise.
     Ok(own.zip(other).map(|(own, other)| (other - own).rem_euclid(360.0)))
 }
 
-/// The name of the other horizontal: of another channel that is not vertical, or of the direction across
-/// where a motion is turned out of two channels.
+/// Returns the name of the other horizontal: of another channel that is not vertical, or of the perpendicular
+/// direction if the motion is rotated from two channels.
 fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
     let record = read(spec)?;
     let own = record.component(&component_of(&record, spec.component.as_deref())?)?;

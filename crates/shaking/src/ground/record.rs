@@ -1,4 +1,4 @@
-//! The record of a scenario: fetched, at hand, read.
+//! The record of a scenario: fetched, loaded, read.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -10,24 +10,24 @@ use barrelstack_motion::{
 use super::GroundError;
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical};
 
-/// Largest record (bytes) that is read; the longest strong-motion files have a tenth of it.
+/// Size (bytes) of the largest record that is read; the longest strong-motion files have a tenth of it.
 pub const RECORD_LIMIT: usize = 256 << 20;
 
-/// A record as a file that is at hand.
+/// Returns a record as a loaded file.
 ///
 /// # Errors
-/// When the record has no channel, or channels of different steps.
+/// If the record has no channel, or channels of different steps.
 pub fn held(record: &Record) -> Result<FileRef, MotionError> {
     let mut file = FileRef::new(&record.file, PathBuf::new());
     file.hold(barrelstack_motion::write::npz(record)?);
     Ok(file)
 }
 
-/// The bytes of a file of the system, as [`MotionSpec::with_files`] takes them; `records.zip/a.AT2` is
-/// the file `a.AT2` inside of an archive.
+/// Reads a file from disk, for [`MotionSpec::with_files`]; `records.zip/a.AT2` is
+/// the file `a.AT2` inside an archive.
 ///
 /// # Errors
-/// In words, when it cannot be read, or has more than any record.
+/// A message if it cannot be read, or is larger than any record.
 pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
     let Some((archive, inner)) = Archive::path_inside(path).filter(|_| !path.exists()) else {
         return system::read(path, RECORD_LIMIT);
@@ -39,13 +39,13 @@ pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 impl MotionSpec {
-    /// The motion with its files at hand, which `fetch` has given by their paths; what is at hand already is not
-    /// fetched.
+    /// Returns the motion with its files loaded by `fetch`, which is called with their paths; loaded files are not
+    /// fetched again.
     ///
-    /// What `fetch` says where it has nothing is what the system would say, such as "there is no such file".
+    /// The error of `fetch` is a message like that of the system, such as "there is no such file".
     ///
     /// # Errors
-    /// When `fetch` has none.
+    /// If `fetch` fails.
     pub fn with_files(
         mut self,
         fetch: &mut dyn FnMut(&Path) -> Result<Vec<u8>, String>,
@@ -63,7 +63,7 @@ impl MotionSpec {
     }
 }
 
-/// Has a file at hand from now on.
+/// Loads a file, unless it is loaded.
 fn hold(
     file: &mut FileRef,
     obtain: &str,
@@ -80,15 +80,15 @@ fn unreadable(path: PathBuf, reason: String, obtain: &str) -> GroundError {
     GroundError::Unreadable { path, reason, obtain: obtain.to_owned() }
 }
 
-/// How to come by the file of a record, as a sentence that goes on from why it cannot be read.
+/// Returns advice on obtaining the file of a record, as a clause that continues the reason of an error.
 fn how_to_obtain(record: &RecordMotion) -> String {
     record.obtain.as_ref().map_or_else(|| "; correct the path".to_owned(), |how| format!("; {how}"))
 }
 
-/// The same for the file of a vertical component.
+/// Advice for the file of a vertical component.
 pub(super) const OTHER_VERTICAL: &str = "; correct motion.vertical";
 
-/// What the readers of files should know that a scenario states.
+/// Returns the reader options that a scenario specifies.
 pub(super) fn read_options(spec: &RecordMotion) -> Result<ReadOptions, GroundError> {
     Ok(ReadOptions {
         unit: spec.unit.map(unit).transpose()?,
@@ -121,7 +121,7 @@ pub(super) fn read_file(
         if file.is_held() { file.read(RECORD_LIMIT) } else { from_disk(&path).map(Into::into) };
     let bytes = bytes.map_err(|reason| unreadable(path.clone(), reason, obtain))?;
     let record = barrelstack_motion::read(&bytes, &path.display().to_string(), options);
-    // A page says which file it was, and not where it lies.
+    // Reports show the name of the file, not its path.
     let named = |record: Record| {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         Record { file: name.unwrap_or_else(|| record.file.clone()), ..record }
@@ -132,7 +132,7 @@ pub(super) fn read_file(
             "other text, which is not shown, since the file lies outside the folder of the scenario"
                 .clone_into(&mut failure.found);
         }
-        // The reader knows what is missing, the scenario where to state it.
+        // The reader reports what is missing; the scenario is the place to state it.
         if let Refusal::Missing(given) = failure.refusal {
             failure.remedy += match given {
                 Given::UnitOrSensitivity => {
@@ -147,8 +147,8 @@ pub(super) fn read_file(
     })
 }
 
-/// Whether a file lies outside the folder of the file that names it: a scenario of somebody else must not have a message
-/// quote what it was not given.
+/// Returns whether a file lies outside the folder of the file that names it: a scenario of someone else must not
+/// make a message quote such a file.
 fn is_outside(file: &FileRef) -> bool {
     if file.is_of_caller() {
         return false;
@@ -156,7 +156,7 @@ fn is_outside(file: &FileRef) -> bool {
     let folder = if file.folder.as_os_str().is_empty() { Path::new(".") } else { &file.folder };
     match (file.resolve().canonicalize(), folder.canonicalize()) {
         (Ok(path), Ok(folder)) => !path.starts_with(folder),
-        // What was given as a value lies nowhere.
+        // A file given by value has no path.
         _ => Path::new(&file.path)
             .components()
             .any(|part| !matches!(part, Component::Normal(_) | Component::CurDir)),

@@ -21,14 +21,14 @@ impl Named for PulseKind {
         ("mavroeidis-papageorgiou", Self::MavroeidisPapageorgiou { gamma: 0.0, phase: 0.0 }),
     ];
 
-    /// The name of the form, whatever its parameters, which are fields of their own.
+    /// Returns the name of the form, independent of its parameters, which are separate fields.
     fn name(self) -> &'static str {
         let same = |form: &Self| discriminant(form) == discriminant(&self);
         Self::NAMES.iter().find(|(_, form)| same(form)).map_or("", |(name, _)| name)
     }
 }
 
-/// Names of the records shipped with the program.
+/// Returns the names of the bundled records.
 pub fn record_names() -> Vec<&'static str> {
     barrelstack_motion::BUNDLED.to_vec()
 }

@@ -1,4 +1,4 @@
-//! The ground motion: where it comes from and how it is scaled.
+//! Specification of the ground motion: its source and its scaling.
 
 use barrelstack_input::{FileRef, named};
 use barrelstack_motion::IntensityMeasure;
@@ -9,12 +9,12 @@ mod text;
 pub use fields::{MOTION, PULSE, SCALE, SINE, record_names};
 pub use text::{read, rest, write};
 
-/// Where the samples of a record are.
+/// The source of the samples of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordSource {
     /// A file.
     File(FileRef),
-    /// A record shipped with the program, by name.
+    /// A bundled record, by name.
     Bundled(String),
 }
 
@@ -25,7 +25,7 @@ pub enum Vertical {
     None,
     /// Another component of the same record, by name or azimuth.
     Component(String),
-    /// A file of its own.
+    /// A separate file.
     File(FileRef),
 }
 
@@ -42,7 +42,7 @@ named! {
 /// A recorded motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordMotion {
-    /// Where the samples are.
+    /// Source of the samples.
     pub source: RecordSource,
     /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the
     /// first.
@@ -53,16 +53,16 @@ pub struct RecordMotion {
     pub time_step: Option<f64>,
     /// Acceleration of one file unit for files that state none (m/s²).
     pub unit: Option<f64>,
-    /// Counts to one m/s² for files that hold counts (s²/m).
+    /// Counts per m/s² for files that contain counts (s²/m).
     pub sensitivity: Option<f64>,
     /// Processing.
     pub processing: Processing,
-    /// Where to get the file, in words, for those who do not have it.
+    /// Advice on obtaining the file, for users who do not have it.
     pub obtain: Option<String>,
 }
 
 impl RecordMotion {
-    /// The first horizontal component of a record, with the default processing.
+    /// Specifies the first horizontal component of a record, with default processing.
     pub fn of(source: RecordSource) -> Self {
         Self {
             source,
@@ -77,7 +77,7 @@ impl RecordMotion {
     }
 }
 
-/// What an amplitude measures.
+/// An amplitude and its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
     /// Peak displacement (m).
@@ -166,7 +166,7 @@ pub struct Pulse {
     pub direction: Direction,
 }
 
-/// Where a motion comes from.
+/// The source of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MotionSource {
     /// The ground stays at rest.
@@ -194,7 +194,7 @@ pub enum Scale {
         measure: IntensityMeasure,
         /// Its value to reach (SI).
         value: f64,
-        /// What it is measured on.
+        /// The component or components measured.
         of: MeasuredOn,
     },
 }
@@ -216,7 +216,7 @@ named! {
 /// The ground motion of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionSpec {
-    /// Where the motion comes from.
+    /// Source of the motion.
     pub source: MotionSource,
     /// Scaling, of all components by the same factor.
     pub scale: Scale,
@@ -226,7 +226,7 @@ pub struct MotionSpec {
 }
 
 impl MotionSpec {
-    /// The files that it is read from: the record, then a vertical component of its own.
+    /// Returns the files of the motion: the record, then a separate vertical component.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut FileRef> {
         let record = match &mut self.source {
             MotionSource::Record(record) => Some(record),
@@ -245,7 +245,7 @@ impl MotionSpec {
         })
     }
 
-    /// The same motion, whose files are called by what is in them, where that is at hand.
+    /// Returns the motion with its loaded files identified by content.
     #[must_use]
     pub fn by_content(&self) -> Self {
         let mut same = self.clone();

@@ -12,7 +12,7 @@ use super::{
     Scale, Sine, Vertical,
 };
 
-/// A ground at rest.
+/// Returns a ground at rest.
 pub fn rest() -> MotionSpec {
     MotionSpec { source: MotionSource::None, scale: Scale::Factor(1.0), similitude: 1.0 }
 }
@@ -20,7 +20,7 @@ pub fn rest() -> MotionSpec {
 /// Reads the ground motion.
 ///
 /// # Errors
-/// The first field that cannot be, at its place.
+/// The first invalid field, at its place.
 pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     let record = reader.file("record")?.map(RecordSource::File);
     let bundled = reader.optional_catalog_name("bundled")?.map(RecordSource::Bundled);
@@ -60,7 +60,7 @@ pub fn read(reader: Reader<'_>) -> Result<MotionSpec, InputError> {
     Ok(MotionSpec { source, scale, similitude })
 }
 
-/// Reads all fields of a record but its source, which the caller puts in.
+/// Reads all fields of a record except its source, which the caller sets.
 fn read_record_details(reader: &Reader<'_>) -> Result<RecordMotion, InputError> {
     let component = reader.optional_text("component")?;
     let vertical_component = reader.optional_text("vertical")?.map(Vertical::Component);
@@ -99,7 +99,7 @@ fn read_scale(reader: Reader<'_>) -> Result<Scale, InputError> {
     Ok(scale)
 }
 
-/// `measure`, `value` and `of`.
+/// Reads `measure`, `value` and `of`.
 fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
     let value = reader.optional_quantity_with_dimension("value")?;
     let of = reader.choice("of")?;
@@ -132,7 +132,7 @@ fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
     Ok(Some(Scale::Measure { measure, value: quantity.value, of }))
 }
 
-/// The dimension of a measure that can be scaled to.
+/// Returns the dimension of a measure that can be a scaling target.
 fn dimension_of(measure: IntensityMeasure) -> Option<Dimension> {
     match measure.unit() {
         "m/s2" => Some(Dimension::ACCELERATION),
