@@ -1,4 +1,5 @@
-//! A force element between two bodies: a weight falls into a strap, and is caught where its energy says.
+//! A force element between two bodies: a weight falls into a strap, and is caught at the elongation given by its
+//! energy.
 #![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
 
 use std::ops::ControlFlow;

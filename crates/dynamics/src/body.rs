@@ -1,4 +1,4 @@
-//! A rigid body: mass, surfaces that can be touched, and nodes that touch.
+//! Rigid bodies: mass, target surfaces, and contact nodes.
 
 use crate::real::Real;
 use crate::shape::{HalfPlane, Shape, Surface, Whole};
@@ -7,23 +7,23 @@ use crate::space::{Planar, Pose, Rotation2, Space, Twist, Vec2};
 /// Index of a body in its model.
 pub type BodyId = usize;
 
-/// Who decides how a body moves.
+/// Source of the motion of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Motion {
-    /// Forces do.
+    /// The body moves under forces.
     Free,
-    /// The ground does: the body keeps its place and direction relative to it.
+    /// The body moves with the ground: it keeps its position and orientation relative to it.
     Prescribed,
 }
 
-/// A surface at its place on a body.
+/// A surface positioned on a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed<S: Space> {
     /// The surface, in its own frame.
     pub surface: S::Surface,
     /// Origin of the surface's frame (m), in the body frame, from the center of mass.
     pub offset: S::Vector,
-    /// How the surface's frame is turned in the body frame.
+    /// Rotation of the surface's frame in the body frame.
     pub rotation: S::Rotation,
 }
 
@@ -32,83 +32,82 @@ pub struct Placed<S: Space> {
 pub struct Node<S: Space> {
     /// Position (m) in the body frame, from the center of mass.
     pub position: S::Vector,
-    /// Length of boundary (m) that the node stands for.
+    /// Tributary length of boundary (m).
     pub tributary_length: S::Real,
-    /// Unit normal of the boundary there out of the body, in the body frame, at a corner the mean of both
-    /// sides; none where every direction counts.
+    /// Outward unit normal of the boundary there, in the body frame, at a corner the mean of both sides; `None` if
+    /// contact is possible from every direction.
     pub outward: Option<S::Vector>,
 }
 
 /// A round piece of a convex boundary: a corner, sharp or rounded, or an arc.
 ///
-/// It touches a target with the one point of it that lies deepest, in the direction of the nearest
-/// point of the target, so contact is exact wherever it happens. A convex boundary is a chain of
-/// straight sides and round pieces, and two of them touch where a round piece of one meets a side or
-/// a round piece of the other: every contact belongs to one round piece, and is counted once.
+/// It touches a target with its deepest point, in the direction of the nearest point of the target, so contact is
+/// exact wherever it occurs. A convex boundary is a chain of straight sides and round pieces, and two of them touch
+/// where a round piece of one meets a side or a round piece of the other: every contact belongs to one round piece,
+/// and is counted once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round<S: Space> {
     /// Center (m) in the body frame, from the center of mass.
     pub center: S::Vector,
     /// Radius (m); zero for a sharp corner.
     pub radius: S::Real,
-    /// Unit vectors in the body frame that bound its outward normals: those `d` with `d · limit ≤ 0`
-    /// for both. Zero vectors bound nothing.
+    /// Unit vectors in the body frame that bound its outward normals `d`: `d · limit ≤ 0` for both. A zero vector is
+    /// no bound.
     pub limits: [S::Vector; 2],
-    /// The same limits where the boundary goes on with an arc, none where it goes on straight.
-    /// Past a straight end a corner still bears against a side: two corners of a block carry it on a
-    /// floor, whichever is deeper.
+    /// The same limits where an arc adjoins; `None` where the boundary continues straight. Past a straight end a
+    /// corner still bears against a side: two corners of a block carry it on a floor, whichever is deeper.
     pub arc_limits: [Option<S::Vector>; 2],
-    /// Whether normals on the very limit of an arc belong to this piece and not to its neighbor.
+    /// `true` if normals exactly at the limit of an arc belong to this piece and not to its neighbor.
     pub takes_limit: bool,
-    /// The straight sides beyond the ends of an arc, as unit normal and distance (m) from the center of
-    /// mass: a corner that is nearer to them is theirs to bear.
+    /// The straight sides adjoining the ends of an arc, as unit normal and distance (m) from the center of mass: a
+    /// corner that is nearer to such a side is in contact with the side.
     pub sides: [Option<(S::Vector, S::Real)>; 2],
-    /// Penetration (m) from which on the nearest point lies behind the body and no contact is meant:
-    /// an arc's center may lie far beyond the body whose boundary it is.
+    /// Penetration (m) beyond which the nearest point lies behind the body and there is no contact: the center of an
+    /// arc may lie far beyond its body.
     pub greatest_depth: S::Real,
-    /// Length of boundary (m) that a contact of it stands for.
+    /// Tributary length of boundary (m) of its contact.
     pub tributary_length: S::Real,
 }
 
 /// A flat piece of boundary that carries nodes, as a plane in the body frame.
 ///
-/// Where nodes and the exact test would both see a contact, the plane decides: against a round body
-/// whose center lies before it the nodes count, against one behind it the exact test. Against a body that is
-/// not round, whose edges may reach beside the face, the direction of a contact decides as well.
+/// Where nodes and the exact test would both find a contact, the plane decides: against a round body whose center
+/// lies before it the nodes count, against one behind it the exact test. Against a body that is not round, whose
+/// edges may reach beside the face, the direction of a contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
-    /// A point of it (m), from the center of mass.
+    /// A point of the face (m), from the center of mass.
     pub point: S::Vector,
     /// Unit normal out of the body.
     pub outward: S::Vector,
-    /// Cosine of the angle from `outward` up to which a contact's normal out of the body is one of the face;
-    /// below -1 where every direction is.
+    /// Cosine of the angle from `outward` up to which a contact's outward normal belongs to the face; below -1 if
+    /// every direction does.
     pub widest: S::Real,
 }
 
-/// What of a boundary touches others.
+/// Contact points of a boundary.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nodes<S: Space> {
     /// Nodes fixed to the body, as in the paper.
     Fixed(Vec<Node<S>>),
     /// The round pieces of a convex boundary.
     Rounds(Vec<Round<S>>),
-    /// The one node of a round boundary that lies deepest in the target: it travels along the
-    /// boundary as the body rolls, so rolling is smooth.
+    /// The deepest node of a round boundary in the target: it moves along the boundary as the body rolls, so rolling
+    /// is smooth.
     Rolling {
         /// Center of the circle (m) in the body frame, from the center of mass.
         center: S::Vector,
         /// Radius of the circle (m).
         radius: S::Real,
-        /// Length of boundary (m) that the node stands for.
+        /// Tributary length of boundary (m) of the node.
         tributary_length: S::Real,
     },
-    /// A convex body of space, of which the deepest points touch.
+    /// A convex body of space, which touches with its deepest points.
     Whole(S::Whole),
 }
 
 impl<S: Space> Nodes<S> {
-    /// How many nodes there are.
+    /// Returns the number of nodes.
     pub fn count(&self) -> usize {
         match self {
             Self::Fixed(nodes) => nodes.len(),
@@ -122,9 +121,9 @@ impl<S: Space> Nodes<S> {
 /// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body<S: Space> {
-    /// The name in messages and results; unique in a model.
+    /// Name in messages and results; unique in a model.
     pub name: String,
-    /// Who decides how it moves.
+    /// Source of its motion.
     pub motion: Motion,
     /// Mass (kg).
     pub mass: S::Real,
@@ -132,23 +131,23 @@ pub struct Body<S: Space> {
     pub inertia: S::Inertia,
     /// Viscous damping matrix (eq. 2.8) acting on the velocity in the inertial frame.
     pub damping: Option<S::Damping>,
-    /// Where it starts.
+    /// Initial pose.
     pub pose: Pose<S>,
-    /// How it starts to move.
+    /// Initial twist.
     pub twist: Twist<S>,
-    /// What can be touched.
+    /// Target surfaces.
     pub surfaces: Vec<Placed<S>>,
-    /// What touches.
+    /// Contact nodes.
     pub nodes: Vec<Nodes<S>>,
     /// Flat pieces that carry nodes where others are tested exactly.
     pub faces: Vec<Face<S>>,
 }
 
-/// What of a body every step asks for, without its boundaries: thousands of them stay in the cache.
+/// Body data that every step reads, without boundaries: those of thousands of bodies stay in the cache.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inert<S: Space> {
     pub(crate) motion: Motion,
-    /// Whether viscous damping acts on it.
+    /// `true` if the body has viscous damping.
     pub(crate) damped: bool,
     pub(crate) mass: S::Real,
     pub(crate) inertia: S::Inertia,
@@ -162,7 +161,7 @@ impl<S: Space> Inert<S> {
 }
 
 impl Body<Planar> {
-    /// The ground: a half-plane below its origin, turned by an angle (rad).
+    /// Returns the ground: a half-plane below its origin, turned by an angle (rad).
     pub fn ground(orientation: f64) -> Self {
         let floor = Placed {
             surface: Shape::HalfPlane(HalfPlane),
@@ -170,14 +169,14 @@ impl Body<Planar> {
             rotation: Rotation2::identity(),
         };
         let pose = Pose { position: Vec2::default(), orientation };
-        // No force moves it, so its mass is of no account.
+        // No force moves it, so its mass is irrelevant.
         let body = Self::free("ground", 1.0, 1.0, pose);
         Self { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
     }
 }
 
 impl<S: Space> Body<S> {
-    /// A free body at rest, without boundaries, of a mass (kg) and a moment of inertia (kg·m²).
+    /// Returns a free body at rest, without boundaries, of a mass (kg) and a moment of inertia (kg·m²).
     pub fn free(
         name: impl Into<String>,
         mass: S::Real,
@@ -198,18 +197,18 @@ impl<S: Space> Body<S> {
         }
     }
 
-    /// Whether it carries a surface that has no end.
+    /// Returns `true` if it has an unbounded surface.
     pub fn is_unbounded(&self) -> bool {
         self.surfaces.iter().any(|placed| placed.surface.reach().is_infinite())
     }
 
-    /// Radius (m) of a ball about the center of mass that holds all nodes and bounded surfaces.
+    /// Returns the radius (m) of a ball about the center of mass that encloses all nodes and bounded surfaces.
     pub fn reach(&self) -> f64 {
         use crate::space::Linear;
         let length = |v: S::Vector| v.dot(v).sqrt().largest_lane();
         let nodes = self.nodes.iter().flat_map(|nodes| match nodes {
             Nodes::Fixed(nodes) => nodes.iter().map(|n| length(n.position)).collect::<Vec<_>>(),
-            // An arc may reach far past the body; the body's surface is what bounds it.
+            // An arc may reach far beyond the body; its surface is the bound.
             Nodes::Rounds(_) => Vec::new(),
             Nodes::Rolling { center, radius, .. } => {
                 vec![length(*center) + radius.largest_lane()]

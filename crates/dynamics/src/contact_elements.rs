@@ -1,10 +1,9 @@
-//! The contact elements that could touch soon, and what they remember.
+//! List of the contact elements that could touch soon, with their memory.
 //!
-//! A contact element is a node of a contactor and the surface of a target.
-//! Of all elements of a model only those within reach are kept in the list; the list is built
-//! anew before any body can have moved so far that a missing element touches.
-//! It is therefore a matter of speed alone: the forces are those of testing every node in every step,
-//! in the same order, with the same bits.
+//! A contact element is a node of a contactor and the surface of a target. Of all elements of a model only those
+//! within reach are in the list; it is rebuilt before any body can have moved so far that a missing element touches.
+//! The list affects speed alone: forces are those of testing every node in every step, in the same order, with the
+//! same bits.
 
 use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::Stick;
@@ -15,18 +14,17 @@ use crate::real::{Mask, Real};
 use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Planar, Pose, Space, Twist};
 
-/// Substepping are foreseen to the same bits whatever else is in the list: so no element outside it may be
-/// nearer than bodies come in the time that is foreseen, and this (m) for what changes their velocities.
+/// Prediction of substeps must be bit-identical whatever else is in the list, so no element outside of it may be
+/// nearer than the displacement of bodies within the lookahead, plus this slack (m) for changes of velocity.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
-/// How far (m) every body may move before the list is built anew.
+/// Displacement (m) that is allowed to every body before the list is rebuilt.
 const LEAST_ALLOWANCE: f64 = 0.015;
 
-/// A body that moves may go on for this time (s), so that what falls does not ask for a new list in
-/// every other step.
+/// Time (s) for which a moving body may continue, so that falling bodies do not require a new list every other step.
 const HORIZON: f64 = 0.012;
 
-/// No body is allowed more (m): long lists cost, too.
+/// Maximum allowed displacement (m) of a body: long lists are expensive, too.
 const MOST_ALLOWANCE: f64 = 0.15;
 
 /// The elements of one contact pair.
@@ -34,18 +32,18 @@ const MOST_ALLOWANCE: f64 = 0.15;
 pub(crate) struct Group {
     /// Index of the pair in its model.
     pub(crate) pair: usize,
-    /// Its bodies.
+    /// Contactor and target.
     bodies: [BodyId; 2],
-    /// Its interface.
+    /// Interface of the pair.
     pub(crate) interface: InterfaceId,
-    /// Its first element.
+    /// Index of its first element.
     pub(crate) first: usize,
-    /// One past its last element.
+    /// Index past its last element.
     pub(crate) end: usize,
 }
 
-/// How much further (m) than its bodies are foreseen to come in a step a group has to be apart to be passed
-/// over: forces may turn velocities within the step.
+/// Additional distance (m), beyond the predicted displacements in a step, from which a group is skipped: forces may
+/// change velocities within the step.
 const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 
 /// The contact elements within reach, in the order in which their forces are summed.
@@ -56,21 +54,22 @@ pub struct ContactElements<S: Space> {
     pub(crate) nodes: Vec<u32>,
     /// Position (m) of every element's node in the body frame of its contactor.
     pub(crate) positions: Vec<S::Vector>,
-    /// What the constants of its law are multiplied by: 1 for constants per node, the tributary
-    /// length (m) for constants per length.
+    /// Factor of the constants of its law: 1 for constants per node, the tributary length (m) for constants per
+    /// length.
     pub(crate) weights: Vec<S::Real>,
     /// Memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
-    /// How far apart (m) the bodies of every group were when the list was built: the least gap of its elements.
+    /// Smallest gap (m) of the elements of every group when the list was built.
     apart: Vec<S::Real>,
-    /// How far (m) every body may be from there at the end of the step under way; infinite where none is.
+    /// Bound of the displacement (m) of every body since then, at the end of the current step; infinite outside of a
+    /// step.
     ways: Vec<S::Real>,
-    /// The poses for which the list was built.
+    /// Poses at which the list was built.
     built_for: Vec<Pose<S>>,
-    /// How far (m) every body may move from there: the list holds all elements that are not further
-    /// apart than both their bodies may move.
+    /// Allowed displacement (m) of every body since then: the list has all elements whose gap is at most the sum of
+    /// those of both bodies.
     allowances: Vec<f64>,
-    /// Whether the list holds every element there is.
+    /// `true` if the list has all elements of the model.
     exhaustive: bool,
 }
 
@@ -92,18 +91,18 @@ impl<S: Space> Default for ContactElements<S> {
 }
 
 impl<S: Space> ContactElements<S> {
-    /// How many elements are in the list.
+    /// Returns the number of elements in the list.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Whether no node is near any surface.
+    /// Returns `true` if no node is near any surface.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Whether nothing of a group comes within a gap (m) in the step under way, in any lane: testing its
-    /// elements would find nothing.
+    /// Returns `true` if no element of a group can come within a gap (m) during the current step in any lane, so that
+    /// it need not be tested.
     #[inline(always)]
     pub(crate) fn sleeps(&self, group: usize, gap: f64) -> bool {
         let [a, b] = self.groups[group].bodies;
@@ -111,26 +110,24 @@ impl<S: Space> ContactElements<S> {
         (way + S::Real::splat(gap + ASLEEP_SLACK)).lt(self.apart[group]).all()
     }
 
-    /// No step is under way: bodies may be put anywhere, and nothing sleeps.
+    /// Ends the step: bodies may be moved anywhere, and no group is skipped.
     pub(crate) fn end_step(&mut self) {
         self.ways.fill(S::Real::splat(f64::INFINITY));
     }
 
-    /// What an element remembers; elements are numbered as in
-    /// [`Contact::element`](crate::forces::Contact::element).
+    /// Returns the memory of an element; numbered as in [`Contact::element`](crate::forces::Contact::element).
     pub fn stick(&self, element: usize) -> Stick<S> {
         self.sticks[element]
     }
 
-    /// Keeps every element in the list from now on: the plain path that the list is proved against.
+    /// Keeps every element in the list from now on: the reference that the list is tested against.
     pub fn make_exhaustive(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
         self.exhaustive = true;
         self.rebuild(model, poses, &vec![Twist::default(); poses.len()]);
     }
 
-    /// Builds the list anew where a body may have moved so far, or may move so far within `dt` (s),
-    /// that an element outside the list could touch. Returns the origins of [`ContactElements::rebuild`] if
-    /// it did.
+    /// Rebuilds the list if a body may have moved so far, or may move so far within `dt` (s), that an element outside
+    /// of it could touch; then returns the origins of [`ContactElements::rebuild`].
     pub(crate) fn refresh(
         &mut self,
         model: &Model<S>,
@@ -155,7 +152,7 @@ impl<S: Space> ContactElements<S> {
         })
     }
 
-    /// Follows the ways of all bodies; whether one may leave what the list was built for.
+    /// Updates the displacements of all bodies; returns `true` if one may exceed its allowance.
     #[inline(always)]
     fn has_moved_out(
         &mut self,
@@ -164,12 +161,12 @@ impl<S: Space> ContactElements<S> {
         twists: &[Twist<S>],
         dt: S::Real,
     ) -> bool {
-        // Bodies are followed relative to the ground, which moves all of them together.
+        // Displacements are relative to the ground, which moves all bodies together.
         let ground = model.bodies.iter().position(|b| b.motion == Motion::Prescribed);
         let (carried, carrier) = ground.map_or_else(Default::default, |g| {
             (poses[g].position - self.built_for[g].position, twists[g].linear)
         });
-        // The way of one step is counted too, half as long again since velocities change within it.
+        // Includes the current step, half as long again since velocities change within it.
         let ahead = S::Real::splat(1.5) * dt;
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
@@ -190,9 +187,9 @@ impl<S: Space> ContactElements<S> {
         stale.any()
     }
 
-    /// Lists the elements within the margin and hands their memory over.
+    /// Lists the elements within the margin and transfers their memory.
     ///
-    /// Returns the origins: for every element of the new list, which one of the old list it was.
+    /// Returns the origins: for every element of the new list, its index in the old one.
     pub(crate) fn rebuild(
         &mut self,
         model: &Model<S>,
@@ -241,13 +238,13 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// The pairs of bodies whose balls come within their margins, in the order of the model: found by a sweep
-    /// along the first axis, so that a row of bodies costs by its length and not by its square.
+    /// Returns the pairs of bodies whose balls come within their margins, in the order of the model: by a sweep along
+    /// the first axis, so that the cost of a row of bodies is not quadratic.
     fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
             return model.pairs.numbers().collect();
         }
-        // Lanes may be carried by different grounds: extents are those relative to each one's own.
+        // Lanes may have different ground motions: extents are relative to each lane's own.
         let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
         let carried = ground.map_or_else(S::Vector::default, |ground| poses[ground].position);
         let ball = |(i, body): (usize, &Body<S>)| {
@@ -274,7 +271,7 @@ impl<S: Space> ContactElements<S> {
                 #[inline(always)]
                 || {
                     for (_, other) in &open {
-                        // Of those above each other in a heap, most are far apart.
+                        // Most bodies above each other in a heap are far apart.
                         let apart = poses[body].position - poses[*other].position;
                         let touch = S::Real::splat(balls[body] + balls[*other]);
                         if !(touch * touch).lt(apart.dot(apart)).all() {
@@ -290,7 +287,7 @@ impl<S: Space> ContactElements<S> {
         couples.into_iter().flatten().collect()
     }
 
-    /// How far (m) a ball about a point is from a surface, if it comes within a margin (m) in any lane.
+    /// Returns the distance (m) of a ball about a point from a surface, if within a margin (m) in any lane.
     #[inline(always)]
     fn near(
         &self,
@@ -304,8 +301,8 @@ impl<S: Space> ContactElements<S> {
         near.then_some(distance)
     }
 
-    /// Whether a surface stays so deep within a round piece in all lanes that no contact is meant
-    /// ([`Round::greatest_depth`]): the center of an arc may lie far beyond its body, and goes further than it.
+    /// Returns `true` if a surface stays so deep within a round piece in all lanes that there is no contact
+    /// ([`Round::greatest_depth`]): the center of an arc may lie far beyond its body, and moves farther than it.
     #[inline(always)]
     fn behind(
         &self,
@@ -317,7 +314,7 @@ impl<S: Space> ContactElements<S> {
         frame: &PairFrame<S>,
     ) -> bool {
         let one = S::Real::splat(1.0);
-        // Bodies move, and turn by no more than what moves a point within their reach as far.
+        // Allowances bound the displacement of any point within the reach of a body; farther ones turn further.
         let way = |body: usize, arm: S::Vector| {
             let turning = arm.dot(arm).sqrt() / S::Real::splat(model.reach[body].max(1e-9));
             S::Real::splat(self.allowances[body]) * (one + turning)
@@ -328,13 +325,13 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + ways).lt(depth).all()
     }
 
-    /// Lists the elements of a pair that are within reach; the least gap (m) of them in every lane.
+    /// Lists the elements of a pair within reach; returns their least gap (m) in every lane.
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);
         let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
         let margin = self.allowances[pair.contactor] + self.allowances[pair.target];
-        // Balls about the bodies first: most pairs are far apart.
+        // Bounding balls first: most pairs are far apart.
         let apart = frame.contactor - frame.target;
         let touch = model.reach[pair.contactor]
             + surface.reach()
@@ -402,7 +399,7 @@ impl<S: Space> ContactElements<S> {
                 if self.near(surface, frame.to_surface(center), radius, margin).is_none() {
                     return least;
                 }
-                // Slender bodies are far from others that are within their ball.
+                // Slender bodies may be far from others within their ball.
                 whole.meet(surface, frame.contactor, frame.relative, |patch| {
                     least = least.min(patch.deepest.gap.distance);
                 });
@@ -420,8 +417,8 @@ impl<S: Space> ContactElements<S> {
 }
 
 impl<R: Real> ContactElements<Planar<R>> {
-    /// Puts the memory of a single state's elements into one lane, and their slip rates into that of
-    /// `slip_rates`; elements that the single state does not list remember nothing.
+    /// Copies the memory of a single state's elements into one lane, and their slip rates into that of `slip_rates`;
+    /// elements missing in the single state have no memory.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
@@ -443,7 +440,7 @@ impl<R: Real> ContactElements<Planar<R>> {
         }
     }
 
-    /// What a lane remembers of the elements that touch in it: a list to be rebuilt for a single state.
+    /// Returns the memory of the elements that touch in a lane, as a list to be rebuilt for a single state.
     pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
         let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
             if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
@@ -454,8 +451,8 @@ impl<R: Real> ContactElements<Planar<R>> {
     }
 }
 
-/// How far (m) every body may move before a list is stale, by how fast it moves: in the worst lane,
-/// and relative to the ground, which moves all of them together.
+/// Returns the displacement (m) that each body is allowed before the list is stale, from its speed: in the worst
+/// lane, and relative to the ground, which moves all bodies together.
 fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
     let carrier = ground.map_or_else(S::Vector::default, |ground| twists[ground].linear);
@@ -475,14 +472,14 @@ fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     model.bodies.iter().enumerate().map(allowance).collect()
 }
 
-/// Walks an old list in step with a new one; both are sorted by pair and node.
+/// Traverses an old list in step with a new one; both are sorted by pair and node.
 struct Remembered<'a, S: Space> {
     old: &'a ContactElements<S>,
     group: usize,
 }
 
 impl<S: Space> Remembered<'_, S> {
-    /// Where an element is in the old list.
+    /// Returns the index of an element in the old list.
     fn origin(&mut self, pair: usize, node: u32) -> Option<usize> {
         let groups = &self.old.groups;
         while self.group < groups.len() && groups[self.group].pair < pair {

@@ -1,4 +1,4 @@
-//! The energy ledger: what came in, what is stored, what was lost, and what does not balance.
+//! The energy balance: input, stored energy, losses, and residual.
 
 use crate::body::Motion;
 use crate::element::Memory;
@@ -16,29 +16,27 @@ pub struct EnergySummary {
     pub kinetic: f64,
     /// Potential energy in gravity, relative to the start.
     pub potential: f64,
-    /// Stored in normal springs and in force elements.
+    /// Energy stored in normal springs and in force elements.
     pub elastic: f64,
-    /// Stored in sticks.
+    /// Energy stored in sticks.
     pub stick: f64,
-    /// Lost in the dampers of contacts and elements, where elements yielded, and with those that broke.
+    /// Energy lost in the dampers of contacts and elements, by yielding, and with broken elements.
     pub damped: f64,
-    /// Lost to friction (sliding and the damping of sticks).
+    /// Energy lost to friction (sliding and the damping of sticks).
     pub friction: f64,
-    /// Lost to viscous damping of bodies.
+    /// Energy lost to viscous damping of bodies.
     pub viscous: f64,
-    /// Work that the ground has done on the bodies.
+    /// Work of the ground on the bodies.
     pub ground_work: f64,
-    /// Stored and lost, less what was there at the start and what the ground did; zero in exact
-    /// arithmetic and time.
+    /// Stored and lost energy, less the initial energy and the work of the ground; zero in exact arithmetic and time.
     pub residual: f64,
-    /// Absolute flow of energy through the system so far: what the ground gave plus what was there
-    /// to be given (motion and springs at the start, and the deepest drop), the measure of the
-    /// residual.
+    /// Absolute flow of energy through the system so far: the work of the ground plus the initially available energy
+    /// (motion and springs at the start, and the deepest drop); the scale of the residual.
     pub throughput: f64,
 }
 
 impl EnergySummary {
-    /// The residual as a share of the energy that went through the system.
+    /// Returns the residual over the throughput.
     pub fn residual_ratio(&self) -> f64 {
         if self.throughput > 0.0 { (self.residual / self.throughput).abs() } else { 0.0 }
     }
@@ -46,33 +44,30 @@ impl EnergySummary {
 
 /// Sums energies over the accepted steps of a run; one entry per lane.
 ///
-/// A work is the mean of the forces at the two ends of a step, times the way that the bodies went in
-/// it, summed over the bodies: the discrete balance of the central difference method.
-/// Velocity Verlet keeps it to the last digit, but for the difference between the velocities at the
-/// ends and in the middle of a step, which does not add up: a linear spring gives back what it took,
-/// and what dampers, friction and the ground do is counted as it was done, however abruptly they set
-/// in and whatever velocity they were predicted from.
-/// What remains in the residual is the error of the integration itself: springs that are met or left
-/// within a step, laws and geometry that are not linear.
-/// Stored energies are functions of the state alone and take no part in this, so a force that is not
-/// the derivative of its energy, or does not enter the motion as it enters the books, leaves a
-/// residual, too.
+/// A work is the mean of the forces at the two ends of a step, times the displacement of the bodies in it, summed
+/// over the bodies: the discrete balance of the central difference method. Velocity Verlet satisfies it to the last
+/// digit, but for the difference between the velocities at the ends and in the middle of a step, which does not
+/// accumulate: a linear spring returns its energy, and the works of dampers, friction and the ground are counted as
+/// done, however abruptly they set in and whatever velocity they were predicted from.
+/// The residual is the error of the integration itself: springs that engage or release within a step, nonlinear laws
+/// and geometry. Stored energies are functions of the state alone and independent of this, so a force that is not the
+/// derivative of its energy, or differs between the motion and the balance, leaves a residual, too.
 #[derive(Clone, Debug)]
 pub struct EnergyLedger<S: Space> {
     initial: S::Real,
     potential_start: S::Real,
     stick_start: S::Real,
     works: Works<S::Real>,
-    /// Where the bodies were at the last entry.
+    /// Poses of the bodies at the last entry.
     poses: Vec<Pose<S>>,
-    /// Forces on the bodies that take energy, at the last entry.
+    /// Dissipative forces on the bodies at the last entry.
     losses: Vec<Losses<S>>,
     viscous: Vec<Wrench<S>>,
     /// Contact forces on the bodies at the last entry.
     wrenches: Vec<Wrench<S>>,
-    /// What the force elements remembered then.
+    /// Memory of the force elements at the last entry.
     memory: Vec<Memory<S>>,
-    /// The forces of their springs then (N).
+    /// Spring forces of the force elements at the last entry (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
     /// Absolute work of the ground plus the largest drop of potential energy.
@@ -89,7 +84,7 @@ struct Works<R> {
     ground: R,
 }
 
-/// Energies held at a state (J).
+/// Stored energies at a state (J).
 #[derive(Clone, Copy, Debug, Default)]
 struct Stored<R> {
     kinetic: R,
@@ -99,7 +94,7 @@ struct Stored<R> {
 }
 
 impl<S: Space> EnergyLedger<S> {
-    /// Opens the ledger at a state whose forces are in `scratch`.
+    /// Starts the balance at a state whose forces are in `scratch`.
     pub fn new(model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) -> Self {
         let stored = stored(model, state, scratch);
         Self {
@@ -119,7 +114,7 @@ impl<S: Space> EnergyLedger<S> {
         }
     }
 
-    /// Enters an accepted step.
+    /// Adds an accepted step.
     pub fn enter(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -143,7 +138,7 @@ impl<S: Space> EnergyLedger<S> {
             if body.motion == Motion::Prescribed {
                 step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
             }
-            // What the next entry starts from, while it is at hand.
+            // Start of the next entry, while in the cache.
             self.poses[i] = state.poses[i];
             self.losses[i] = *new;
             self.wrenches[i] = scratch.wrenches[i];
@@ -165,18 +160,18 @@ impl<S: Space> EnergyLedger<S> {
         self.deepest = self.deepest.min(self.stored.potential);
     }
 
-    /// Whether every body's kinetic and potential energy is a finite number.
+    /// Returns `true` if the kinetic and potential energy of every body is finite.
     #[inline(always)]
     pub(crate) fn finite(&self) -> <S::Real as Real>::Mask {
         (self.stored.kinetic + self.stored.potential).is_finite_mask()
     }
 
-    /// The books of one lane.
+    /// Returns the balance of one lane.
     pub fn summary(&self, lane: usize) -> EnergySummary {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
-        // The work of friction is what bodies gave to sticks and to sliding together: sticks are in it.
+        // The work of friction is that on sticks and sliding together, so it includes the stick energy.
         let residual = now + lost - self.works.ground - self.initial;
         let throughput = self.ground_flow + (self.initial - self.deepest);
         EnergySummary {
@@ -231,8 +226,8 @@ mod tests {
     use crate::shape::{HalfPlane, Shape};
     use crate::space::{Planar, Rotation2, Twist, Vec2};
 
-    /// The residual ratio of a disc that falls on a floor and bounces, pulled down by an acceleration
-    /// (m/s²) that no energy belongs to.
+    /// Returns the residual ratio of a disc that falls on a floor and bounces, with an extra downward acceleration
+    /// (m/s²) that has no energy.
     fn books_of_a_bounce(unbooked: f64) -> f64 {
         let body = |name: &str, motion, z, surfaces, nodes| Body {
             name: name.to_owned(),

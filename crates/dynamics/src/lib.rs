@@ -1,30 +1,30 @@
 //! Rigid bodies joined by penalty contact, integrated in time.
 //!
-//! This crate knows bodies, boundaries and contact; it does no input or output, reads no clock,
-//! starts no thread, and logs nothing.
+//! This crate has bodies, boundaries and contact; it does no input or output, reads no clock, starts no thread, and
+//! logs nothing.
 //!
 //! # A step
 //!
-//! 1. The ground, and all that is fixed to it, is placed where its motion says.
-//! 2. For each pair of boundaries that are near, and each node of the contactor: how far is it from
-//!    the target's surface, and which way is out?
+//! 1. The ground, and everything fixed to it, moves with the ground motion.
+//! 2. For each pair of nearby boundaries, and each node of the contactor, compute the distance from the target's
+//!    surface and the normal.
 //! 3. The normal law turns penetration and its rate into a compressive force.
 //! 4. The friction law turns slip rate and stick into a tangential force.
-//! 5. Both bodies feel the force at one point: the companion point on the target, or the middle of the overlap.
-//! 6. Contact, force elements, gravity and viscous damping are summed: accelerations ([`evaluate`]).
-//! 7. The integrator repeats 1 to 6 as its method asks and advances poses, twists and sticks.
-//! 8. Once the step is accepted, every stick is cut back to what friction can hold.
-//! 9. The energy ledger and the observers look at the accepted state.
+//! 5. The force acts on both bodies at one point: the companion point on the target, or the middle of the overlap.
+//! 6. The sum of contact, force elements, gravity and viscous damping gives the accelerations ([`evaluate`]).
+//! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and sticks.
+//! 8. Once the step is accepted, every stick is limited to the friction capacity.
+//! 9. The energy ledger and the observers receive the accepted state.
 //!
 //! # Signs
 //!
 //! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians.
-//!   In space `y` points away and turns are right-handed, so an angle of the plane is a turn about `-y`.
+//!   In space `y` points away and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
 //! - A gap's distance is negative when penetrating; penetration is never negative.
 //! - Penetration rate is positive while approaching.
 //! - Normals point out of the target.
 //! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
-//! - A friction force is given along the slip; the contactor feels its opposite.
+//! - A friction force is given along the slip; the opposite acts on the contactor.
 
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

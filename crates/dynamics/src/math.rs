@@ -6,12 +6,11 @@ pub use libm::{
     acos, acosh, asin, atan, atan2, cbrt, cos, exp, hypot, log, log1p, log10, pow, sin, tan,
 };
 
-/// Sine and cosine of an angle (rad) for one number or a bundle of lanes.
+/// Returns sine and cosine of an angle (rad) for one number or a bundle of lanes.
 ///
-/// The angle is reduced to the nearest multiple of π/2 in three parts (Cody and Waite) and the
-/// remainder is evaluated with the minimax polynomials of the FreeBSD mathematics library's kernel
-/// coefficients.
-/// Measured error below 1 ulp for |angle| up to 1e5 rad, which is more turns than a barrel makes.
+/// The angle is reduced to the nearest multiple of π/2 in three parts (Cody and Waite) and the remainder is evaluated
+/// with the minimax polynomials of the FreeBSD mathematics library's kernel coefficients.
+/// Measured error below 1 ulp for |angle| up to 1e5 rad, more rotation than a barrel ever makes.
 #[inline(always)]
 pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     // Adding and subtracting 1.5·2^52 rounds to the nearest integer without a rounding instruction.
@@ -40,7 +39,7 @@ pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
                             + z * (R::splat(2.087_572_321_298_175e-9)
                                 + z * R::splat(-1.135_964_755_778_819_5e-11))))));
 
-    // Which quarter turn: k mod 4, found with arithmetic so that lanes need no integers.
+    // The quadrant, k mod 4, by arithmetic so that lanes need no integers.
     let half = (quarters * R::splat(0.5) + R::splat(ROUNDER)) - R::splat(ROUNDER);
     let odd = R::zero().lt((quarters - half * R::splat(2.0)).abs());
     let quarter_floor = R::select(odd, quarters - R::splat(1.0), quarters);
@@ -50,10 +49,10 @@ pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
     (R::select(opposite, -s, s), R::select(opposite, -c, c))
 }
 
-/// `sin x / x` and `cos x` by the square of `x` (rad²).
+/// Returns `sin x / x` and `cos x` from the square of `x` (rad²).
 ///
-/// Below 0.1 rad, as turns of a step are, by their series, of which the first terms left out are below 1e-17: without a
-/// root, a division or a reduction.
+/// Below 0.1 rad, as for the rotation of a step, by their series, whose first omitted terms are below 1e-17: without
+/// a square root, a division or a reduction.
 #[inline(always)]
 pub fn sinc_cos<R: Real>(square: R) -> (R, R) {
     let one = R::splat(1.0);

@@ -1,4 +1,4 @@
-//! What does not change during a run: bodies, interfaces, and which boundaries may meet.
+//! Constant data of a run: bodies, interfaces, and contact pairs.
 
 use std::collections::BTreeMap;
 
@@ -13,98 +13,95 @@ use crate::space::Space;
 /// Index of an interface in its model.
 pub type InterfaceId = usize;
 
-/// Nodes of the contactor are tested against a surface of the target.
+/// A pair of boundaries: nodes of the contactor are tested against a surface of the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContactPair {
     /// The body that carries the nodes.
     pub contactor: BodyId,
-    /// Which of its node sets.
+    /// Index of its node set.
     pub nodes: usize,
     /// The body that carries the surface.
     pub target: BodyId,
-    /// Which of its surfaces.
+    /// Index of its surface.
     pub surface: usize,
     /// The law between them.
     pub interface: InterfaceId,
-    /// Where its contacts count.
+    /// Side of a face on which its contacts count.
     pub counts: Counts,
 }
 
-/// Where the contacts of a pair count: so that none is counted twice where a face carries nodes for one
+/// Side of a face on which the contacts of a pair count, so that none is counted twice where a face has nodes for one
 /// body and is tested exactly by another pair.
 ///
-/// A contact is one of the face where the other body's center of mass lies before it and the contact's normal
-/// points no further aside than [`Face::widest`](crate::body::Face::widest).
+/// A contact belongs to the face if the other body's center of mass lies before it and the angle between the
+/// contact's normal and the face's is within [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
     /// Everywhere.
     #[default]
     Everywhere,
-    /// Contacts with the target that are of this face of the contactor.
+    /// Contacts with the target that belong to this face of the contactor.
     BeforeFace(usize),
-    /// Contacts with the target that are not of this face of the contactor.
+    /// Contacts with the target that do not belong to this face of the contactor.
     BehindFace(usize),
-    /// Contacts with the contactor that are not of this face of the target.
+    /// Contacts with the contactor that do not belong to this face of the target.
     BehindFaceOfTarget(usize),
 }
 
-/// How closely impacts are followed: their laws are the stiffest, but only while they are deep.
+/// Subdivision of time steps during impacts: their laws are the stiffest, but only while they are deep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
-    /// Into how many short steps a time step is divided while an impact asks for it; a whole number, one or
-    /// more.
+    /// Number of substeps of a time step while an impact requires it; an integer, one or more.
     pub substeps: R,
-    /// Of every interface the penetration (m) that whole time steps follow well enough; infinite where
-    /// they follow any.
+    /// For every interface the penetration (m) that whole time steps resolve; infinite for no limit.
     pub whole_step_depth: Vec<R>,
-    /// Penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps still follow where a
-    /// contact is at rest: stability allows more depth than the accuracy of an impact does.
+    /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
+    /// contact at rest: stability allows more depth than the accuracy of an impact.
     pub resting_allowance: R,
-    /// What of whole bodies that are fast asks for more; none where nothing does.
+    /// Further rules for fast contacts of whole bodies, if any.
     pub fast: Option<Fast<R>>,
 }
 
-/// How contacts of whole bodies are followed that are too fast for what [`Substepping`] says of all.
+/// Substepping of contacts of whole bodies that are too fast for the other rules of [`Substepping`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// The way (m) that a contact may go in a whole step: what goes further meets or leaves its spring and its damper too
+    /// Displacement (m) of a contact in a whole step above which it engages or releases its spring and damper too
     /// abruptly.
     pub whole_step_way: R,
-    /// The speed of approach (m/s) from which on an impact is hard: short steps are half as long until it is over, and
-    /// no impact is left.
+    /// Approach speed (m/s) above which an impact is hard: substeps are half as long until no impact is left.
     pub hard: R,
 }
 
-/// Tells the pairs of two bodies, the lower id first.
+/// Returns the pairs of two bodies, the lower ID first.
 pub type Meet<'a, S> = dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair> + 'a;
 
 /// Bodies, interfaces and pairs; constant during a run and shared between threads.
 #[derive(Clone, Debug)]
 pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
-    /// Of every body what each step asks for.
+    /// Body data that every step reads.
     pub(crate) inert: Vec<Inert<S>>,
     pub(crate) interfaces: Vec<Interface<S>>,
     pub(crate) pairs: Pairs,
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
-    /// Of every body the first whose boundaries are the same: they are read there, so that a thousand equal
-    /// blocks take the memory of one.
+    /// For every body the first one with equal boundaries, which are read there, so that a thousand equal blocks take
+    /// the memory of one.
     pub(crate) alike: Vec<BodyId>,
     pub(crate) substepping: Substepping<S::Real>,
 }
 
-/// Why bodies and pairs do not make a model.
+/// Reason why bodies and pairs do not form a model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    /// Two bodies of one name.
+    /// Two bodies have the same name.
     #[error("two bodies are named \"{name}\": give each its own name")]
     DuplicateName {
         /// The name.
         name: String,
     },
-    /// A free body without mass.
+    /// A free body has no mass.
     #[error("body \"{name}\" has mass {mass} kg: a free body needs a positive, finite mass")]
     Mass {
         /// The body.
@@ -112,7 +109,7 @@ pub enum ModelError {
         /// Its mass (kg).
         mass: f64,
     },
-    /// A free body that nothing could keep from spinning.
+    /// A free body has no moment of inertia.
     #[error(
         "body \"{name}\" has a moment of inertia of {inertia} kg·m²: a free body needs a positive, \
          finite one"
@@ -123,41 +120,42 @@ pub enum ModelError {
         /// Its least moment of inertia (kg·m²).
         inertia: f64,
     },
-    /// A free body with a surface that has no end.
+    /// A free body has an unbounded surface.
     #[error("body \"{name}\" carries an unbounded surface: only bodies fixed to the ground may")]
     Unbounded {
         /// The body.
         name: String,
     },
-    /// A force element that is none.
+    /// A force element is invalid.
     #[error("element \"{name}\": {problem}")]
     Element {
         /// The element.
         name: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: &'static str,
     },
-    /// A pair that names something that is not there.
+    /// A pair refers to a missing item.
     #[error("contact pair {pair} names {what} {index}, but there are only {count}")]
     Dangling {
-        /// Which pair, counted from 0.
+        /// The pair, counted from 0.
         pair: usize,
-        /// What it names.
+        /// Kind of the item.
         what: &'static str,
-        /// The index it gives.
+        /// Its index.
         index: usize,
-        /// How many there are.
+        /// Number of such items.
         count: usize,
     },
 }
 
 impl<S: Space> Model<S> {
-    /// Checks bodies, interfaces and pairs, and puts the pairs in their lasting order.
+    /// Checks bodies, interfaces and pairs, and sorts the pairs.
     ///
     /// `gravity` is the acceleration of free fall (m/s²).
     ///
     /// # Errors
-    /// When names repeat, a free body has no mass, no inertia or an unbounded surface, or a pair dangles.
+    /// If names repeat, a free body has no mass, no inertia or an unbounded surface, or a pair refers to a missing
+    /// item.
     pub fn new(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -167,16 +165,17 @@ impl<S: Space> Model<S> {
         Self::of_pairs(bodies, interfaces, Pairs::listed(pairs), gravity)
     }
 
-    /// As [`Model::new`], where how two bodies meet is a matter of their kinds, numbered from 0: `meet` tells
-    /// the pairs of two bodies, the lower id first, and would tell the same for any others of their kinds.
+    /// Creates a model as [`Model::new`], where the pairs of two bodies depend only on their kinds, numbered from 0:
+    /// `meet` returns the pairs of two bodies, the lower ID first, and must return the same for any others of their
+    /// kinds.
     ///
-    /// Thousands of bodies need no list of all their pairs, whose number is the square of theirs.
+    /// So thousands of bodies need no list of all their pairs, which is quadratic.
     ///
     /// # Errors
     /// As [`Model::new`].
     ///
     /// # Panics
-    /// When there is not one kind for each body.
+    /// If there is not one kind for each body.
     pub fn of_kinds(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -260,10 +259,10 @@ impl<S: Space> Model<S> {
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
-    /// Divides time steps while impacts ask for it; without this no step is divided.
+    /// Enables substeps during impacts; without this no step is divided.
     ///
     /// # Panics
-    /// When there are not as many penetrations as interfaces.
+    /// If there is not one penetration for each interface.
     pub fn set_substepping(&mut self, substepping: Substepping<S::Real>) {
         assert_eq!(
             substepping.whole_step_depth.len(),
@@ -273,17 +272,16 @@ impl<S: Space> Model<S> {
         self.substepping = substepping;
     }
 
-    /// How closely impacts are followed.
+    /// Returns the subdivision of steps during impacts.
     pub fn substepping(&self) -> &Substepping<S::Real> {
         &self.substepping
     }
 
-    /// Puts force elements between the bodies, in place of those before, in the order in which their
-    /// forces are summed. A state of the model must have one entry of `memory` for each.
+    /// Sets the force elements, replacing those before, in the order in which their forces are summed. A state of the
+    /// model must have one entry of `memory` for each.
     ///
     /// # Errors
-    /// When an element ties a body to itself or to one that is not there, or a constant is not a number
-    /// that it can be.
+    /// If an element ties a body to itself or to a missing one, or a constant is invalid.
     pub fn fasten(&mut self, elements: Vec<Element<S>>) -> Result<(), ModelError> {
         for element in &elements {
             if let Some(problem) = element.problem(self.bodies.len()) {
@@ -294,67 +292,67 @@ impl<S: Space> Model<S> {
         Ok(())
     }
 
-    /// The bodies, in the order of their ids.
+    /// Returns the bodies, in the order of their IDs.
     pub fn bodies(&self) -> &[Body<S>] {
         &self.bodies
     }
 
-    /// The interfaces, in the order of their ids.
+    /// Returns the interfaces, in the order of their IDs.
     pub fn interfaces(&self) -> &[Interface<S>] {
         &self.interfaces
     }
 
-    /// The contact pairs, in the order in which their forces are summed; in a model of kinds as many as the
-    /// square of its bodies.
+    /// Returns the contact pairs, in the order in which their forces are summed; in a model of kinds their number is
+    /// quadratic in that of bodies.
     pub fn pairs(&self) -> impl Iterator<Item = ContactPair> + '_ {
         self.pairs.numbers().map(|number| self.pairs.get(number))
     }
 
-    /// The contact pair of a number, such as that of a [`Contact`](crate::forces::Contact).
+    /// Returns the contact pair with a number, such as that of a [`Contact`](crate::forces::Contact).
     #[inline(always)]
     pub fn pair(&self, number: usize) -> ContactPair {
         self.pairs.get(number)
     }
 
-    /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
-    /// target, any of them with any other.
+    /// Calls `tell` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
+    /// meet.
     pub fn each_meeting(&self, tell: &mut TellMeeting<'_>) {
         self.pairs.each(tell);
     }
 
-    /// The force elements, in the order of [`Scratch::loads`](crate::Scratch::loads).
+    /// Returns the force elements, in the order of [`Scratch::loads`](crate::Scratch::loads).
     pub fn elements(&self) -> &[Element<S>] {
         &self.elements
     }
 
-    /// Acceleration of free fall (m/s²).
+    /// Returns the acceleration of free fall (m/s²).
     pub fn gravity(&self) -> S::Vector {
         self.gravity
     }
 
-    /// The body of a name.
+    /// Returns the body with a name.
     pub fn body_named(&self, name: &str) -> Option<BodyId> {
         self.bodies.iter().position(|b| b.name == name)
     }
 
-    /// Whether viscous damping acts on any body.
+    /// Returns `true` if any body has viscous damping.
     pub(crate) fn is_damped(&self) -> bool {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// The body whose boundaries are those of a body.
+    /// Returns the body that holds the boundaries of a body.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]
     }
 
-    /// The nodes that a pair tests.
+    /// Returns the nodes that a pair tests.
     pub(crate) fn pair_nodes(&self, pair: &ContactPair) -> &Nodes<S> {
         &self.bounded(pair.contactor).nodes[pair.nodes]
     }
 }
 
-/// Of every body the first with the same boundaries, which it can only be among those of the same reach.
+/// Returns for every body the first one with equal boundaries, which has the same reach.
 fn alike<S: Space>(bodies: &[Body<S>], reach: &[f64]) -> Vec<BodyId> {
     let mut firsts: BTreeMap<u64, Vec<BodyId>> = BTreeMap::new();
     let first = |(id, body): (BodyId, &Body<S>)| {

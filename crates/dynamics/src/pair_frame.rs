@@ -1,12 +1,12 @@
-//! Two bodies seen from the surface of one of them, and which of their contacts count there.
+//! Relative position of two bodies in the frame of a surface, and the side on which their contacts count.
 
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Pose, Space};
 
-/// Where two bodies are, seen from the frame of the target's surface.
+/// Relative position of two bodies in the frame of the target's surface.
 ///
-/// Contacts of a pair are computed in this frame and their sum is turned back once.
+/// Contacts of a pair are computed in this frame, and their sum is rotated back once.
 #[derive(Clone, Debug)]
 pub(crate) struct PairFrame<S: Space> {
     /// From the surface's frame to the inertial frame.
@@ -21,12 +21,12 @@ pub(crate) struct PairFrame<S: Space> {
     placed: S::Rotation,
 }
 
-/// Whether a contact belongs to a face that carries nodes, and whether this pair is the one of its nodes.
+/// Decides whether contacts belong to a face with nodes, and whether they count for this pair.
 #[derive(Clone, Copy)]
 pub(crate) struct AtFace<S: Space> {
-    /// The other body lies before the face.
+    /// The lanes in which the other body lies before the face.
     before: <S::Real as Real>::Mask,
-    /// The face's outward normal as a contact's normal in the frame of the target's surface.
+    /// The face's outward normal as a contact normal in the frame of the target's surface.
     out: S::Vector,
     /// [`Face::widest`](crate::body::Face::widest).
     widest: S::Real,
@@ -34,21 +34,21 @@ pub(crate) struct AtFace<S: Space> {
 }
 
 impl<S: Space> AtFace<S> {
-    /// Whether no contact can count.
+    /// Returns `true` if no contact can count.
     #[inline(always)]
     pub(crate) fn never(&self) -> bool {
         let all = S::Real::splat(-1.0);
         if self.of_nodes { !self.before.any() } else { (self.before & self.widest.lt(all)).all() }
     }
 
-    /// Whether every contact counts.
+    /// Returns `true` if every contact counts.
     #[inline(always)]
     pub(crate) fn always(&self) -> bool {
         let all = S::Real::splat(-1.0);
         if self.of_nodes { (self.before & self.widest.lt(all)).all() } else { !self.before.any() }
     }
 
-    /// Where a contact with this normal counts.
+    /// Returns the lanes in which a contact with this normal counts.
     #[inline(always)]
     pub(crate) fn counts(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
         let of_face = self.before & self.widest.le(normal.dot(self.out));
@@ -78,8 +78,8 @@ impl<S: Space> PairFrame<S> {
         }
     }
 
-    /// How far (m) the center of mass of the other body lies before the face that decides where the
-    /// contacts of a pair count; none where they count everywhere.
+    /// Returns the distance (m) of the other body's center of mass before the face that decides for a pair; `None` if
+    /// its contacts count everywhere.
     #[inline(always)]
     pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
         let apart = self.target - self.contactor;
@@ -95,7 +95,7 @@ impl<S: Space> PairFrame<S> {
         Some((other - face.point).dot(face.outward))
     }
 
-    /// Where the contacts of a pair count by the face that decides; none where they count everywhere.
+    /// Returns the decision of the face of a pair; `None` if its contacts count everywhere.
     #[inline(always)]
     pub(crate) fn at_face(&self, model: &Model<S>, pair: &ContactPair) -> Option<AtFace<S>> {
         let before = S::Real::zero().lt(self.before(model, pair)?);
@@ -103,7 +103,7 @@ impl<S: Space> PairFrame<S> {
             Counts::Everywhere => return None,
             Counts::BeforeFace(face) | Counts::BehindFace(face) => {
                 let face = &model.bounded(pair.contactor).faces[face];
-                // What points out of the contactor points into the target.
+                // The outward normal of the contactor points into the target.
                 let out = -S::rotate(self.relative, face.outward);
                 (face, out, matches!(pair.counts, Counts::BeforeFace(_)))
             }
@@ -115,19 +115,19 @@ impl<S: Space> PairFrame<S> {
         Some(AtFace { before, out, widest: face.widest, of_nodes })
     }
 
-    /// A direction of the surface's frame, in the contactor's body frame.
+    /// Transforms a direction from the surface's frame to the contactor's body frame.
     #[inline(always)]
     pub(crate) fn to_contactor(&self, direction: S::Vector) -> S::Vector {
         S::unrotate(self.relative, direction)
     }
 
-    /// A direction of the contactor's body frame, in the surface's frame.
+    /// Transforms a direction from the contactor's body frame to the surface's frame.
     #[inline(always)]
     pub(crate) fn direction_to_surface(&self, direction: S::Vector) -> S::Vector {
         S::rotate(self.relative, direction)
     }
 
-    /// A point of the contactor's body frame, in the surface's frame.
+    /// Transforms a point from the contactor's body frame to the surface's frame.
     #[inline(always)]
     pub(crate) fn to_surface(&self, position: S::Vector) -> S::Vector {
         self.contactor + S::rotate(self.relative, position)

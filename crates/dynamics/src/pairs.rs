@@ -1,4 +1,4 @@
-//! Which boundaries may meet: pair by pair, or by the kinds of the bodies.
+//! Contact pairs of a model: listed one by one, or by the kinds of the bodies.
 
 use std::ops::Range;
 
@@ -15,38 +15,38 @@ pub(crate) enum Pairs {
         /// The pairs of two bodies, one after the other.
         couples: Vec<Couple>,
     },
-    /// Bodies of two kinds meet like any others of these kinds: so thousands of bodies need no list of
-    /// all their pairs, which are as many as the square of their number.
+    /// The pairs of two bodies depend on their kinds: so thousands of bodies need no list of all their pairs, which
+    /// is quadratic.
     OfKinds {
         /// The kind of every body.
         kinds: Vec<usize>,
-        /// How two bodies meet, by the kind of that with the lower id and then by that of the other; here the
-        /// former is body 0 and the latter body 1.
+        /// The pairs of two bodies, by the kind of the body with the lower ID and then by that of the other; the
+        /// former is body 0 here, the latter body 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Numbers of pairs that are kept for two bodies.
+        /// Stride of the pair numbers per two bodies.
         most: usize,
     },
 }
 
-/// Hears of pairs that are alike: one of them, the bodies that may be its contactor, and those that may be its target.
+/// Callback: a representative pair, its candidate contactors, and its candidate targets.
 pub type TellMeeting<'a> = dyn FnMut(&ContactPair, &[BodyId], &[BodyId]) + 'a;
 
-/// The pairs of two bodies.
+/// The pairs of two bodies in the list.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Couple {
-    /// The two bodies, the lower id first.
+    /// The two bodies, the lower ID first.
     bodies: [BodyId; 2],
     /// Their pairs.
     pairs: Range<usize>,
 }
 
-/// The two bodies of a pair, the lower id first.
+/// Returns the two bodies of a pair, the lower ID first.
 fn between(pair: &ContactPair) -> [BodyId; 2] {
     [pair.contactor.min(pair.target), pair.contactor.max(pair.target)]
 }
 
 impl Pairs {
-    /// Pairs in any order.
+    /// Creates a list from pairs in any order.
     pub(crate) fn listed(mut pairs: Vec<ContactPair>) -> Self {
         pairs.sort_unstable_by_key(|pair| (between(pair), *pair));
         pairs.dedup();
@@ -60,8 +60,8 @@ impl Pairs {
         Self::Listed { pairs, couples }
     }
 
-    /// Pairs of bodies of these kinds, numbered from 0; `meet` tells those of two bodies, the lower id
-    /// first, and tells the same for any others of their kinds.
+    /// Creates the pairs of bodies of these kinds, numbered from 0; `meet` returns those of two bodies, the lower ID
+    /// first, and the same for any others of their kinds.
     pub(crate) fn of_kinds(
         kinds: Vec<usize>,
         meet: &dyn Fn([BodyId; 2]) -> Vec<ContactPair>,
@@ -94,7 +94,7 @@ impl Pairs {
         Self::OfKinds { kinds, meetings, most }
     }
 
-    /// The pair of a number.
+    /// Returns the pair with a number.
     #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> ContactPair {
         match self {
@@ -112,7 +112,7 @@ impl Pairs {
         }
     }
 
-    /// The numbers of the pairs of two bodies, the lower id first.
+    /// Returns the numbers of the pairs of two bodies, the lower ID first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
         match self {
             Self::Listed { couples, .. } => couples
@@ -125,7 +125,7 @@ impl Pairs {
         }
     }
 
-    /// The numbers of all pairs in their order.
+    /// Returns the numbers of all pairs in order.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let (listed, bodies) = match self {
             Self::Listed { pairs, .. } => (pairs.len(), 0),
@@ -135,8 +135,8 @@ impl Pairs {
         (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
     }
 
-    /// Tells how bodies meet: a pair, and the bodies that may stand in the place of its contactor and of its
-    /// target, any of them with any other.
+    /// Calls `tell` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
+    /// meet.
     pub(crate) fn each(&self, tell: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {
@@ -152,7 +152,7 @@ impl Pairs {
                 for (lower, row) in meetings.iter().enumerate() {
                     for (higher, pairs) in row.iter().enumerate() {
                         for pair in pairs {
-                            // Two of one kind are told apart.
+                            // Two different bodies, even of one kind.
                             let bodies =
                                 [members[lower][0], members[higher][members[higher].len() - 1]];
                             let of = [&members[lower], &members[higher]];

@@ -1,10 +1,10 @@
-//! The scalar of the physics: one `f64`, or many of them in lockstep.
+//! The scalar of the physics: one `f64`, or many in lockstep.
 //!
-//! Every force, shape and integrator is written once against [`Real`].
-//! With `f64` it is one run; with a bundle of lanes it is as many runs of one topology side by side.
-//! The rule that keeps a lane equal to a single run, bit for bit: a branch on a number becomes a
-//! [`Mask`] and a [`Real::select`], a block may be skipped only when no lane wants it, and no
-//! operation may differ between the two (no fused multiply-add, no platform sine).
+//! Every force, shape and integrator is written once against [`Real`]. With `f64` it is one run; with a bundle of
+//! lanes it is as many runs of one topology side by side.
+//! To keep a lane equal to a single run, bit for bit, a branch on a number becomes a [`Mask`] and a [`Real::select`],
+//! a block may be skipped only when no lane needs it, and no operation may differ between the two (no fused
+//! multiply-add, no platform sine).
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -28,79 +28,79 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// The answer of a comparison, lane by lane.
+    /// Result of a comparison, lane by lane.
     type Mask: Mask;
 
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     fn splat(value: f64) -> Self;
-    /// The correctly rounded square root.
+    /// Returns the correctly rounded square root.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// The absolute value.
+    /// Returns the absolute value.
     #[must_use]
     fn abs(self) -> Self;
-    /// `self < other`.
+    /// Returns `self < other`.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`.
+    /// Returns `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// Returns `yes` in lanes of the mask, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// The number in one lane; lane 0 of an `f64` is itself.
+    /// Returns the number in one lane; lane 0 of an `f64` is itself.
     fn lane(self, lane: usize) -> f64;
-    /// The number that `value` gives for each lane.
+    /// Creates a number from the `value` of each lane.
     #[must_use]
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
-    /// How many numbers run together.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// Does work that is full of these numbers, compiled for the unit that computes them.
+    /// Runs work on these numbers, compiled for the unit that computes them.
     ///
-    /// All arithmetic of a bundle must be inlined into such a scope: outside of one it is right but slow.
+    /// All arithmetic of a bundle must be inlined into such a scope: outside of one it is correct but slow.
     #[inline(always)]
     fn scope<T>(work: impl FnOnce() -> T) -> T {
         work()
     }
 
-    /// Zero in every lane.
+    /// Returns zero in every lane.
     #[inline(always)]
     fn zero() -> Self {
         Self::splat(0.0)
     }
-    /// `self > other`.
+    /// Returns `self > other`.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
-    /// The smaller of the two; `other` where they are equal or not comparable.
+    /// Returns the smaller of the two; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
-    /// The larger of the two; `other` where they are equal or not comparable.
+    /// Returns the larger of the two; `other` if they are equal or not comparable.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
     }
-    /// The number held between `-limit` and `limit`.
+    /// Clamps the number to `-limit..=limit`.
     #[inline(always)]
     #[must_use]
     fn clamp_magnitude(self, limit: Self) -> Self {
         self.min(limit).max(-limit)
     }
-    /// Holds where the number is finite.
+    /// Returns `true` in lanes where the number is finite.
     #[inline(always)]
     fn is_finite_mask(self) -> Self::Mask {
-        // What is no number is not below anything.
+        // NaN is not less than anything.
         self.abs().lt(Self::splat(f64::INFINITY))
     }
-    /// The number with that of one lane replaced.
+    /// Replaces the number in one lane.
     #[must_use]
     fn with_lane(self, lane: usize, value: f64) -> Self {
         Self::from_lanes(|l| if l == lane { value } else { self.lane(l) })
     }
-    /// The largest over the lanes.
+    /// Returns the largest number over the lanes.
     fn largest_lane(self) -> f64 {
         (0..Self::LANES).map(|lane| self.lane(lane)).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -119,20 +119,20 @@ pub trait Mask:
     + BitOr<Output = Self>
     + Not<Output = Self>
 {
-    /// How many truth values there are.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// The truth that `value` gives for each lane.
+    /// Creates a mask from the `value` of each lane.
     #[must_use]
     fn from_lanes(value: impl FnMut(usize) -> bool) -> Self;
-    /// Holds in at least one lane.
+    /// Returns `true` if at least one lane is set.
     fn any(self) -> bool;
-    /// Holds in every lane.
+    /// Returns `true` if every lane is set.
     #[inline(always)]
     fn all(self) -> bool {
         !(!self).any()
     }
-    /// Holds in one lane.
+    /// Returns the value in one lane.
     fn lane(self, lane: usize) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! The run loop: steps, energy books, observers, and what ends a run.
+//! The run loop: steps, energy balance, observers, and the end of a run.
 
 use std::ops::ControlFlow;
 
@@ -11,9 +11,9 @@ use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
 
-/// Sees every accepted step; may ask to stop.
+/// Observer of every accepted step; may stop the run.
 pub trait Observer<S: Space> {
-    /// Looks at an accepted state and the forces at it.
+    /// Receives an accepted state and its forces.
     fn observe(
         &mut self,
         model: &Model<S>,
@@ -23,7 +23,7 @@ pub trait Observer<S: Space> {
     ) -> ControlFlow<()>;
 }
 
-/// Looks at nothing.
+/// No-op observer.
 impl<S: Space> Observer<S> for () {
     fn observe(
         &mut self,
@@ -36,7 +36,7 @@ impl<S: Space> Observer<S> for () {
     }
 }
 
-/// An observer made of a function.
+/// Creates an observer from a function.
 pub fn look<S: Space>(
     look: impl FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
 ) -> impl Observer<S> {
@@ -61,66 +61,65 @@ where
     }
 }
 
-/// How a run is integrated.
+/// Integration settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// The time step (s), which impacts divide where the model says so ([`Substepping`]);
-    /// for an adaptive method, the first and the longest.
+    /// Time step (s), which impacts divide if the model says so ([`Substepping`]); for an adaptive method, the first
+    /// and the maximum step.
     pub time_step: f64,
-    /// When the run ends (s).
+    /// End time (s).
     pub end_time: f64,
 }
 
-/// How a run came to its end.
+/// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
     /// The end time was reached.
     EndTime,
-    /// The observer asked to stop.
+    /// The observer stopped the run.
     Stopped,
 }
 
-/// Why a run broke down.
+/// Numerical failure of a run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// A number was lost.
+    /// A number is not finite.
     #[error(
         "the step failed at t = {time:.6} s: body \"{body}\" left the finite numbers; try a step \
          below {time_step:.2e} s"
     )]
     NotFinite {
-        /// When (s).
+        /// Time (s).
         time: f64,
-        /// Which body.
+        /// The body.
         body: String,
-        /// The step that was used (s).
+        /// Time step (s).
         time_step: f64,
-        /// Steps that had been accepted before.
+        /// Number of steps accepted before.
         steps: u64,
     },
 }
 
-/// What a run leaves behind.
+/// Totals of a run.
 #[derive(Clone, Debug)]
 pub struct RunTotals<S: Space> {
-    /// How it ended.
+    /// Reason for its end.
     pub finish: Finish,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// The energy books.
+    /// Energy balance.
     pub energy: EnergyLedger<S>,
 }
 
 /// Runs `state` to the end time, or until the observer stops it.
 ///
-/// The observer also sees the state at the start.
-/// With a fixed step the times are whole multiples of it, or of its substeps, counted from the start, so
-/// that no rounding adds up; the last step is shortened to end on time.
+/// The observer also receives the initial state. With a fixed step the times are whole multiples of it, or of its
+/// substeps, counted from the start, so that rounding does not accumulate; the last step is shortened to end on time.
 ///
 /// # Errors
-/// When a pose or twist leaves the finite numbers; `state` is then the state it happened in.
+/// If a pose or twist is not finite; `state` is then that state.
 pub fn simulate<S: Space<Real = f64>>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -140,7 +139,7 @@ pub fn simulate<S: Space<Real = f64>>(
     let start = state.time;
     let mut steps = 0_u64;
     let mut next_step = simulation.time_step;
-    // A remainder below this is rounding, not a step.
+    // A remainder below this is due to rounding, not a step.
     let sliver = 1e-9 * simulation.time_step;
     let mut finish = Finish::EndTime;
     if observer.observe(model, state, scratch, &energy).is_break() {
@@ -167,27 +166,27 @@ pub fn simulate<S: Space<Real = f64>>(
     Ok(RunTotals { finish, steps, energy })
 }
 
-/// The times of the steps of a run: whole numbers of the shortest steps into which impacts divide a step.
+/// Times of the steps of a run, in integer multiples of the shortest substep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepTimes<R: Real> {
-    /// Shortest steps since the start.
+    /// Number of shortest steps since the start.
     count: R,
-    /// Shortest steps in a step, and in a short one.
+    /// Number of shortest steps in a whole step, and in a short one.
     whole: R,
     short: R,
     /// The shortest step (s).
     shortest: R,
     time_step: R,
-    /// Whether an impact that is not over was hard: the length of steps changes before an impact and after it, since
-    /// within one that would cost energy.
+    /// `true` if an impact under way was hard: the step length changes before and after an impact only, since a
+    /// change within one would cost energy.
     hard: R::Mask,
 }
 
-/// How much longer than a step impacts are foreseen, since velocities change within it.
+/// Lookahead for impacts, in steps: more than one, since velocities change within a step.
 const LOOKAHEAD: f64 = 1.25;
 
 impl<R: Real> StepTimes<R> {
-    /// Those of a model, by a time step (s).
+    /// Creates the times of a model for a time step (s).
     pub(crate) fn new<S: Space<Real = R>>(model: &Model<S>, time_step: R) -> Self {
         let Substepping { substeps, fast, .. } = &model.substepping;
         let short = R::splat(if fast.is_some() { 2.0 } else { 1.0 });
@@ -196,18 +195,18 @@ impl<R: Real> StepTimes<R> {
         Self { count, whole, short, shortest, time_step, hard: R::Mask::default() }
     }
 
-    /// No step is divided.
+    /// Disables substeps.
     fn undivided(&mut self) {
         (self.whole, self.short) = (R::splat(1.0), R::splat(1.0));
     }
 
-    /// How far (s) impacts are foreseen; zero where no step is divided.
+    /// Returns the time (s) for which impacts are predicted; zero if no step is divided.
     pub(crate) fn lookahead(&self) -> R {
         let divided = self.short.lt(self.whole);
         R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())
     }
 
-    /// The time (s) since the start at which the next step ends, where impacts need short steps and are hard or not.
+    /// Returns the time (s) since the start at which the next step ends, for lanes that need substeps, hard or not.
     #[inline(always)]
     pub(crate) fn next(&mut self, needs_substeps: R::Mask, is_hard: R::Mask) -> R {
         self.hard = needs_substeps & (self.hard | is_hard);
@@ -219,8 +218,8 @@ impl<R: Real> StepTimes<R> {
 
 lanewise!(struct StepTimes<R> { count, whole, short, shortest, time_step } masks { hard });
 
-/// Names the first body of a lane that is not where a finite number says, or else the one that moves
-/// most: its energy is the first to leave the finite numbers.
+/// Names the first body of a lane that is not finite, or else the one that moves most: its energy is the first to
+/// overflow.
 pub(crate) fn lost_body<S: Space>(
     model: &Model<S>,
     state: &State<S>,
@@ -233,7 +232,7 @@ pub(crate) fn lost_body<S: Space>(
         let size = pose.position.dot(pose.position)
             + twist.linear.dot(twist.linear)
             + twist.angular.dot(twist.angular);
-        // A lost number counts as infinite.
+        // NaN counts as infinite.
         if size.lane(lane).is_finite() { size.lane(lane) } else { f64::INFINITY }
     };
     let bodies = || 0..model.bodies.len();

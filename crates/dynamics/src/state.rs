@@ -1,4 +1,4 @@
-//! All that must be saved to continue a run.
+//! State of a simulation: everything that must be saved to continue a run.
 
 use crate::contact_elements::ContactElements;
 use crate::element::Memory;
@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::real::Real;
 use crate::space::{Pose, Space, Twist};
 
-/// Where everything is, how it moves, and what the contacts remember.
+/// Poses, twists, and the memory of contacts and force elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State<S: Space> {
     /// Time (s); lanes may be at different times.
@@ -17,12 +17,12 @@ pub struct State<S: Space> {
     pub twists: Vec<Twist<S>>,
     /// The contact elements within reach, with the memory of their sticks.
     pub contact_elements: ContactElements<S>,
-    /// What the force elements remember.
+    /// Memory of the force elements.
     pub memory: Vec<Memory<S>>,
 }
 
 impl<S: Space> State<S> {
-    /// The state in which a model starts, at time zero.
+    /// Creates the initial state of a model, at time zero.
     pub fn initial(model: &Model<S>) -> Self {
         let mut state = Self {
             time: S::Real::zero(),

@@ -1,4 +1,4 @@
-//! Every normal law: signs, continuity, stored energy, limits, and the restitution it shows.
+//! Every normal law: signs, continuity, stored energy, limits, and restitution.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
@@ -66,14 +66,14 @@ proptest! {
     fn the_force_of_a_touching_node_never_jumps(
         law in any_law(), depth in 1e-4..0.1_f64, rate in -5.0..5.0_f64
     ) {
-        // A small change of the arguments changes the force by a small share of its own scale.
+        // A small change of the arguments changes the force by a small fraction of its scale.
         let here = law.force(depth, rate).total;
         let scale = law.force(depth, rate.abs()).total + law.tangent_damping(depth) * rate.abs();
         for (d, r) in [(1e-9, 0.0), (-1e-9, 0.0), (0.0, 1e-9), (0.0, -1e-9)] {
             let there = law.force(depth * (1.0 + d), rate * (1.0 + r)).total;
             prop_assert!((there - here).abs() <= 1e-8 * scale);
         }
-        // The rate passes through zero without a jump too.
+        // Nor does it jump where the rate passes through zero.
         let (in_, out) = (law.force(depth, 1e-12).total, law.force(depth, -1e-12).total);
         prop_assert!((in_ - out).abs() <= 1e-6 * law.force(depth, 0.0).total);
     }
@@ -104,19 +104,19 @@ proptest! {
         prop_assert!(e > 0.0 && e < 1.0);
         let side = |w: f64| w - libm::log1p(w);
         if u > 10.0 {
-            // Of a hard one the speed on the way out is 1/d, whatever it was on the way in.
+            // Limit of hard impacts: the speed after is 1/d, whatever the speed before.
             prop_assert!((1.0 - e * u) <= (1.0 + u) * libm::exp(-u) + 1e-15);
         } else if u > 1e-3 {
             prop_assert!((side(-e * u) / side(u) - 1.0).abs() < 1e-9);
         } else {
-            // Of a soft blow: e = 1 − ⅔ u + ⁴⁄₉ u² − …
+            // Limit of soft impacts: e = 1 − ⅔ u + ⁴⁄₉ u² − …
             let series = 1.0 - 2.0 / 3.0 * u + 4.0 / 9.0 * u * u;
             prop_assert!((e - series).abs() < u * u * u + 1e-11, "u = {u:e}: {e} for {series}");
         }
     }
 }
 
-/// A Hunt–Crossley law that loses nothing.
+/// Returns a Hunt–Crossley law without dissipation.
 fn soft_law(stiffness: f64, exponent: Exponent) -> NormalLaw {
     NormalLaw::HuntCrossley { stiffness, dissipation: 0.0, exponent }
 }
@@ -135,7 +135,7 @@ fn laws_have_the_limits_of_their_parameters() {
         );
         assert_eq!(spring.total, k * depth);
         assert_eq!(spring, soft_law(k, Exponent::Linear).force(depth, rate));
-        // While approaching the two dampers are one.
+        // On approach the two dampers are equal.
         let gap = NormalLaw::SpeedGap { stiffness: k, damping: 3e3 }.force(depth, rate.abs());
         assert_eq!(
             gap,
@@ -202,23 +202,23 @@ fn restitution_formulas_give_the_table() {
     assert_eq!(restitution::damping(1e6, restitution::damping_ratio(1e6, 500.0, 4.0), 4.0), 500.0);
 }
 
-/// What one bounce of a disc shows.
+/// Result of one bounce of a disc.
 struct Bounce {
-    /// Speed (m/s) on the way out over that on the way in; none when it stays.
+    /// Ratio of the speeds (m/s) after and before; `None` if it stays.
     restitution: Option<f64>,
     /// Deepest penetration (m).
     deepest: f64,
-    /// Time (s) from touch to parting.
+    /// Time (s) from touch to separation.
     duration: f64,
 }
 
 /// Mass (kg) of the bouncing disc.
 const MASS: f64 = 4.0;
 
-/// A disc that touches the floor at time zero with a speed (m/s).
+/// Simulates a disc that touches the floor at time zero with a speed (m/s).
 fn bounce(law: NormalLaw, speed: f64, gravity: Vec2, time_step: f64, end: f64) -> Bounce {
     let radius = 0.25;
-    // A hair inside the floor, so that the damper's jump falls on the start of the first step.
+    // Slightly inside the floor, so that the jump of the damper is at the start of the first step.
     let start = Vec2::new(0.0, radius * (1.0 - 1e-15));
     let mut ball = disc("ball", radius, MASS, 0.5 * radius * radius, start);
     ball.twist = Twist { linear: Vec2::new(0.0, -speed), angular: 0.0 };
@@ -234,7 +234,7 @@ fn bounce(law: NormalLaw, speed: f64, gravity: Vec2, time_step: f64, end: f64) -
             found.deepest = found.deepest.max(depth);
             let parted = state.time > 0.0 && scratch.contacts.is_empty();
             if parted {
-                // Free flight keeps v²/2 + g z: the speed at parting is found from any later state.
+                // Free flight conserves v²/2 + g z: the speed at separation follows from any later state.
                 let v = state.twists[1].linear.z;
                 let rise = (v * v + 2.0 * gravity.z * depth).max(0.0).sqrt();
                 found.restitution = Some(rise / speed);
@@ -249,7 +249,7 @@ fn bounce(law: NormalLaw, speed: f64, gravity: Vec2, time_step: f64, end: f64) -
     found
 }
 
-/// A step in which the contact turns by a two-thousandth of a radian.
+/// Returns a step in which the contact phase advances by a two-thousandth of a radian.
 fn fine_step(stiffness: f64) -> f64 {
     5e-4 / (stiffness / MASS).sqrt()
 }
@@ -268,7 +268,7 @@ fn a_bouncing_disc_shows_the_restitution_and_contact_time_of_the_table() {
         assert_close("phase", omega * found.duration, contact_phase(zeta), 1e-8); // measured 3.0e-9
 
         let both = NormalLaw::KelvinVoigt { stiffness, damping };
-        // The force ends before the penetration does; from there to parting the disc flies freely.
+        // The force ends before the penetration does; from there to separation the disc flies freely.
         let found = bounce(both, speed, Vec2::default(), step, 0.2);
         let e = found.restitution.unwrap();
         assert_close("Kelvin–Voigt restitution", e, restitution::kelvin_voigt(zeta), 2e-8); // measured 3.4e-9

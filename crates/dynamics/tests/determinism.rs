@@ -1,4 +1,4 @@
-//! The same bits every time, and numbers that are lost are reported.
+//! Runs are bit-identical, and non-finite numbers are reported.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
@@ -22,7 +22,7 @@ fn tumbling() -> Scene {
     Scene::new(bodies(2008, 8, 0.1), rough(1.0, 1.0), DOWN).unwrap()
 }
 
-/// A number that differs when any bit does (FNV-1a).
+/// Returns a hash of the bits (FNV-1a).
 fn hash(bits: &[u64]) -> u64 {
     bits.iter().flat_map(|b| b.to_le_bytes()).fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -49,8 +49,8 @@ fn a_run_repeated_gives_the_same_bits() {
 
 #[test]
 fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
-    // Continued from the saved state alone: twists, poses, sticks. Times are powers of two, so that
-    // the same steps are taken.
+    // Continues from the saved state alone: twists, poses, sticks. Times are powers of two, so that the steps are the
+    // same.
     let (step, half, end) = (1.0 / 4096.0, 0.25, 0.5);
     let drive = Shake::Harmonic { acceleration: 4.0, omega: 7.0 };
     let mut whole = tumbling();
@@ -60,7 +60,7 @@ fn a_run_stopped_and_continued_gives_the_bits_of_one_run() {
     let mut resumed = Scene::of(parts.model.clone());
     resumed.state = parts.state.clone();
     resumed.by(Method::RungeKutta4).run(&drive, step, end).unwrap();
-    // Time, places and velocities of all bodies; what sticks remember shows in them at the next step.
+    // Time, positions and velocities of all bodies; the memory of sticks affects them at the next step.
     let all = 1 + 6 * whole.state.poses.len();
     assert_eq!(bits(&whole.state)[..all], bits(&resumed.state)[..all]);
 }
@@ -137,8 +137,8 @@ fn an_observer_sees_the_start_and_can_stop_the_run() {
 
 #[test]
 fn a_step_far_too_long_ends_with_the_time_and_the_body() {
-    // A disc pressed between a floor and a ceiling: the contact never lets go, so a step beyond the
-    // critical one doubles the swing again and again.
+    // A disc pressed between a floor and a ceiling: the contact is permanent, so above the critical step the
+    // oscillation doubles again and again.
     let ceiling = Placed {
         surface: Shape::HalfPlane(HalfPlane),
         offset: Vec2::new(0.0, 0.39),

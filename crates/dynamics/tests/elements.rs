@@ -1,4 +1,4 @@
-//! Guides, rods and ties that yield against closed forms, and the books of all of them.
+//! Guides, rods and yielding ties against closed forms, and their energy balance.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -38,7 +38,7 @@ fn scene(bodies: Vec<Body<Planar>>, elements: Vec<Element<Planar>>, gravity: Vec
     Scene::of(model)
 }
 
-/// A weight three meters up that goes along a guide from the ground at a speed (m/s).
+/// Returns a weight at 3 m height on a guide from the ground, at a speed (m/s).
 fn guided(guide: Guide<Planar>, speed: f64) -> Scene {
     let body = weight("weight", 0.0, 3.0, Vec2::new(speed, 0.0), 0.0);
     scene(vec![floor(), body], vec![guide.into()], Vec2::default())
@@ -49,7 +49,7 @@ fn guide(stiffness: f64, damping: f64) -> Guide<Planar> {
     Guide::spring(at, Vec2::new(1.0, 0.0), stiffness, damping)
 }
 
-/// Runs and gives the books, while `seen` gets time, place and force.
+/// Runs and returns the energy balance; `seen` receives time, position and force.
 fn watch(
     scene: &mut Scene,
     step: f64,
@@ -151,7 +151,7 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
     assert!((books.damped / (0.25 * 0.5 * MASS * speed * speed) - 1.0).abs() < 2e-3);
     assert!(books.residual_ratio() < 1e-3);
 
-    // Lifted by more than its reach it lets go for good, by less it holds.
+    // Lifted beyond its reach it releases for good, otherwise it holds.
     for (reach, gone) in [(0.1, true), (0.4, false)] {
         let lifted = broken(Guide { reach, ..spring.clone() }, Vec2::new(speed, 1.0));
         assert_eq!(lifted.0, gone, "reach {reach} m");
@@ -160,7 +160,7 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
 
 #[test]
 fn a_tie_that_yields_keeps_what_it_gave_and_the_books_close() {
-    // Caught after a slack way: elastic up to the yield force, then at it until the way is used up.
+    // Caught after a slack: elastic up to the yield force, then plastic until the energy is absorbed.
     let (k, yields_at, slack, speed) = (1e5, 2e3, 0.05, 1.2);
     let tie = Strap {
         link: link([0, 1], [Vec2::new(-1.0, 3.0), Vec2::default()]),
@@ -227,7 +227,7 @@ fn a_mass_on_a_rod_is_a_pendulum_and_its_sway_is_damped() {
     assert!(first < 0.05, "{first}");
 }
 
-/// Where the rod hangs (m).
+/// Attachment point of the rod (m).
 const HANGS: Vec2 = Vec2::new(0.0, 5.0);
 
 #[test]

@@ -1,4 +1,4 @@
-//! A stack of the plane, drawn out into space, moves there as in its plane.
+//! A plane stack, extruded into space, moves there as in its plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -21,33 +21,33 @@ const BARREL: f64 = 0.345;
 const BEAM: f64 = 0.025;
 const HALF: f64 = 0.62;
 
-/// Radius (m) of the posts that make cradles, and how far (m) they reach above the axis of their beam.
+/// Radius (m) of the posts that form cradles, and their height (m) above the axis of their beam.
 const POST: f64 = 0.02;
 const TOP: f64 = 0.08;
 
 /// Height (m) of the axis of a barrel above that of the beams that carry it.
 const AXIS: f64 = 0.379;
 
-/// How far (m) from the middle the planes of contact lie.
+/// Distance (m) of the planes of contact from the middle.
 const PLANE: f64 = 0.27;
 
 /// Mass (kg) and moment of inertia (kg·m²) about the axis along the barrels.
 const BARREL_BULK: [f64; 2] = [270.0, 14.0];
 const RACK_BULK: [f64; 2] = [40.0, 6.5];
 
-/// Half the distance (m) of two barrels, and where the posts of each stand.
+/// Returns half the distance (m) of two barrels, and the positions of the posts of each.
 fn posts() -> [f64; 4] {
     let away = math::sin(0.62) * (BARREL + POST);
     [-0.38 - away, -0.38 + away, 0.38 - away, 0.38 + away]
 }
 
-/// Constants of a meter of contact.
+/// Returns the constants per meter of contact.
 fn laws<S: Space<Real = f64>>() -> Interface<S> {
     let law = NormalLaw::SpeedGap { stiffness: 4e6, damping: 4e3 };
     Interface { basis: Basis::Length, ..interface(law, coulomb(0.4, 2e6, 1e3)) }
 }
 
-/// Heights (m) of the beams of a level.
+/// Returns the heights (m) of the beams of a level.
 fn height(level: usize) -> f64 {
     BEAM + level as f64 * (AXIS + BARREL + BEAM)
 }
@@ -56,7 +56,7 @@ fn place(x: f64, z: f64) -> Vec2 {
     Vec2::new(x, z)
 }
 
-/// The stack in the plane.
+/// Returns the stack in the plane.
 fn flat(levels: usize) -> Scene<Planar> {
     let body = |name: String, [mass, inertia]: [f64; 2], x: f64, z: f64, shapes: Vec<Shape>| Body {
         name,
@@ -104,7 +104,7 @@ fn flat(levels: usize) -> Scene<Planar> {
     Scene::of(Model::new(bodies, vec![laws()], pairs, scene::DOWN).unwrap())
 }
 
-/// The same in space: all that a rack touches lies in two planes, each with half of the constants.
+/// Returns the stack in space: all contacts of a rack lie in two planes, each with half of the constants.
 fn drawn_out(levels: usize) -> Scene<Spatial> {
     let along = yaw(FRAC_PI_2).matrix();
     let upright = Quaternion::turn(Vec3::new(0.0, -FRAC_PI_2, 0.0)).matrix();
@@ -124,7 +124,7 @@ fn drawn_out(levels: usize) -> Scene<Spatial> {
             })
             .collect(),
         nodes: tubes.into_iter().map(Nodes::Whole).collect(),
-        // Of the other moments nothing is asked while it stays in its plane.
+        // The other moments do not matter while it stays in its plane.
         ..spatial::free(&name, mass, Vec3::new(20.0, inertia, 25.0), place)
     };
     let mut bodies = vec![spatial::floor()];
@@ -165,8 +165,8 @@ impl Drive<Spatial> for Across {
     }
 }
 
-/// How far the stacks were apart (m) until something fell or the time (s) was over, and how far the one in space left
-/// its plane; how far something went, and when that was.
+/// Distance (m) of the two stacks until something fell or the time (s) was over, and distance of the one in space
+/// from its plane; displacement and time of a fall.
 struct Apart {
     off: f64,
     aside: f64,
@@ -175,8 +175,8 @@ struct Apart {
     fell: bool,
 }
 
-/// Both from the same places, bearing nothing yet: what friction holds at rest depends on the way there, and settling
-/// takes another one in space.
+/// Both start from the same positions, unloaded: friction at rest depends on the path to it, and settling takes
+/// another path in space.
 fn compare(levels: usize, shake: Shake, most: f64) -> Apart {
     let (mut plane, mut space) = (flat(levels), drawn_out(levels));
     let start: Vec<Vec2> = plane.state.poses.iter().map(|pose| pose.position).collect();
@@ -220,8 +220,8 @@ fn a_stack_drawn_out_into_space_goes_where_that_of_the_plane_goes() {
     }
 }
 
-/// Why that is asked until the first fall and not for a minute: what is rounded in the last digit grows twentyfold in
-/// half a second, in the plane alone as well.
+/// Explains the limit to the first fall: rounding errors grow twentyfold in half a second, in the plane alone as
+/// well.
 #[test]
 fn a_stack_that_starts_a_hair_beside_goes_elsewhere_in_the_plane_too() {
     let shake = Shake::Harmonic { acceleration: 12.0, omega: 8.0 };

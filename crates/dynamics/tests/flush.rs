@@ -19,7 +19,7 @@ use barrelstack_scenes::{GRAVITY, spatial};
 
 const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e7;
-/// How far (m) aside of each other bodies stand, as a rule: rounding, what a scene may state, and half a body.
+/// Typical lateral offsets (m) of bodies: rounding, round numbers of scenes, and half a body.
 const ASIDE: [f64; 10] = [0.0, 1e-16, 1e-12, 1e-10, 1e-9, 3e-9, 1e-6, 1e-5, 1e-4, 1e-3];
 
 fn laws<S: Space<Real = f64>>() -> Interface<S> {
@@ -27,7 +27,7 @@ fn laws<S: Space<Real = f64>>() -> Interface<S> {
     interface(normal, coulomb(0.5, STIFFNESS, 1e3))
 }
 
-/// How the boundary of a body touches.
+/// Kind of contact of a boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Touching {
     Exact,
@@ -56,14 +56,14 @@ fn body(shape: Shape, touching: Touching, x: f64, z: f64, turn: f64) -> Body<Pla
     }
 }
 
-/// Bodies on each other that come to rest and stay: the places to which they sink (m), the lowest first.
+/// Asserts that stacked bodies come to rest and stay; returns their settlements (m), the lowest first.
 fn rests(what: &str, bodies: Vec<Body<Planar>>, seconds: f64) -> Vec<f64> {
     let named = |(i, body)| Body { name: format!("body {i}"), ..body };
     let bodies = bodies.into_iter().enumerate().map(named).collect();
     let all = [vec![floor()], bodies].concat();
     let pairs = barrelstack_scenes::scene::all_pairs(&all)
         .into_iter()
-        // Of corners that are nodes those of the upper body are tested, as a scene of kinds in order has it.
+        // Of nodes at corners those of the upper body are tested, as in a scene of ordered kinds.
         .filter(|pair| {
             !matches!(all[pair.contactor].nodes[..], [Nodes::Fixed(_)])
                 || pair.contactor > pair.target
@@ -83,7 +83,7 @@ fn rests(what: &str, bodies: Vec<Body<Planar>>, seconds: f64) -> Vec<f64> {
     rest.iter().zip(&start).skip(1).map(|(rest, start)| start.z - rest.z).collect()
 }
 
-/// That every body has sunk by what its two springs and those below it give way to.
+/// Asserts that every body has settled by the deformation of its two springs and of those below it.
 fn sinks_by_its_springs(what: &str, sunk: &[f64], tolerance: f64) {
     let count = sunk.len();
     let mut below = 0.0;
@@ -98,7 +98,7 @@ fn sinks_by_its_springs(what: &str, sunk: &[f64], tolerance: f64) {
 fn a_box_rests_on_an_equal_box_wherever_it_stands() {
     let square = || Shape::Polygon(rectangle(0.5, 0.5));
     for touching in [Touching::Exact, Touching::Corners] {
-        // Corners of the upper box alone bear it, so all of them have to stand on the lower one.
+        // The corners of the upper box alone bear it, so all of them must be on the lower one.
         let most = if touching == Touching::Corners { 1e-10 } else { 1.0 };
         let wanted = ASIDE.into_iter().filter(|aside| *aside <= most);
         for aside in wanted.flat_map(|aside| [aside, -aside]) {
@@ -111,7 +111,7 @@ fn a_box_rests_on_an_equal_box_wherever_it_stands() {
                         body(square(), touching, aside, 0.75, turn),
                     ];
                     let sunk = rests(&what, bodies, 0.05);
-                    // Aside of the middle the loads of both springs differ by as much.
+                    // Beside the middle the loads of both springs differ by this amount.
                     sinks_by_its_springs(&what, &sunk, 1e-9 + 1e-3 * aside.abs());
                 }
             }
@@ -164,7 +164,8 @@ fn a_profile_rests_on_the_head_of_an_equal_one() {
     }
 }
 
-/// Blocks on each other in space, each at a place and turned; the places to which they sink (m).
+/// Asserts that stacked blocks in space, each at a position and rotation, come to rest; returns their settlements
+/// (m).
 fn blocks_rest(
     what: &str,
     hull: Hull,
@@ -208,13 +209,13 @@ fn cube() -> Hull {
     Hull::Block(Block { half, rounding: 0.005 })
 }
 
-/// Four springs bear a block, however its faces overlap.
+/// Asserts that four springs bear a block, however its faces overlap.
 fn sinks_by_four(what: &str, sunk: &[f64], tolerance: f64) {
     let doubled: Vec<f64> = sunk.iter().map(|depth| 2.0 * depth).collect();
     sinks_by_its_springs(what, &doubled, 2.0 * tolerance);
 }
 
-/// Turned about the upright, on any of its faces.
+/// Returns a rotation about the vertical, on any face.
 fn turned(about_up: f64, face: u32) -> Quaternion {
     let onto = match face {
         0 => Vec3::default(),

@@ -1,4 +1,4 @@
-//! Dry friction: what holds does not creep, what slides slides as Coulomb says.
+//! Dry friction: sticking contacts do not creep, sliding contacts follow Coulomb's law.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
@@ -12,12 +12,12 @@ use proptest::prelude::*;
 const MASS: f64 = 50.0;
 const STIFFNESS: f64 = 1e6;
 
-/// A law stiff enough to be near rigid, damped both ways so that starts die out.
+/// Returns a law that is nearly rigid, damped both ways so that transients decay.
 fn firm() -> NormalLaw {
     NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e4 }
 }
 
-/// A low block on its two lower corners, sunk to rest, on a slope of an angle (rad).
+/// Returns a low block on its two lower corners, settled, on a slope of an angle (rad).
 fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Scene {
     let (width, height) = (0.6, 0.1);
     let gravity = gravity_on_slope(slope);
@@ -27,7 +27,7 @@ fn sledge(friction: FrictionLaw, slope: f64, speed: f64) -> Scene {
     Scene::new(vec![floor(), body], interface(firm(), friction), gravity).unwrap()
 }
 
-/// Downhill velocity (m/s) and place (m).
+/// Runs a scene; returns downhill velocity (m/s) and position (m).
 fn run(scene: &mut Scene, until: f64, time_step: f64) -> (f64, f64) {
     scene.run(&Still, time_step, until).unwrap();
     (scene.state.twists[1].linear.x, scene.state.poses[1].position.x)
@@ -82,7 +82,7 @@ fn what_rests_is_held_by_the_static_coefficient_and_what_slides_by_the_kinetic()
     let (speed, end) = run(&mut thrown, 5.0, 2e-4);
     assert!(speed.abs() < 1e-12 && (end - place).abs() < 1e-12, "{speed:e} {:e}", end - place);
     let slow_down = GRAVITY * (libm::sin(slope) + 0.3 * libm::cos(slope));
-    // Sticks stretched uphill let go and stretch downhill by what the block weighs there.
+    // Sticks stretched uphill release and stretch downhill by the weight component of the block.
     let back = MASS * slow_down / (2.0 * STIFFNESS);
     assert_close("way uphill", -end, 0.25 / (2.0 * slow_down) - back, 5e-3); // measured 2.4e-3
 }
@@ -131,7 +131,7 @@ fn a_node_slips_until_the_slip_turns_against_its_spring() {
     assert!(!commit(0.49e-3, false, 0.1).slipping);
     let broken = commit(0.51e-3, false, 0.1);
     assert!(broken.slipping && (broken.displacement - 0.3e-3).abs() < 1e-18);
-    // Slipping goes on while the slip follows the spring, also where the spring has become short.
+    // Slipping continues while the slip follows the spring, even where the spring has become short.
     assert!(commit(0.2e-3, true, 0.1).slipping);
     assert!(!commit(0.2e-3, true, -0.1).slipping);
     assert!(!commit(-0.2e-3, true, 0.1).slipping);
@@ -221,7 +221,7 @@ proptest! {
         if let FrictionLaw::Coulomb { tangential_stiffness, .. } = law {
             let spring = tangential_stiffness * weight * kept.displacement;
             prop_assert!(spring.abs() <= largest_coefficient(&law) * normal * (1.0 + 1e-12));
-            // It never turns around or grows, and a second commit changes nothing.
+            // It never reverses or grows, and a second commit changes nothing.
             prop_assert!(kept.displacement * stick.displacement >= 0.0);
             prop_assert!(kept.displacement.abs() <= stick.displacement.abs());
             let spring_alone = law.force::<Planar>(kept, 0.0, normal, weight);

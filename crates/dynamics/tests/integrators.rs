@@ -16,8 +16,8 @@ const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e6;
 const RADIUS: f64 = 0.35;
 
-/// The order of a method on smooth motion; the adaptive one runs with its step fixed by a tolerance
-/// that nothing exceeds.
+/// Returns the order of a method on smooth motion; the adaptive one runs at a fixed step, with a tolerance that is
+/// never exceeded.
 fn order(method: Method) -> f64 {
     match method {
         Method::SemiImplicitEuler => 1.0,
@@ -27,7 +27,7 @@ fn order(method: Method) -> f64 {
     }
 }
 
-/// A disc that swings on its floor without leaving it.
+/// Returns a disc that oscillates on its floor without leaving it.
 fn swinging(law: NormalLaw) -> Scene {
     let sunk = MASS * GRAVITY / STIFFNESS;
     let center = Vec2::new(0.0, RADIUS - 1.5 * sunk);
@@ -35,7 +35,7 @@ fn swinging(law: NormalLaw) -> Scene {
     Scene::new(vec![floor(), body], interface(law, FrictionLaw::Frictionless), DOWN).unwrap()
 }
 
-/// Height (m) and velocity (m/s) of the swinging disc at a time, exactly.
+/// Returns the exact height (m) and velocity (m/s) of the oscillating disc at a time.
 fn swing(damping_ratio: f64, time: f64) -> (f64, f64) {
     let omega = (STIFFNESS / MASS).sqrt();
     let sunk = GRAVITY / (omega * omega);
@@ -48,7 +48,7 @@ fn swing(damping_ratio: f64, time: f64) -> (f64, f64) {
     (RADIUS - sunk + height, velocity)
 }
 
-/// A disc that rolls without slip in a cradle, well away from small angles.
+/// Returns a disc that rolls without slip in a cradle, well beyond small angles.
 fn rolling() -> Scene {
     let cradle = ground_of(vec![centered(Shape::Cradle(Cradle::new(0.6, 1.2)))]);
     let arm = 0.25 + MASS * GRAVITY * libm::cos(0.5) / STIFFNESS;
@@ -58,7 +58,7 @@ fn rolling() -> Scene {
     Scene::new(vec![cradle, body], interface(normal, coulomb(5.0, STIFFNESS, 500.0)), DOWN).unwrap()
 }
 
-/// Errors for a step and its halves, as factors by which each halving divides the error.
+/// Returns the factors by which halving the step divides the error.
 #[allow(clippy::print_stdout, reason = "the measured orders")]
 fn observed_order(method: Method, errors: &[f64]) -> f64 {
     let factors: Vec<f64> = errors.windows(2).map(|e| libm::log2(e[0] / e[1])).collect();
@@ -116,7 +116,7 @@ fn every_method_has_its_order_on_a_rolling_disc() {
 #[allow(clippy::print_stdout, reason = "the measured drifts")]
 fn energy_of_an_undamped_disc_stays_within_the_bounds_of_its_method() {
     let law = NormalLaw::SpeedGap { stiffness: STIFFNESS, damping: 0.0 };
-    // A thousand swings; the energy of a swing is that of its start about the rest position.
+    // A thousand periods; the energy of the oscillation is that of its start about the rest position.
     let omega = (STIFFNESS / MASS).sqrt();
     let end = 1000.0 * std::f64::consts::TAU / omega;
     let swing = 0.5 * STIFFNESS * (0.5 * MASS * GRAVITY / STIFFNESS).powi(2);
@@ -139,7 +139,7 @@ fn energy_of_an_undamped_disc_stays_within_the_bounds_of_its_method() {
         // measured 2.6e-2, 6.2e-4, 2.7e-5, 5.2e-2 in the order of the methods
         assert!(late < bound, "{}: {late:e}", method.name());
         if matches!(method, Method::SemiImplicitEuler | Method::VelocityVerlet) {
-            // Symplectic methods: an error that swings and does not grow.
+            // Symplectic methods: the error oscillates and does not grow.
             assert!(late < 1.05 * early, "{}: {early:e} then {late:e}", method.name());
         }
     }
@@ -156,7 +156,7 @@ fn swings_on_an_undamped_stick_do_not_grow() {
         let laws = interface(law, coulomb(5.0, STIFFNESS, 0.0));
         let mut scene = Scene::new(vec![floor(), body], laws, DOWN).unwrap();
         let (mut early, mut late) = (0.0_f64, 0.0_f64);
-        // About 28 swings of ω = 174 /s.
+        // About 28 periods of ω = 174 /s.
         scene
             .by(method)
             .watch(&Still, 2.5e-4, 1.0, |state, _, _| {
@@ -214,15 +214,15 @@ fn a_tighter_tolerance_gives_a_smaller_error() {
     for tolerance in [1e-6, 1e-8, 1e-10] {
         let mut scene = swinging(law);
         let method = Method::BogackiShampine { tolerance };
-        // The first step is far too long: it must be refused, and leave no trace.
+        // The first step is far too long: it must be rejected without a trace.
         let totals = scene.by(method).run(&Still, 0.05, end).unwrap();
         let error = (scene.state.poses[1].position.z - height).abs();
         println!("tolerance {tolerance:e}: error {error:.1e} in {} steps", totals.steps);
         // measured 7.6e-5, 1.4e-6, 2.0e-8
         assert!(error < 0.1 * before && error < 300.0 * tolerance);
         if steps > 0 {
-            // The error estimate is of third order in the step: a hundredth of it takes 4.6 times
-            // the steps; measured 4.3 and 4.5.
+            // The error estimate is of third order in the step: a hundredth of it takes 4.6 times the steps; measured
+            // 4.3 and 4.5.
             let more = totals.steps as f64 / f64::from(steps);
             assert!((3.8..5.2).contains(&more), "{more} times the steps");
         }
@@ -233,8 +233,8 @@ fn a_tighter_tolerance_gives_a_smaller_error() {
 
 #[test]
 fn a_refused_step_leaves_no_trace() {
-    // From the same start, a first step that is refused and cut to some length, and that length
-    // offered at once, give the same bits.
+    // From the same start, a first step that is rejected and shortened to some length, and that length given at once,
+    // have the same bits.
     let law = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e3 };
     let method = Method::BogackiShampine { tolerance: 1e-8 };
     let first = |step: f64| {
@@ -267,8 +267,7 @@ fn halving_the_step_of_an_impact_brings_it_nearer_to_the_exact_rebound() {
     let exact = restitution::speed_gap(zeta);
     for method in every_method(1e-9) {
         let error = |step: f64| {
-            // Touch-downs at many places within a step, since what a step makes of a jump depends on
-            // where it falls.
+            // Touch-downs at many positions within a step, since the error of a jump depends on them.
             let errors = (0..16).map(|i| {
                 let height = RADIUS + 0.01 + step * f64::from(i) / 16.0;
                 let mut body = disc("disc", RADIUS, MASS, 0.06, Vec2::new(0.0, height));
@@ -285,8 +284,8 @@ fn halving_the_step_of_an_impact_brings_it_nearer_to_the_exact_rebound() {
         if method.is_adaptive() {
             assert!(errors.iter().all(|e| *e < 3e-4), "{errors:?}"); // measured 1.4e-4
         } else {
-            // A jump at touch-down leaves first order to every fixed step; measured 3.9e-3, 2.5e-3 and
-            // 1.7e-3 at the shortest.
+            // A jump at touch-down reduces every fixed-step method to first order; measured 3.9e-3, 2.5e-3 and 1.7e-3
+            // at the shortest.
             assert!(
                 errors[3] < 0.2 * errors[0] && errors[3] < 6e-3,
                 "{}: {errors:?}",

@@ -1,4 +1,4 @@
-//! What must hold in every scene: balance of momentum and energy, symmetry, similitude.
+//! Invariants of every scene: balance of momentum and energy, symmetry, similitude.
 
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
@@ -25,12 +25,12 @@ fn tumbling(seed: u64) -> Scene {
     Scene::new(bodies(seed, 6, 0.1), rough(1.0, 1.0), DOWN).unwrap()
 }
 
-/// What a moment about the origin of the inertial frame is.
+/// Returns a moment about the origin of the inertial frame.
 fn moment(arm: Vec2, force: Vec2) -> f64 {
     arm.x * force.z - arm.z * force.x
 }
 
-/// The largest difference of two states in positions (m), angles (rad) and velocities.
+/// Returns the largest difference of two states in positions (m), angles (rad) and velocities.
 fn apart(a: &State<Planar>, b: &State<Planar>) -> f64 {
     let pairs = a.poses.iter().zip(&a.twists).zip(b.poses.iter().zip(&b.twists));
     pairs
@@ -57,7 +57,7 @@ proptest! {
             }
             assert!(force.length() < 1e-13 * size, "{force:?}"); // measured 4.5e-16
             assert!(turn.abs() < 1e-13 * size, "{turn}"); // measured 6.1e-16
-            // The same pair by pair: force and moment of the contacts are those of both bodies.
+            // Pair by pair: force and moment of the contacts are those of both bodies.
             let mut sums = vec![(Vec2::default(), 0.0); model.bodies().len()];
             for contact in &scratch.contacts {
                 touched += 1;
@@ -68,7 +68,7 @@ proptest! {
                 assert!(contact.friction_force.abs() <= limit * (1.0 + 1e-15));
                 let (force, point) = contact_force(&model, state, scratch, contact);
                 let pair = model.pair(contact.pair);
-                // Both bodies feel the force on the target's surface.
+                // The force acts on both bodies at the target's surface.
                 let surface = &model.bodies()[pair.target].surfaces[pair.surface].surface;
                 assert!(Surface::<Planar>::gap(surface, contact.point).distance.abs() < 1e-14);
                 for (body, force) in [(pair.contactor, force), (pair.target, -force)] {
@@ -141,8 +141,8 @@ proptest! {
 
     #[test]
     fn a_scene_four_times_as_large_moves_alike_bit_for_bit(seed in any::<u64>()) {
-        // Time ×2, mass ×64, forces ×64, gravity as it is; all factors are powers of two.
-        // The margin of the near list is in meters and does not scale: it must not touch a bit.
+        // Time ×2, mass ×64, forces ×64, equal gravity; all factors are powers of two. The margin of the near list is
+        // in meters and does not scale: it must not affect a bit.
         let ground = Shake::Swing { amplitude: 0.03, omega: 9.0 };
         let larger_ground = Shake::Swing { amplitude: 4.0 * 0.03, omega: 4.5 };
         for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {
@@ -280,7 +280,7 @@ proptest! {
     }
 }
 
-/// Whether the near list and the plain path agree on a scene, and something touches in it.
+/// Returns `true` if the near list and the exhaustive list agree on a scene that has a contact.
 fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end: f64) -> bool {
     let run = |exhaustive: bool| {
         let mut scene = scene();
@@ -304,7 +304,7 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
 
 #[test]
 fn the_near_list_sees_a_bar_that_turns_on_the_spot() {
-    // Its center stays and its tip sweeps onto a disc that the first list does not hold.
+    // Its center stays and its tip sweeps onto a disc that is not in the first list.
     let scene = || {
         let mut bar = finely_noded_block("bar", (2.0, 0.1), 40.0, 0.1, pose(0.0, 0.0, 0.0));
         bar.twist.angular = 0.5;
@@ -336,7 +336,7 @@ fn crossley() -> Interface<Planar> {
     )
 }
 
-/// A body four times as large in the same gravity.
+/// Returns a body four times as large in the same gravity.
 fn four_times(body: &Body<Planar>) -> Body<Planar> {
     let mut body = body.clone();
     body.mass *= 64.0;
@@ -372,7 +372,7 @@ fn four_times(body: &Body<Planar>) -> Body<Planar> {
     body
 }
 
-/// The interface that goes with bodies four times as large.
+/// Returns the interface for bodies four times as large.
 fn stiffer(interface: &Interface<Planar>) -> Interface<Planar> {
     let mut larger = interface.clone();
     match &mut larger.normal {
@@ -461,7 +461,7 @@ fn constants_per_length_do_not_depend_on_the_spacing_of_nodes() {
         let scene = Scene::new(vec![floor(), body], law, DOWN).unwrap().settled(1e-10).unwrap();
         0.15 - scene.state.poses[1].position.z
     };
-    // The corners stand for half of the short sides too, whatever the spacing: take that away.
+    // The tributary lengths of the corners include half of the short sides, whatever the spacing: subtract that.
     let exact = |spacing: f64| 40.0 * 9.80665 / (2.0e5 * (0.6 + spacing));
     for spacing in [0.3, 0.15, 0.05, 0.025] {
         let error = (sunk(spacing) / exact(spacing) - 1.0).abs();

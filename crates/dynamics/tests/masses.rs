@@ -1,4 +1,4 @@
-//! Masses, centers and moments of inertia against closed forms and against counting small cells.
+//! Masses, centers and moments of inertia against closed forms and against sums over small cells.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -15,12 +15,12 @@ fn bordeaux() -> Barrel {
     Barrel::new(0.945, 0.2775, 0.345, 0.01).unwrap()
 }
 
-/// A barrel of 225 liters with walls of 25 mm, its heads where it holds them.
+/// Returns a barrel of 225 liters with walls of 25 mm, its heads at the position of the original.
 fn cask() -> Cask {
     Cask { barrel: bordeaux(), wall: 0.025, chime: 0.063, wood: 48.0, density: 982.0 }
 }
 
-/// Volume (m³), center (m) and second moments about the origin (m⁵) of what is inside, by counting cells.
+/// Returns volume (m³), center (m) and second moments about the origin (m⁵) of the inside, by counting cells.
 fn counted(half: Vec3, cells: u32, inside: impl Fn(Vec3) -> bool) -> (f64, Vec3, Vec3) {
     let at = |i: u32, half: f64| half * ((2.0 * f64::from(i) + 1.0) / f64::from(cells) - 1.0);
     let cell = 8.0 * half.x * half.y * half.z / f64::from(cells).powi(3);
@@ -48,7 +48,7 @@ fn diagonal(bulk: &Bulk) -> Vec3 {
 fn solids_weigh_and_turn_as_cells_counted_inside_of_them() {
     let tube = Capsule { half_length: 0.5, radius: 0.2 };
     let cases = [
-        // The box that is counted in ends where the solid ends.
+        // The box of the cells ends where the solid ends.
         (
             Solid::Ball(Ball { radius: 0.3 }),
             Bulk::of_ball(&Ball { radius: 0.3 }, 1.0),
@@ -77,7 +77,7 @@ fn solids_weigh_and_turn_as_cells_counted_inside_of_them() {
 
 #[test]
 fn a_body_of_revolution_has_its_closed_form() {
-    // A barrel that is hardly bulged and rounded is a cylinder.
+    // A barrel with almost no bulge and rounding is a cylinder.
     let (half, radius) = (0.4, 0.3);
     let barrel = Barrel::new(2.0 * half, radius, radius + 1e-9, 1e-9).unwrap();
     let bulk = Bulk::of_barrel(&barrel, 2.0);
@@ -91,7 +91,7 @@ fn a_body_of_revolution_has_its_closed_form() {
     let (mut volume, mut along, mut across) = (0.0, 0.0, 0.0);
     for i in 0..parts {
         let x = end * (f64::from(i) + 0.5) / f64::from(parts);
-        // The outside is where the distance is none.
+        // The surface is where the distance is zero.
         let (mut low, mut high) = (0.2, 0.4);
         let solid = Solid::Barrel(barrel);
         for _ in 0..40 {
@@ -111,7 +111,7 @@ fn a_body_of_revolution_has_its_closed_form() {
 
 #[test]
 fn parts_add_up_to_the_whole_they_make() {
-    // Eight small blocks are a large one, wherever it is and however it is turned.
+    // Eight small blocks form a large one, at any position and rotation.
     let half = Vec3::new(0.3, 0.2, 0.5);
     let small = Bulk::of_block(half * 0.5, 1.0);
     let turn = Quaternion::turn(Vec3::new(0.3, -0.7, 0.2)).matrix();
@@ -127,7 +127,7 @@ fn parts_add_up_to_the_whole_they_make() {
     for (row, exact) in sum.second.iter().zip(whole.second) {
         assert!((*row - exact).length() < 1e-14);
     }
-    // Its principal moments are those of the block, in whatever order.
+    // Its principal moments are those of the block, in any order.
     let (moments, turned) = sum.principal();
     let mut found = [moments.x, moments.y, moments.z];
     let square = half.times(half);
@@ -156,14 +156,14 @@ fn a_barrel_weighs_and_turns_by_its_fill() {
     let moments = |bulk: &Bulk| bulk.principal().0;
     // Wine does not turn about the axis: only the wood does.
     assert!((moments(&fluid).x - moments(&empty).x).abs() < 1e-12);
-    // 3.9 and 6.0, 14.1 and 22.6, 4.0 and 8.5 kg m² where staves are parabolas and thicker heads lie further out.
+    // 3.9 and 6.0, 14.1 and 22.6, 4.0 and 8.5 kg m² for parabolic staves and thicker heads further out.
     for (bulk, about, across) in [(&empty, 3.9, 6.0), (&frozen, 14.1, 22.6), (&fluid, 4.0, 8.5)] {
         let moments = moments(bulk);
         println!("{:.2} {:.2}", moments.x, moments.y);
         assert!((moments.x / about - 1.0).abs() < 0.09, "{moments:?}");
         assert!((moments.y / across - 1.0).abs() < 0.09, "{moments:?}");
     }
-    // Frozen is wood and a body of revolution within it.
+    // Frozen contents are a body of revolution within the wood.
     let room = |point: Vec3| {
         let r = (point.y * point.y + point.z * point.z).sqrt();
         let stave = (1.6875_f64 * 1.6875 - point.x * point.x).sqrt() - 1.3425 - 0.025;
@@ -183,7 +183,7 @@ fn wine_at_rest_in_a_barrel_that_lies_is_at_its_bottom() {
         let wine = cask.wine_at_rest(filled);
         let share = wine.mass / (982.0 * cask.capacity());
         assert!((share - filled).abs() < 1e-9, "{filled}: {share}");
-        // The level below which the cells are as many.
+        // The level below which there are as many cells.
         let room = |point: Vec3| {
             let r = (point.y * point.y + point.z * point.z).sqrt();
             let stave = (1.6875_f64 * 1.6875 - point.x * point.x).sqrt() - 1.3425 - 0.025;
@@ -206,7 +206,7 @@ fn wine_at_rest_in_a_barrel_that_lies_is_at_its_bottom() {
         assert!((found.x / (second.x / volume) - 1.0).abs() < 0.02);
         assert!((found.y / (second.y / volume) - 1.0).abs() < 0.02);
     }
-    // As full as can be it is frozen wine.
+    // Completely filled it equals frozen wine.
     let (full, all) = (cask.wine_at_rest(1.0), cask.bulk(Fill::Frozen).mass - 48.0);
     assert!((full.mass / all - 1.0).abs() < 1e-9 && full.center.length() < 1e-9);
 }

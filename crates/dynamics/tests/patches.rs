@@ -1,4 +1,4 @@
-//! Lines and faces that solids share: what presses and what sticks moves as smoothly as the bodies.
+//! Lines and faces that solids share: forces and sticks vary as smoothly as the poses.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -26,27 +26,27 @@ fn tube(half_length: f64) -> Hull {
     Hull::Capsule(Capsule { half_length, radius: 0.02 })
 }
 
-/// A body about which another is put.
+/// Returns a fixed body, about which another is moved.
 fn fixed(hull: Option<Hull>) -> Body<Spatial> {
     let Some(hull) = hull else { return floor() };
     let one = Vec3::new(1.0, 1.0, 1.0);
     Body { motion: Motion::Prescribed, ..solid("target", hull, 1.0, one, Vec3::default()) }
 }
 
-/// A pair of bodies, of which the second is moved about.
+/// A pair of bodies, the second of which is moved.
 struct Couple {
     model: Model<Spatial>,
     state: State<Spatial>,
     scratch: Scratch<Spatial>,
 }
 
-/// What a pose asks for: force and moment as depths (m), and the sticks' places and shares of the load.
+/// Contact at a pose: force and moment as depths (m), and positions and load shares of the sticks.
 #[derive(Clone, Debug)]
 struct Seen {
     force: Vec3,
     moment: Vec3,
     energy: f64,
-    /// Place of every stick and the force on it, both as lengths (m).
+    /// Position of every stick and the force on it, both as lengths (m).
     sticks: Vec<(Vec3, f64)>,
 }
 
@@ -84,12 +84,12 @@ impl Couple {
 }
 
 impl Seen {
-    /// How far (m) what is seen here is from what is seen there: forces and moments as depths, and places of
-    /// sticks by what they bear, since one that bears nothing remembers nothing.
+    /// Returns the difference (m) of two contacts: forces and moments as depths, and positions of sticks weighted by
+    /// load, since an unloaded one has no memory.
     fn jump(&self, other: &Self) -> f64 {
         let mut jump =
             (self.force - other.force).length().max((self.moment - other.moment).length());
-        // A millimeter deep, where most poses are.
+        // At a depth of 1 mm, as in most poses.
         jump = jump.max((self.energy - other.energy).abs() / 1e-3);
         for ((place, load), (other_place, other_load)) in self.sticks.iter().zip(&other.sticks) {
             jump = jump.max((load - other_load).abs());
@@ -101,13 +101,13 @@ impl Seen {
 
 const ELASTIC: NormalLaw = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 0.0 };
 
-/// The largest jump (m) along a path, as far as halving tells it from a slope: where the change between
-/// two looks is largest, the path is halved until they are closer than motion tells apart.
+/// Returns the largest jump (m) along a path, as far as bisection can distinguish it from a slope: where the change
+/// between two samples is largest, the path is bisected until they are at the resolution of the motion.
 fn largest_jump(couple: &mut Couple, path: &dyn Fn(f64) -> (Vec3, Quaternion)) -> f64 {
     largest_jump_where(couple, path, &mut |_| true)
 }
 
-/// The same of the stretches where poses are to be looked at.
+/// Returns the largest jump over the stretches that `wanted` selects.
 fn largest_jump_where(
     couple: &mut Couple,
     path: &dyn Fn(f64) -> (Vec3, Quaternion),
@@ -138,7 +138,7 @@ fn largest_jump_where(
     worst
 }
 
-/// The lowest a body of any direction may be put on the floor.
+/// Returns the height at which a body of any orientation rests on the floor at a depth.
 fn rests_on_floor(couple: &mut Couple, orientation: Quaternion, depth: f64) -> f64 {
     let (mut low, mut high) = (0.0, 2.0);
     for _ in 0..60 {
@@ -162,7 +162,7 @@ fn what_a_standing_barrel_feels_does_not_jump_along_a_thousand_paths() {
     let mut couple = Couple::new(None, bordeaux(), ELASTIC);
     let mut worst = 0.0_f64;
     for path in 0..1000 {
-        // Leaning from one side to any other, through upright or past it by a hair or by much.
+        // Leans from one side to any other, through upright or past it by a tiny or a large amount.
         let scale = [1e-9, 1e-4, 3e-3, 0.03, 0.5][path % 5];
         let (from, to) = (dice.vector() * scale, dice.vector() * scale);
         let from = if path % 10 < 5 { -to } else { from };
@@ -183,20 +183,20 @@ fn what_a_standing_barrel_feels_does_not_jump_along_a_thousand_paths() {
     assert!(worst < 1e-9, "{worst:e}"); // measured 7e-13
 }
 
-/// A body that lies flat on another and is moved about there.
+/// A body that lies flat on another and is moved there.
 struct Lying {
     target: Hull,
     hull: Hull,
     /// Out of the target.
     outward: Vec3,
-    /// How it is turned, and the point of it (m) that it is turned about.
+    /// Its orientation, and the point of it (m) about which it is rotated.
     base: (Quaternion, Vec3),
-    /// How far (m) it lies aside, and how far (rad) it is turned, at most.
+    /// Maximum lateral displacement (m) and rotation (rad).
     ways: (Vec3, Vec3),
 }
 
-/// The largest jump (m) along a thousand paths on which a body is turned out of what it shares with another,
-/// by a hair or by much, and pushed aside, about a millimeter deep.
+/// Returns the largest jump (m) along a thousand paths on which a body is rotated out of the patch that it shares
+/// with another, by a tiny or a large amount, and pushed aside, about a millimeter deep.
 fn paths_of(lying: &Lying, seed: u64) -> f64 {
     let Lying { target, hull, outward, base, ways } = *lying;
     let mut dice = Dice(seed);
@@ -219,7 +219,7 @@ fn paths_of(lying: &Lying, seed: u64) -> f64 {
             }
             (at, turn)
         };
-        // Where cores are within each other no normal tells the way out.
+        // Where cores overlap no normal is defined.
         let wanted = |(at, turn): (Vec3, Quaternion)| {
             let found = contactor.closest(&surface, at, turn.matrix()).unwrap();
             let deep = found.distance < -0.005;
@@ -297,7 +297,7 @@ fn what_a_tube_along_or_across_a_stave_feels_does_not_jump_along_a_thousand_path
     }
 }
 
-/// A plate that is longer than what lies on it is wide, so that this hangs over its ends.
+/// Returns a plate that is longer than the width of the body on it, which therefore overhangs its ends.
 fn plate() -> Hull {
     Hull::Block(Block { half: Vec3::new(0.05, 0.4, 0.4), rounding: 0.02 })
 }
@@ -326,7 +326,7 @@ fn what_a_head_on_a_plate_feels_does_not_jump_along_a_thousand_paths() {
             hull: bordeaux(),
             outward: Vec3::new(1.0, 0.0, 0.0),
             base: (Quaternion::identity(), Vec3::new(-0.4725, 0.0, 0.0)),
-            // All of the head on the plate: over an edge it leans on a line within its face.
+            // With all of the head on the plate: over an edge it leans on a line within its face.
             ways: (Vec3::new(0.0, 0.09, 0.09), Vec3::new(1.0, 0.2, 0.2)),
         },
         43,
@@ -354,8 +354,8 @@ fn what_a_barrel_on_a_tube_by_its_head_feels_is_what_the_tube_feels() {
     assert!(worst < 1e-12, "{worst:e}"); // measured 7e-16
 }
 
-/// How far what bodies feel is from what their energy falls by, as a share of their force, at a thousand poses in which
-/// one lies on another, turned by a hair or by much, up to eight millimeters deep.
+/// Returns the deviation of forces from the slope of the energy, over the force, at a thousand poses in which one
+/// body lies on another, rotated by a tiny or a large amount, up to eight millimeters deep.
 fn off_slope(lying: &Lying, seed: u64) -> f64 {
     let Lying { target, hull, outward, base, ways } = *lying;
     let mut dice = Dice(seed);
@@ -435,7 +435,7 @@ fn what_lies_flat_is_pushed_as_its_energy_falls() {
     let all = [tube_on_tube, tube_on_head, head_on_tube, head_on_head, tube_on_plate];
     for (lying, seed) in all.iter().zip(61..) {
         let off = off_slope(lying, seed);
-        // Measured 1e-9 to 2e-7. Without the forces by which a patch resists that it changes, 6e-2 and more.
+        // Measured 1e-9 to 2e-7. Without the forces due to the change of a patch, 6e-2 and more.
         assert!(off < 1e-6, "{off:e}");
     }
 }
@@ -454,7 +454,7 @@ fn energy_of_what_lies_flat_is_that_of_springs_at_its_ends() {
         // To first order in the lean.
         assert!((seen.moment.y - moment).abs() < 1e-7, "{lean}: {} {moment}", seen.moment.y); // measured 4e-9
     }
-    // A head on an equal one: four points of its rim, whichever way it leans.
+    // A head on an equal one: four points of its rim, in any direction of lean.
     let mut couple = Couple::new(Some(bordeaux()), bordeaux(), ELASTIC);
     let radius = 0.269_982_558_045_203;
     for (lean, heading) in [(0.0, 0.0), (1e-3, 0.3), (1e-3, 2.0), (2e-3, 4.0)] {

@@ -1,4 +1,4 @@
-//! Barrels on racks of tubes in space: at rest, mirrored, in any order, and as the plane has them.
+//! Barrels on racks of tubes in space: at rest, mirrored, in any order, and compared with the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -19,8 +19,8 @@ fn bordeaux() -> Barrel {
     Barrel::new(0.945, 0.2775, 0.345, 0.01).unwrap()
 }
 
-/// A rack for two barrels side by side along `y`: two beams across them on the floor or on the barrels below,
-/// with rails along `x` that make their cradles.
+/// Returns a rack for two barrels side by side along `y`: two beams across them on the floor or on the barrels below,
+/// with rails along `x` that form their cradles.
 fn rack(name: &str, height: f64, reversed: bool) -> Body<Spatial> {
     let along = Rotation3::identity();
     let across = yaw(FRAC_PI_2).matrix();
@@ -53,7 +53,7 @@ fn barrel(name: &str, y: f64, height: f64) -> Body<Spatial> {
     solid(name, Hull::Barrel(bordeaux()), bulk.mass, bulk.principal().0, place)
 }
 
-/// Two levels of two barrels on racks.
+/// Returns levels of two barrels on racks.
 fn stack(levels: usize, reversed: bool) -> Scene<Spatial> {
     let mut bodies = vec![floor()];
     let mut pairs: Vec<ContactPair> = vec![];
@@ -82,7 +82,7 @@ fn stack(levels: usize, reversed: bool) -> Scene<Spatial> {
     Scene::of(Model::new(bodies, vec![laws], pairs, gravity).unwrap())
 }
 
-/// The force upward (N) on a body from all that it is put on.
+/// Returns the upward force (N) on a body from its contacts as contactor.
 fn pressed(scene: &Scene<Spatial>, contactor: usize) -> f64 {
     let on =
         |force: &&barrelstack_dynamics::forces::PairForce<Spatial>| force.contactor == contactor;
@@ -95,11 +95,11 @@ fn a_stack_of_racks_and_barrels_settles_and_its_seats_bear_its_weight() {
         let scene = stack(levels, false).settled(1e-9).unwrap();
         let bodies = scene.model.bodies();
         let free: f64 = bodies[1..].iter().map(|body| body.mass).sum();
-        // The lowest rack bears all of it on the floor.
+        // The lowest rack transfers the whole weight to the floor.
         let floor = pressed(&scene, 1);
         println!("{levels}: {floor} {}", free * G);
         assert!((floor / (free * G) - 1.0).abs() < 1e-6); // measured 2e-11
-        // Every top barrel is borne by its rack.
+        // Every top barrel is carried by its rack.
         let top = scene.model.bodies().len() - 1;
         let weight = bodies[top].mass * G;
         assert!((pressed(&scene, top) / weight - 1.0).abs() < 1e-6);
@@ -167,7 +167,7 @@ fn a_barrel_thrown_to_the_other_side_does_the_mirrored_bit_for_bit() {
 /// The reflections at the planes through the origin across `x` and across `y`.
 const REFLECTIONS: [Vec3; 2] = [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
 
-/// A turn seen in a mirror: where a vector changes its sign, an axis of turning does not.
+/// Mirrors a rotation vector: axial components change sign where those of a vector do not.
 fn turn_mirrored(spin: Vec3, by: Vec3) -> Vec3 {
     -spin.times(by)
 }
@@ -177,7 +177,7 @@ fn rotation_mirrored(rotation: Rotation3, by: Vec3) -> Rotation3 {
     Rotation3 { rows: [x.times(by) * by.x, y.times(by) * by.y, z.times(by) * by.z] }
 }
 
-/// A body seen in a mirror, with its solids in their order.
+/// Mirrors a body, with its solids in their order.
 fn mirrored(body: &Body<Spatial>, by: Vec3) -> Body<Spatial> {
     let mut image = body.clone();
     image.pose.position = body.pose.position.times(by);

@@ -1,4 +1,4 @@
-//! How a block on shaking ground begins to move.
+//! Initial motion of a block on shaking ground.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 mod common;
@@ -11,7 +11,7 @@ use common::{DOWN, GRAVITY, Scene, block, coulomb, floor, interface, pose};
 
 const MASS: f64 = 100.0;
 
-/// How a block has begun to move.
+/// Initial motion of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Start {
     Rest,
@@ -20,7 +20,7 @@ enum Start {
     SlideRock,
 }
 
-/// A block on near rigid corners, at rest on the ground.
+/// Returns a block on nearly rigid corners, at rest on the ground.
 fn standing(width: f64, height: f64, friction: f64, stiffness: f64) -> Scene {
     let sunk = MASS * GRAVITY / (2.0 * stiffness);
     let damping = restitution::damping(stiffness, 0.7, 0.5 * MASS);
@@ -36,12 +36,11 @@ fn standing(width: f64, height: f64, friction: f64, stiffness: f64) -> Scene {
     .unwrap()
 }
 
-/// The start of a block of height 2 m and slenderness `s = b/h` under a base acceleration `β g`.
+/// Returns the initial motion of a block of height 2 m and slenderness `s = b/h` under a base acceleration `β g`.
 fn start(s: f64, beta: f64, friction: f64) -> Start {
     let stiffness = 1e10;
     let mut scene = standing(2.0 * s, 2.0, friction, stiffness);
-    // The acceleration comes slowly for the contact (ω = 14 000 /s) and at once for the block
-    // (p = 2.6 /s).
+    // The acceleration is slow for the contact (ω = 14 000 /s) and instantaneous for the block (p = 2.6 /s).
     let ramp = 0.004;
     let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp };
     scene.run(&drive, 5e-6, ramp + 0.02).unwrap();
@@ -51,7 +50,7 @@ fn start(s: f64, beta: f64, friction: f64) -> Start {
         let x = pose.position.x + cos * point[0] - sin * point[1];
         x - point[0] - scene.state.poses[0].position.x
     };
-    // The ground runs to the right, so the block turns about its left lower corner.
+    // The ground moves to the right, so the block rotates about its left lower corner.
     let slip = moved([-s, -1.0]).abs();
     let turned = scene.state.poses[1].orientation.abs();
     match (slip > 5e-6, turned > 1e-5) {

@@ -1,4 +1,4 @@
-//! What the elastic stick does to slip that goes to and fro, against rigid friction.
+//! Effect of the elastic stick on reversing slip, compared with rigid friction.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
@@ -16,7 +16,7 @@ const SLOPE: f64 = 0.05;
 const PERIOD: f64 = 0.5;
 const CYCLES: f64 = 8.0;
 
-/// A slope that swings to and fro along itself with the amplitude (m), from rest.
+/// A slope that oscillates along itself with the amplitude (m), from rest.
 struct Swing(f64);
 
 impl Swing {
@@ -38,8 +38,8 @@ impl Drive<Planar> for Swing {
     }
 }
 
-/// Slip (m) of a block with rigid Coulomb friction: it moves with the slope until friction cannot hold
-/// it, slides with all of friction against it, and stops when their speeds meet.
+/// Returns the slip (m) of a block with rigid Coulomb friction: it moves with the slope until friction cannot hold
+/// it, slides against full friction, and stops when their speeds are equal.
 fn rigid_slip(drive: &Swing) -> f64 {
     let gravity = gravity_on_slope(SLOPE);
     let limit = -FRICTION * gravity.z;
@@ -61,8 +61,8 @@ fn rigid_slip(drive: &Swing) -> f64 {
     slip
 }
 
-/// Slip (m) of the block on elastic sticks of a stiffness (N/m) of both its corners together, damped by a
-/// share of the critical.
+/// Returns the slip (m) of the block on elastic sticks with a total stiffness (N/m) of both its corners, damped by a
+/// fraction of the critical damping.
 fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     let gravity = gravity_on_slope(SLOPE);
     let normal = NormalLaw::KelvinVoigt { stiffness: 1e7, damping: 3e4 };
@@ -78,7 +78,7 @@ fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     scene.state.poses[1].position.x - start
 }
 
-/// The bias of slip over the root of the share of the amplitude after which the stick yields.
+/// Returns the bias of slip over the root of the yield displacement relative to the amplitude.
 fn bias(amplitude: f64, stiffness: f64, damped: f64) -> (f64, f64) {
     let drive = Swing(amplitude);
     let bias = elastic_slip(&drive, stiffness, damped) / rigid_slip(&drive) - 1.0;
@@ -88,8 +88,8 @@ fn bias(amplitude: f64, stiffness: f64, damped: f64) -> (f64, f64) {
 
 #[test]
 fn where_slip_reverses_at_once_its_bias_is_the_root_of_the_stretch_at_which_the_stick_yields() {
-    // 0.97 g against a friction of 0.3: the block never stops to stick. Turning all of friction round
-    // takes the time in which it slips back twice the stretch, √(4 yield / a).
+    // 0.97 g against a friction of 0.3: the block never stops to stick. A full reversal of friction takes the time in
+    // which it slips back by twice the yield displacement, √(4 yield / a).
     for (damped, expected) in [(0.0, 0.82), (0.1, 0.71), (1.0, 0.257)] {
         for stiffness in [1e6, 1e7, 1e8, 1e9] {
             let (bias, share) = bias(0.06, stiffness, damped);

@@ -1,4 +1,4 @@
-//! Every shape against its boundary drawn by other means: distance, normal, nodes, section, outline.
+//! Every shape against its boundary drawn independently: distance, normal, nodes, section, outline.
 
 #![allow(clippy::unwrap_used, reason = "a shape that cannot be made fails its test")]
 
@@ -15,7 +15,7 @@ use barrelstack_dynamics::space::{Linear, Planar};
 use barrelstack_scenes::tumble::Random;
 use proptest::prelude::*;
 
-/// A shape and its boundary as a fine chain of points, made here without the shape's own code.
+/// A shape and its boundary as a fine chain of points, computed without the shape's own code.
 struct Drawn {
     shape: Shape,
     boundary: Vec<Vec2>,
@@ -24,7 +24,7 @@ struct Drawn {
     length: f64,
     /// Area (m²) of a closed shape.
     area: f64,
-    /// How far the chain may be from the true boundary (m).
+    /// Largest distance of the chain from the true boundary (m).
     sagitta: f64,
 }
 
@@ -81,7 +81,7 @@ fn drawn_profile(length: f64, head: f64, bilge: f64) -> Drawn {
     }
 }
 
-/// Corners on an ellipse, at sorted angles: convex whatever the angles are.
+/// Returns corners on an ellipse, at sorted angles: convex for any angles.
 fn drawn_polygon(corners: &[Vec2], corner_radius: f64) -> Drawn {
     let count = corners.len();
     let mut boundary = vec![];
@@ -104,7 +104,7 @@ fn drawn_polygon(corners: &[Vec2], corner_radius: f64) -> Drawn {
         }
         length += b.length() - 2.0 * cut + turn * corner_radius;
         area += 0.5 * (here.x * after.z - here.z * after.x);
-        // Rounding cuts off the kite at the corner but for its sector.
+        // Rounding cuts off the kite at the corner except for its sector.
         area -= corner_radius * cut - 0.5 * turn * corner_radius * corner_radius;
     }
     Drawn {
@@ -128,7 +128,7 @@ impl Drawn {
         (0..sides).map(move |i| (self.boundary[i], self.boundary[(i + 1) % count]))
     }
 
-    /// Distance to the nearest point of the chain, without sign.
+    /// Returns the unsigned distance to the nearest point of the chain.
     fn brute_distance(&self, point: Vec2) -> f64 {
         let to_side = |(from, to): (Vec2, Vec2)| {
             let (side, offset) = (to - from, point - from);
@@ -140,7 +140,7 @@ impl Drawn {
         self.sides().map(to_side).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether there is matter at a point.
+    /// Returns `true` if a point is inside the matter.
     fn is_inside(&self, point: Vec2) -> bool {
         if let Shape::Cradle(cradle) = &self.shape {
             let below = libm::atan2(point.x, -point.z).abs() <= cradle.half_angle();
@@ -201,7 +201,7 @@ proptest! {
             let gap = drawn.gap(point);
             let brute = drawn.brute_distance(point);
             let tolerance = drawn.sagitta + 1e-9;
-            // A cradle has a jump across the rays through its tips: deep in its matter the tip is near.
+            // A cradle has a jump across the rays through its tips: deep inside its matter the tip is nearest.
             let arc_is_nearest = !matches!(drawn.shape, Shape::Cradle(_))
                 || (gap.distance.abs() - brute).abs() <= tolerance
                 || !drawn.is_inside(point);
@@ -244,7 +244,7 @@ proptest! {
                 Vec2::new(along(Vec2::new(step, 0.0)), along(Vec2::new(0.0, step)))
             };
             let gradient = slope(1e-6);
-            // Where two sides are equally near, there is no gradient to compare with.
+            // Where two sides are equally near, the gradient is undefined.
             if (gradient.length() - 1.0).abs() < 1e-6 {
                 checked += 1;
                 let apart = (gradient - drawn.gap(point).normal).length();
@@ -258,7 +258,7 @@ proptest! {
     fn whatever_penetrates_may_touch(drawn in any_shape(), seed in any::<u64>()) {
         let mut random = Random(seed);
         for point in points_about(seed, 40) {
-            // Also a hair from the boundary, where rounding could decide.
+            // Also very near the boundary, where rounding could decide.
             let gap = drawn.gap(point);
             let near = point - gap.normal * (gap.distance + random.within(-1e-15, 1e-15));
             for p in [point, near] {
@@ -297,7 +297,7 @@ proptest! {
             prop_assert!(drawn.gap(*point).distance.abs() < 1e-12);
         }
         if closed {
-            // Counterclockwise, once around: the area inside is that of the shape or a little less.
+            // Counterclockwise, once around: the area inside is that of the shape or slightly less.
             let area: f64 = (0..outline.len())
                 .map(|i| {
                     let (p, q) = (outline[i], outline[(i + 1) % outline.len()]);
@@ -436,13 +436,13 @@ fn what_is_no_convex_polygon_is_refused_with_the_corner() {
     };
     assert_eq!(at(&[(0.0, 0.0), (1.0, 0.0)]), Err(PolygonError::TooFew { found: 2 }));
     let not_convex = |corner, x, z| Err(PolygonError::NotConvex { corner, x, z });
-    // Clockwise: the first corner already turns the wrong way.
+    // Clockwise: the first corner already turns the wrong direction.
     assert_eq!(at(&[(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]), not_convex(1, 0.0, 0.0));
     // A dent.
     assert_eq!(at(&[(0.0, 0.0), (1.0, 0.0), (0.4, 0.4), (0.0, 1.0)]), not_convex(3, 0.4, 0.4));
     // In line with its neighbors.
     assert_eq!(at(&[(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)]), not_convex(2, 0.5, 0.0));
-    // The same corner twice, and a number that is none.
+    // A repeated corner, and NaN.
     assert!(at(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0)]).is_err());
     assert!(at(&[(0.0, 0.0), (1.0, f64::NAN), (0.0, 1.0)]).is_err());
     // A five-pointed star turns left at every corner, but goes around twice.

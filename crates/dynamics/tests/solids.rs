@@ -1,4 +1,4 @@
-//! Solids in space: distances against exact ones, and what holds for any pose.
+//! Solids in space: distances against exact ones, and invariants of any pose.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -18,21 +18,21 @@ use barrelstack_scenes::scene::{Scene, interface};
 use barrelstack_scenes::spatial::{floor, solid};
 use common::Dice;
 
-/// A barrel of 225 liters with a chime rounded by 10 mm.
+/// Returns a barrel of 225 liters with a chime rounded by 10 mm.
 fn bordeaux() -> Barrel {
     Barrel::new(0.945, 0.2775, 0.345, 0.01).unwrap()
 }
 
-/// The turn from `x` to a direction.
+/// Returns the rotation from `x` to a direction.
 fn along(direction: Vec3) -> Rotation3 {
     let to = direction * (1.0 / direction.length());
     let from = Vec3::new(1.0, 0.0, 0.0);
-    // Half way, as a quaternion of twice the turn.
+    // Half of the rotation, as the quaternion of the full one.
     let half = (from + to) * (1.0 / (from + to).length());
     Quaternion { w: from.dot(half), v: from.cross(half) }.matrix()
 }
 
-/// A capsule from point to point, at its place: its hull, center and rotation.
+/// Returns a capsule from point to point, in place: its hull, center and rotation.
 fn capsule(from: Vec3, to: Vec3, radius: f64) -> (Rounded, Vec3, Rotation3) {
     let half_length = 0.5 * (to - from).length();
     let hull = Hull::Capsule(Capsule { half_length, radius });
@@ -89,7 +89,7 @@ fn barrels_are_as_far_from_each_other_as_they_are() {
     assert!((on_head.normal - Vec3::new(1.0, 0.0, 0.0)).length() < 1e-8);
 }
 
-/// Points and gaps of a hull on the floor.
+/// Returns points and gaps of a hull on the floor.
 fn on_floor(hull: Hull, height: f64, turned: Rotation3) -> Vec<f64> {
     let mut gaps = Vec::new();
     Rounded::centered(hull).meet(&Solid::HalfSpace, Vec3::new(0.0, 0.0, height), turned, |patch| {
@@ -118,7 +118,7 @@ fn a_barrel_stands_as_high_on_the_floor_as_it_does() {
     }
 }
 
-/// A solid as target and as contactor, and how far its boundary lies outside of its core.
+/// Returns a solid as target and as contactor, and the distance of its boundary from its core.
 fn as_both(hull: Hull) -> (Solid, Rounded, f64) {
     let grown = match hull {
         Hull::Barrel(barrel) => barrel.rounding,
@@ -128,7 +128,7 @@ fn as_both(hull: Hull) -> (Solid, Rounded, f64) {
     (hull.surface(), Rounded::centered(hull), grown)
 }
 
-/// Poses of one solid about another: all must be found, be optimal, and the same from both sides.
+/// Asserts for poses of one solid about another that all searches converge, are optimal, and agree from both sides.
 fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
     let ((target, target_hull, grown), (other_target, contactor, more)) =
         (as_both(one), as_both(other));
@@ -141,7 +141,7 @@ fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
         let at = dice.vector() * reach;
         let rotation = dice.orientation().matrix();
         let found = contactor.closest(&target, at, rotation).unwrap();
-        // Bodies whose cores overlap have no distance that a normal tells.
+        // Bodies with overlapping cores have no distance along a normal.
         if found.distance <= -(grown + more) * 0.99 {
             continue;
         }
@@ -150,7 +150,7 @@ fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
         evaluations += u64::from(found.evaluations);
         most = most.max(found.evaluations);
         apart += u32::from(found.distance > 0.0);
-        // Optimal: of the cores, each point is as far from the other body as it should be.
+        // Optimal: the distance of each core point from the other body is as expected.
         let (point, normal) = (found.point, found.normal);
         let gap = target.gap(point + normal * more);
         let across = point - normal * (found.distance + grown);
@@ -158,7 +158,7 @@ fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
         bent = bent
             .max((gap.distance - found.distance - more).abs())
             .max((back.distance - found.distance - grown).abs());
-        // Within a hair of each other's cores their normal is lost in rounding.
+        // Very close to each other's cores the normal is lost in rounding.
         if found.distance + grown + more > 1e-3 {
             let off = (gap.normal - found.normal).length();
             let off = off.max((rotation.apply(back.normal) + found.normal).length());
@@ -228,7 +228,7 @@ fn distances_do_not_jump_along_paths_over_chime_and_bilge() {
                 before = None;
                 continue;
             }
-            // A distance changes by no more than its bodies move.
+            // A distance changes by no more than the displacements of its bodies.
             let moved = (way.length() + spin.length() * reach) / 400.0;
             if let Some(before) = before {
                 worst = worst.max((found.distance - before).abs() - moved);
@@ -239,7 +239,7 @@ fn distances_do_not_jump_along_paths_over_chime_and_bilge() {
     assert!(worst < 1e-9, "{worst:e}");
 }
 
-/// The energy (J) of a barrel on the floor, and the force and moment on it.
+/// Returns the energy (J) of a barrel on the floor, and the force and moment on it.
 fn pressed(height: f64, orientation: Quaternion) -> (f64, Vec3, Vec3) {
     let law = NormalLaw::KelvinVoigt { stiffness: 1e6, damping: 0.0 };
     let at = Vec3::new(0.3, -0.2, height);
@@ -258,7 +258,7 @@ fn a_barrel_that_stands_leans_or_lies_is_pushed_down_the_slope_of_its_energy() {
     let mut dice = Dice(3);
     let mut worst = 0.0_f64;
     for case in 0..200 {
-        // Upright within what all four points feel, leaning, or lying.
+        // Upright with all four points in contact, leaning, or lying.
         let lean = match case % 4 {
             0 => 0.004 * dice.roll(),
             1 => 0.05 * dice.roll(),

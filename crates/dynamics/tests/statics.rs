@@ -1,4 +1,4 @@
-//! Equilibrium under gravity: forces, overhangs, rest, and what does not stand.
+//! Equilibrium under gravity: forces, overhangs, rest, and unstable bodies.
 
 #![allow(clippy::unwrap_used, reason = "a body that cannot be made fails its test")]
 
@@ -25,7 +25,7 @@ fn rough() -> FrictionLaw {
     coulomb(0.5, STIFFNESS, 1e4)
 }
 
-/// A brick whose nodes are a little in from its corners, so that equal bricks can stand on each other.
+/// Returns a brick whose nodes are slightly inside its corners, so that equal bricks can stand on each other.
 fn brick(name: &str, (length, height): (f64, f64), x: f64, z: f64) -> Body<Planar> {
     let mut body = block(name, (length, height), MASS, pose(x, z, 0.0));
     let inner = Polygon::rectangle(length - 0.04, height, 0.0).unwrap();
@@ -33,7 +33,7 @@ fn brick(name: &str, (length, height): (f64, f64), x: f64, z: f64) -> Body<Plana
     body
 }
 
-/// A column of bricks.
+/// Returns a column of bricks.
 fn column(count: u32) -> Scene {
     let mut bodies = vec![floor()];
     for i in 0..count {
@@ -52,13 +52,13 @@ fn a_settled_state_is_at_rest_at_its_time() {
     for twist in &scene.state.twists {
         assert_eq!((twist.linear.length(), twist.angular), (0.0, 0.0));
     }
-    // Settling what has settled changes nothing.
+    // Settling a settled state changes nothing.
     let before = bits(&scene.state);
     assert_eq!(scene.settle(1e-9).unwrap().steps, 0);
     assert_eq!(bits(&scene.state), before);
 }
 
-/// A disc on two points of the ground at ± an angle (rad).
+/// Returns a disc on two points of the ground at ± an angle (rad).
 fn cradled(angle: f64, friction: FrictionLaw) -> Scene {
     let radius = 0.35;
     let mut ground = ground_of(vec![]);
@@ -91,7 +91,7 @@ fn a_rough_cradle_carries_the_weight_by_normal_and_friction_forces() {
             &scene.scratch,
             contact,
         );
-        // The ground is the contactor: the barrel feels the opposite.
+        // The ground is the contactor: the opposite acts on the barrel.
         lift -= force.z;
         thrust += force.x.abs();
         assert!(contact.friction_force.abs() > 1.0, "friction takes part");
@@ -100,11 +100,11 @@ fn a_rough_cradle_carries_the_weight_by_normal_and_friction_forces() {
     assert!(thrust > 0.0);
 }
 
-/// The harmonic stack: the topmost of `n` bricks hangs out by a share of the farthest overhang.
+/// Returns the harmonic stack: the topmost of `n` bricks overhangs by a share of the largest overhang.
 fn harmonic_stack(n: u32, share: f64) -> Scene {
     let (length, height) = (1.0, 0.2);
-    // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top hangs out
-    // by L/2i over the one below.
+    // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top overhangs the one below by
+    // L/2i.
     let table = Polygon::rectangle(4.0, 1.0, 0.0).unwrap();
     let mut ground =
         ground_of(vec![common::centered(barrelstack_dynamics::Shape::Polygon(table.clone()))]);
@@ -217,7 +217,7 @@ fn what_is_too_soft_for_its_load_is_said_to_sink() {
     let soft = NormalLaw::SpeedGap { stiffness: 1e3, damping: 10.0 };
     let body = brick("brick", (0.5, 0.2), 0.0, 0.1);
     let mut scene = Scene::new(vec![floor(), body], interface(soft, rough()), DOWN).unwrap();
-    // 40 kg on two springs of 1 kN/m: 0.196 m, of a reach of 0.27 m.
+    // 40 kg on two springs of 1 kN/m: 0.196 m, with a reach of 0.27 m.
     let SettleError { lack, .. } = scene.settle(1e-9).unwrap_err();
     assert!(matches!(lack, Lack::Stiffness { depth, .. } if depth > 0.02), "{lack}");
 }

@@ -1,4 +1,4 @@
-//! Straps against closed forms: they pull, they never push, they tear, and the books know it.
+//! Straps against closed forms: tension only, tearing, and energy balance.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -17,10 +17,10 @@ use common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e5;
 
-/// Where the strap hangs (m).
+/// Attachment point of the strap (m).
 const HOOK: Vec2 = Vec2::new(0.0, 5.0);
 
-/// A strap of one meter from the ground to the top of a disc.
+/// Returns a strap of one meter from the ground to the top of a disc.
 fn hung() -> Strap<Planar> {
     Strap {
         link: Link { name: "strap".into(), bodies: [0, 1], points: [HOOK, Vec2::new(0.0, 0.3)] },
@@ -41,14 +41,14 @@ fn scene(bodies: Vec<Body<Planar>>, straps: Vec<Strap<Planar>>, gravity: Vec2) -
     Scene::of(model)
 }
 
-/// A disc that hangs slack by a height (m), at rest.
+/// Returns a disc that hangs slack by a height (m), at rest.
 fn hanging(strap: Strap<Planar>, slack: f64) -> Scene {
     let center = HOOK + Vec2::new(0.0, slack - 1.3);
     let disc = disc("disc", 0.3, MASS, 0.045, center);
     scene(vec![floor(), disc], vec![strap], DOWN)
 }
 
-/// How far a mass stretches the strap when it is caught after a fall (m).
+/// Returns the elongation (m) of the strap when a mass is caught after a fall (m).
 fn stretch(fall: f64) -> f64 {
     let still = MASS * GRAVITY / STIFFNESS;
     still + (still * still + 2.0 * still * fall).sqrt()
@@ -101,7 +101,7 @@ fn a_falling_mass_is_caught_and_thrown_back_to_where_it_came_from() {
 
 #[test]
 fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
-    // So strong a damper that it would push the disc down on its way back.
+    // A damper so strong that it would push the disc down on its return.
     let mut scene = hanging(Strap { damping: 2e4, ..hung() }, 0.2);
     let (mut least, mut slack) = (f64::INFINITY, 0);
     let energy = scene
@@ -120,7 +120,7 @@ fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
         .summary(0);
     println!("slack in {slack} steps; {energy:?}");
     assert!(least == 0.0 && slack > 0);
-    // What the fall brought is gone: the disc hangs still.
+    // The energy of the fall is dissipated: the disc hangs at rest.
     let still = MASS * GRAVITY / STIFFNESS;
     let hangs = HOOK.z - 1.3 - scene.state.poses[1].position.z;
     assert!((hangs / still - 1.0).abs() < 1e-3, "{hangs} m");
@@ -148,7 +148,7 @@ fn a_strap_tears_above_its_strength_and_the_books_close() {
         .energy
         .summary(0);
     let (time, speed) = torn_at.unwrap();
-    // The fall so far, less what the strap had taken by then.
+    // The energy of the fall so far, less that stored in the strap at that time.
     let given = MASS * GRAVITY * (slack + strength / STIFFNESS);
     let taken = 0.5 * strength * strength / STIFFNESS;
     let exact = -(2.0 * (given - taken) / MASS).sqrt();
@@ -156,9 +156,9 @@ fn a_strap_tears_above_its_strength_and_the_books_close() {
     assert!((most / strength - 1.0).abs() < 2e-3); // measured: what a step adds
     assert!((speed / exact - 1.0).abs() < 1e-3); // measured 1.1e-4
     assert!((energy.damped / taken - 1.0).abs() < 4e-3, "{} J of {taken} J", energy.damped);
-    // The step in which it tears still has half of its pull.
+    // The step in which it tears still includes half of its pull.
     assert!(energy.residual_ratio() < 1e-4, "{:e}", energy.residual_ratio()); // measured 3.0e-5
-    // Once torn, it never pulls again, however far.
+    // Once torn, it never pulls again.
     assert!(scene.state.poses[1].position.z < HOOK.z - 2.0);
     assert_eq!(scene.scratch.loads[0].force, 0.0);
 }

@@ -6,31 +6,30 @@ use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
 
-/// A guide on its first body, along which a point of the second body goes.
+/// A guide on its first body, along which a point of the second body moves.
 ///
-/// With the way `e` (m) of that point from its place along the axis, which turns with the first body,
+/// With the displacement `e` (m) of that point from its place along the axis, which turns with the first body,
 ///
 /// ```text
 /// f = k e + c ė                          everywhere
 /// f = … + kₛ (|e| − δ) sgn e + cₛ ė      beyond the gap δ; the damper on approach only
 /// ```
 ///
-/// Both bodies feel the force where the point of the second one is, so that no momentum is lost.
-/// A guide holds the point while it is no further than `reach` (m) from its axis; then, and above its strength,
-/// it lets go for good.
+/// The force acts on both bodies at the point of the second one, so momentum is conserved. A guide holds the point
+/// within `reach` (m) of its axis; beyond that, or above its strength, it releases for good.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide<S: Space> {
-    /// What it joins.
+    /// The joined points.
     pub link: Link<S>,
     /// Unit vector in the frame of the first body.
     pub axis: S::Vector,
-    /// From the first point to the second at rest (m), in the frame of the first body.
+    /// Vector from the first point to the second at rest (m), in the frame of the first body.
     pub place: S::Vector,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Way δ (m) to either side after which it meets a stop; infinite without stops.
+    /// Displacement δ (m) to either side at which it meets a stop; infinite without stops.
     pub gap: S::Real,
     /// Stiffness kₛ of the stops (N/m).
     pub stop_stiffness: S::Real,
@@ -38,9 +37,10 @@ pub struct Guide<S: Space> {
     pub stop_damping: S::Real,
     /// Force (N) above which it breaks, for good; infinite if it never does.
     pub strength: S::Real,
-    /// Distance (m) from its axis beyond which it has let go, for good; infinite if it never does.
+    /// Distance (m) from its axis beyond which it releases, for good; infinite if it never does.
     pub reach: S::Real,
-    /// Unit vector in the frame of the first body, along which the point may be any way from the axis; zero for none.
+    /// Unit vector in the frame of the first body along which the distance from the axis is not limited; zero for
+    /// none.
     pub free: S::Vector,
 }
 
@@ -49,7 +49,7 @@ lanewise!(struct Guide<Planar<R>> {
 });
 
 impl<S: Space> Guide<S> {
-    /// A guide with a spring and a damper and nothing else, the second point in its place.
+    /// Creates a guide with a spring and a damper only, the second point in its place.
     pub fn spring(link: Link<S>, axis: S::Vector, stiffness: S::Real, damping: S::Real) -> Self {
         let (never, none) = (S::Real::splat(f64::INFINITY), S::Real::zero());
         Self {
@@ -67,8 +67,8 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// The guide, fit, of a first body that turns about the axis: of where its point is only the way along the axis
-    /// counts, and it holds the point while that is no further than `reach` beyond where it is now.
+    /// Converts a fitted guide to one whose first body turns about the axis: only the displacement along the axis
+    /// counts, and the point is held within `reach` beyond its current distance from the axis.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);
@@ -76,7 +76,7 @@ impl<S: Space> Guide<S> {
         Self { place: along, reach: self.reach + away.dot(away).sqrt(), ..self }
     }
 
-    /// Stops count where the point can reach them.
+    /// Adds the constant of the stops if the point can reach them.
     fn with_stops(&self, free: S::Real, stop: S::Real) -> S::Real {
         free + S::Real::select(self.gap.is_finite_mask(), stop, S::Real::zero())
     }

@@ -6,20 +6,20 @@ use crate::real::Real;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// What is joined, where, and under which name.
+/// The points that an element joins, and its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<S: Space> {
-    /// The name in results.
+    /// Name in results.
     pub name: String,
-    /// The bodies it joins.
+    /// The joined bodies.
     pub bodies: [BodyId; 2],
-    /// Where it is made fast (m), each in the frame of its body.
+    /// Attachment points (m), each in the frame of its body.
     pub points: [S::Vector; 2],
 }
 
 lanewise!(struct Link<Planar<R>> { name, bodies, points });
 
-/// A link as it lies at a state.
+/// Geometry of a link at a state.
 pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
     /// From the centers of mass to the points (m), in the inertial frame.
@@ -42,7 +42,7 @@ impl<S: Space> Link<S> {
         }
     }
 
-    /// The distance of its points (m).
+    /// Returns the distance of its points (m).
     pub fn span(&self, state: &State<S>) -> S::Real {
         let [first, second] = [0, 1].map(|at| {
             let pose = state.poses[self.bodies[at]];
@@ -64,7 +64,7 @@ impl<S: Space> Link<S> {
         Line { bodies: self.bodies, arms, apart, distance: apart.dot(apart).sqrt() }
     }
 
-    /// Both bodies met in the second point, of which the first one carries its place.
+    /// Returns the line with both ends at the second point, which moves with either body.
     #[inline(always)]
     pub(super) fn at_second(&self, state: &State<S>, rotations: &[S::Rotation]) -> Line<S> {
         let [first, second] = self.bodies;
@@ -76,14 +76,14 @@ impl<S: Space> Link<S> {
 }
 
 impl<S: Space> Line<S> {
-    /// The unit vector from its first point to its second, in lanes where it has a length that counts.
+    /// Returns the unit vector from its first point to its second, in lanes where its length is valid.
     #[inline(always)]
     pub(super) fn along(&self, counts: <S::Real as Real>::Mask) -> S::Vector {
         let one = S::Real::splat(1.0);
         self.apart * (one / S::Real::select(counts, self.distance, one))
     }
 
-    /// Velocity (m/s) of the second point against the first.
+    /// Returns the velocity (m/s) of the second point relative to the first.
     #[inline(always)]
     pub(super) fn velocity(&self, state: &State<S>) -> S::Vector {
         let velocity = |body: usize, arm| {
@@ -94,13 +94,13 @@ impl<S: Space> Line<S> {
         velocity(second, self.arms[1]) - velocity(first, self.arms[0])
     }
 
-    /// How fast it grows (m/s).
+    /// Returns the rate of elongation (m/s).
     #[inline(always)]
     pub(super) fn rate(&self, state: &State<S>, along: S::Vector) -> S::Real {
         self.velocity(state).dot(along)
     }
 
-    /// What a force (N) along it that pulls does to each of its bodies, and of that the part of a damper (N).
+    /// Returns, for each body, the wrench of a tensile force (N) along the line and the part of a damper (N) in it.
     #[inline(always)]
     pub(super) fn pull(
         &self,

@@ -1,9 +1,9 @@
-//! Force elements: what pushes or pulls two bodies without a contact.
+//! Force elements: forces between two bodies without a contact.
 //!
-//! An element is of one of the kinds in the list below, each a file beside this one that says what it
-//! does at a state, and whether it can hold ([`Load`]).
-//! All else is the same for all: they are fastened to a model, remember what they gave for good and whether
-//! they are broken, enter the forces and the energy books, and run in lanes.
+//! An element is of one of the kinds below, each in a file of its own, which defines its forces at a state and
+//! whether it fails ([`Load`]).
+//! The rest is common to all: elements are attached to a model, remember plastic elongation and failure, enter the
+//! forces and the energy balance, and run in lanes.
 
 mod guide;
 mod link;
@@ -21,41 +21,40 @@ pub use link::Link;
 pub use rod::Rod;
 pub use strap::Strap;
 
-/// What an element remembers; changed by accepted steps only.
+/// Memory of an element; changed by accepted steps only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
-    /// How much longer (m) it is for good than when it was put on.
+    /// Plastic elongation (m).
     pub plastic: S::Real,
-    /// Whether it is broken, for good: then it bears nothing.
+    /// `true` if it is broken, for good: then it bears nothing.
     pub broken: <S::Real as Real>::Mask,
 }
 
 lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
 
-/// What an element bears at a state.
+/// Load of an element at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load<R: Real> {
     /// Force (N) along it, positive where it pulls its bodies together.
     pub force: R,
     /// Energy stored in it (J); lost when it breaks.
     pub energy: R,
-    /// Of the force that of its spring (N), which its energy belongs to.
+    /// Part of the force due to the spring (N), which has the energy.
     pub elastic: R,
-    /// How much longer (m) for good it is once the state is accepted.
+    /// Plastic elongation (m) once the state is accepted.
     pub plastic: R,
-    /// Whether it cannot hold.
+    /// `true` if it fails.
     pub breaks: R::Mask,
 }
 
-/// What an element does at a state.
+/// Load and wrenches of an element at a state.
 pub(crate) struct Action<S: Space> {
     pub(crate) load: Load<S::Real>,
-    /// For each of its bodies the whole wrench about the center of mass, and of that the part that its
-    /// damper makes.
+    /// For each body the total wrench about the center of mass, and the part of the damper in it.
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
-/// Declares the kinds of elements, each a struct with a `link` and the functions that are asked for here.
+/// Declares the kinds of elements, each a struct with a `link` and the functions called here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
         /// An element of one of the kinds.
@@ -73,32 +72,32 @@ macro_rules! kinds {
         lanewise!(enum Element<Planar<R>> { $($kind(element)),* });
 
         impl<S: Space> Element<S> {
-            /// Its name, and the points that it joins.
+            /// Returns its name, and the points that it joins.
             pub fn link(&self) -> &Link<S> {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
-            /// The largest stiffness (N/m) that it has between its points.
+            /// Returns its largest stiffness (N/m) between its points.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }
             }
 
-            /// The largest damping (N·s/m) that it has between its points.
+            /// Returns its largest damping (N·s/m) between its points.
             pub fn damping(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// Lets it bear nothing where its points are at a state, but for some more length (m).
+            /// Fits its natural length to the points at a state, plus an excess (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
-            /// What is wrong with its constants.
+            /// Returns the problem of its constants, if any.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
 
-            /// What it does at a state; nothing in lanes where it is broken.
+            /// Returns its load and wrenches at a state; zero in lanes where it is broken.
             #[inline(always)]
             pub(crate) fn act(
                 &self,
@@ -113,7 +112,7 @@ macro_rules! kinds {
 }
 
 kinds!(
-    /// Pulls and never pushes; may yield.
+    /// Acts in tension only; may yield.
     Strap,
     /// Holds a distance, and damps a pendulum.
     Rod,
@@ -122,23 +121,23 @@ kinds!(
 );
 
 impl<S: Space> Element<S> {
-    /// What is wrong with it in a model of a number of bodies.
+    /// Returns its problem in a model with a number of bodies, if any.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }
 
-    /// What it bears at a state, unbroken.
+    /// Returns its load at a state, unbroken.
     pub fn load(&self, state: &State<S>) -> Load<S::Real> {
         let rotations: Vec<_> = state.poses.iter().map(|p| S::rotation(p.orientation)).collect();
         self.act(state, &rotations, Memory::default()).load
     }
 
-    /// The bodies that it joins, each with the point (m) in its frame.
+    /// Returns the joined bodies, each with the point (m) in its frame.
     pub fn ends(&self) -> impl Iterator<Item = (BodyId, S::Vector)> + use<S> {
         self.link().bodies.into_iter().zip(self.link().points)
     }
 
-    /// Whether it pushes both bodies where the point of the second one is, not each at its own.
+    /// Returns `true` if the force acts on both bodies at the point of the second one, not on each at its own.
     pub fn acts_at_second(&self) -> bool {
         match self {
             Self::Strap(_) => false,
@@ -147,13 +146,12 @@ impl<S: Space> Element<S> {
     }
 }
 
-/// Whether a number is sound in every lane.
+/// Returns `true` if a number is valid in every lane.
 fn all<R: Real>(number: R, sound: fn(f64) -> bool) -> bool {
     (0..R::LANES).all(|lane| sound(number.lane(lane)))
 }
 
-/// Elements remember what they gave for good in an accepted state, and those that could not hold are broken
-/// from then on.
+/// Stores the plastic elongation of the accepted state, and marks the elements that failed as broken.
 #[inline(always)]
 pub(crate) fn commit<S: Space>(memory: &mut [Memory<S>], loads: &[Load<S::Real>]) {
     for (memory, load) in memory.iter_mut().zip(loads) {

@@ -1,4 +1,4 @@
-//! Rods: they hold two points at a distance, pulling and pushing.
+//! Rods: they hold two points at a distance, in tension and compression.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -8,13 +8,13 @@ use crate::state::State;
 
 /// A rod between a point of one body and a point of another, about which they turn.
 ///
-/// Along it `f = k (d − l) + c ḋ` for the distance `d` (m) of the points and its length `l`; across it a damper
-/// acts on the velocity of the second point against the first body: the damping of a pendulum.
+/// Along it `f = k (d − l) + c ḋ` for the distance `d` (m) of the points and its length `l`; across it a damper acts
+/// on the velocity of the second point relative to the first body: the damping of a pendulum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rod<S: Space> {
-    /// What it joins.
+    /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) at which it bears nothing.
+    /// Distance of the points (m) at which it is unloaded.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,

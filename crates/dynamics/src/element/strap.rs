@@ -1,4 +1,4 @@
-//! Straps and other ties: they pull two bodies together, and never push them apart.
+//! Straps and other ties: they act in tension only.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -8,16 +8,16 @@ use crate::state::State;
 
 /// A strap between a point of one body and a point of another.
 ///
-/// Tension is the force that it pulls with: `T = max(0, k e + c ė)` while its elongation `e` (m), the
-/// distance of the two points less `length`, is positive, and zero while it is slack.
-/// Where the spring would pull with more than it yields at, it becomes longer for good until it does not: of
-/// the elongation only what is left pulls.
-/// It has no mass, and nothing touches it on its way.
+/// Its tension is `T = max(0, k e + c ė)` while its elongation `e` (m), the distance of the two points less `length`,
+/// is positive, and zero while it is slack.
+/// Where the spring would exceed its yield force, it elongates plastically until it does not; only the elastic
+/// elongation pulls.
+/// It has no mass, and nothing touches it between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strap<S: Space> {
-    /// What it ties.
+    /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) from which on it pulls.
+    /// Distance of the points (m) beyond which it pulls.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,

@@ -1,4 +1,4 @@
-//! From a state to contact forces and accelerations.
+//! Contact forces and accelerations of a state.
 
 mod press;
 
@@ -17,15 +17,15 @@ use press::{Seen, touch};
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
-    /// Which element of [`ContactElements`].
+    /// Index of the element in [`ContactElements`].
     pub element: usize,
-    /// Which pair of the model.
+    /// Index of the pair in the model.
     pub pair: usize,
-    /// Which node of the contactor's node set.
+    /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// Where it touches; always true in a single run.
+    /// The lanes in which it touches; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
-    /// The companion point (m), in the frame of the target's surface: both bodies feel the force there.
+    /// The companion point (m), in the frame of the target's surface: the force acts there on both bodies.
     pub point: S::Vector,
     /// Unit normal in the same frame, out of the target.
     pub normal: S::Vector,
@@ -37,11 +37,11 @@ pub struct Contact<S: Space> {
     pub normal_force: S::Real,
     /// Tangential velocity of the contactor relative to the target (m/s).
     pub slip_rate: S::Tangent,
-    /// Friction force (N) along the slip; the contactor feels its opposite.
+    /// Friction force (N) along the slip; the opposite acts on the contactor.
     pub friction_force: S::Tangent,
 }
 
-/// Energies (J) of all contacts together.
+/// Total energies (J) of all contacts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactTotals<R> {
     /// Energy stored in normal springs (J).
@@ -50,14 +50,14 @@ pub struct ContactTotals<R> {
     pub stick: R,
 }
 
-/// The forces on one body that give nothing back, with their moments about its center of mass.
+/// Dissipative forces on one body, with their moments about its center of mass.
 ///
 /// The energy ledger multiplies them by the motion of the body.
 #[derive(Clone, Copy, Debug)]
 pub struct Losses<S: Space> {
-    /// Of the dampers of contacts and elements.
+    /// Dampers of contacts and elements.
     pub damped: Wrench<S>,
-    /// Of friction, sticks included.
+    /// Friction, sticks included.
     pub friction: Wrench<S>,
 }
 
@@ -69,68 +69,66 @@ impl<S: Space> Default for Losses<S> {
     }
 }
 
-/// The sum of the contact forces of one pair, and of the push along a side by which a contact that is shared
-/// with a second one keeps its energy; so it may be more than its contacts.
+/// Sum of the contact forces of one pair, and of the force along a side that conserves the energy of a contact shared
+/// with a second one; so it may exceed the sum of its contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
-    /// Which pair of the model.
+    /// Index of the pair in the model.
     pub pair: usize,
     /// Its contactor.
     pub contactor: BodyId,
     /// Its target.
     pub target: BodyId,
-    /// Force (N) on the contactor, in the inertial frame; the target feels its opposite.
+    /// Force (N) on the contactor, in the inertial frame; the opposite acts on the target.
     pub force: S::Vector,
 }
 
-/// What can be computed anew from a state; may be dropped at any time.
+/// Data that can be recomputed from a state; may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
-    /// The contacts of the last evaluation, in the order of their elements, without the push along a side of
-    /// [`PairForce`]; empty where
-    /// [`Scratch::keeps_contacts`] says so.
+    /// Contacts of the last evaluation, in the order of their elements, without the force along a side of
+    /// [`PairForce`]; empty unless [`Scratch::keeps_contacts`].
     pub contacts: Vec<Contact<S>>,
-    /// Whether `contacts` are written down. Forces do not need them, only who looks at contacts does.
+    /// `true` to store `contacts`, which forces do not need, but observers of contacts do.
     pub keeps_contacts: bool,
-    /// Their sums over every pair that touches, in the order of the pairs.
+    /// Total forces of every touching pair, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
-    /// Their energies.
+    /// Total energies of the contacts.
     pub totals: ContactTotals<S::Real>,
-    /// What the force elements bear, in their order.
+    /// Loads of the force elements, in their order.
     pub loads: Vec<Load<S::Real>>,
     /// Forces of contacts and elements on every body, and their moments about its center of mass.
     pub wrenches: Vec<Wrench<S>>,
-    /// What of the forces on every body takes energy away.
+    /// Dissipative forces on every body.
     pub losses: Vec<Losses<S>>,
-    /// What the viscous damping of every body takes away; empty where no body has any.
+    /// Viscous damping forces on every body; empty if no body has any.
     pub viscous: Vec<Wrench<S>>,
-    /// Acceleration that forces and moments give to every body; zero for prescribed ones.
+    /// Acceleration of every body due to forces and moments; zero for prescribed ones.
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
     /// Slip rate of every element (m/s); zero where it does not touch.
     pub slip_rates: Vec<S::Tangent>,
-    /// How often the forces have been evaluated.
+    /// Number of force evaluations.
     pub evaluations: u64,
-    /// How many contact elements have been tested in all evaluations.
+    /// Number of contact elements tested in all evaluations.
     pub contact_evaluations: u64,
-    /// Where an impact asks for short steps: within [`Scratch::lookahead`] a contact would be deeper than
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at the speed that it has.
+    /// Lanes that need substepping: within [`Scratch::lookahead`] some contact is predicted to exceed
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) at its current speed.
     pub(crate) needs_substeps: <S::Real as Real>::Mask,
-    /// Where such an impact is [hard](crate::model::Fast::hard).
+    /// Lanes in which such an impact is [hard](crate::model::Fast::hard).
     pub(crate) is_hard: <S::Real as Real>::Mask,
-    /// How far (s) impacts are foreseen; zero where steps are never divided.
+    /// Time (s) for which impacts are predicted; zero where steps are never divided.
     pub(crate) lookahead: S::Real,
-    /// The bodies of the pair at hand, seen from the surface at hand, where solids of a body share that.
+    /// Relative kinematics of the current pair at the current surface, reused by solids of a body that share it.
     seen: Option<Seen<S>>,
-    /// Accelerations of the state a step started from, for methods that correct.
+    /// Accelerations at the start of the step, for methods with a correction.
     pub(crate) old_accelerations: Vec<Twist<S>>,
-    /// Slip rates of that state.
+    /// Slip rates at the start of the step.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// What of the contacts their sticks must know once the step is accepted, and how hard they press; in
-    /// the order of their elements.
+    /// Contact data that sticks need once the step is accepted, and normal forces; in the order of their elements.
     pub pressed: Vec<Pressed<S>>,
-    /// The groups of contact elements that do not sleep in the evaluation at hand.
+    /// Groups of contact elements that are tested in the current evaluation.
     awake: Vec<usize>,
 }
 
@@ -138,24 +136,24 @@ pub struct Scratch<S: Space> {
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<S: Space> {
     pub(crate) element: usize,
-    /// Which pair of the model.
+    /// Index of the pair in the model.
     pub pair: usize,
-    /// Which node of the contactor's node set.
+    /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// Where it touches.
+    /// The lanes in which it touches.
     pub touching: <S::Real as Real>::Mask,
     /// The companion point (m), in the frame of the target's surface.
     pub point: S::Vector,
-    /// What its stick keeps with its displacement.
+    /// Tangent plane, stored by its stick with the displacement.
     tangent_plane: S::TangentPlane,
     /// Compressive force (N); zero where it does not touch.
     pub normal_force: S::Real,
-    /// What the constants of its laws are multiplied by.
+    /// Factor of the constants of its laws.
     pub weight: S::Real,
 }
 
 impl<S: Space> Scratch<S> {
-    /// Room for the evaluations of a model.
+    /// Allocates the working memory for a model.
     pub fn new(model: &Model<S>) -> Self {
         let count = model.bodies.len();
         Self {
@@ -185,14 +183,14 @@ impl<S: Space> Scratch<S> {
 }
 
 impl<S: Space> Scratch<S> {
-    /// How many elements touch in at least one lane.
+    /// Returns the number of elements that touch in at least one lane.
     pub fn touching(&self) -> usize {
         self.pressed.len()
     }
 
-    /// Follows a new list of elements; `origins` tells for each which one of the old list it was.
+    /// Renumbers to a new list of elements; `origins` has the index of each in the old list.
     ///
-    /// Every contact keeps its element, since what touches is within the margin of any list.
+    /// Every contact keeps its element, since touching elements are within the margin of any list.
     pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
         let mut numbers = vec![None; self.slip_rates.len()];
         let mut slip_rates = vec![S::Tangent::default(); origins.len()];
@@ -209,13 +207,14 @@ impl<S: Space> Scratch<S> {
     }
 }
 
-/// Fills `scratch` with the forces and accelerations at `state`. Never changes `state`.
+/// Computes the forces and accelerations at `state` into `scratch`. Never changes `state`.
 pub fn evaluate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     evaluate_within(model, state, S::Real::zero(), scratch);
 }
 
-/// As [`evaluate`], with forces that stand for a whole step (s) of an integrator which takes them as
-/// constant for half a step before and after ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
+/// Evaluates as [`evaluate`], with the effective forces of a whole step (s), for an integrator that takes them as
+/// constant for half a step before and after
+/// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
 pub(crate) fn evaluate_within<S: Space>(
     model: &Model<S>,
     state: &State<S>,
@@ -245,7 +244,7 @@ pub(crate) fn evaluate_within<S: Space>(
     );
 }
 
-/// What `fill` does, but within the scope of the vector unit.
+/// Fills with defaults; unlike `fill`, it is compiled for the vector unit.
 #[inline(always)]
 fn wipe<T: Default>(all: &mut [T]) {
     for one in all {
@@ -253,12 +252,12 @@ fn wipe<T: Default>(all: &mut [T]) {
     }
 }
 
-/// Impacts are foreseen from this way (m) on to the depth that whole steps follow; faster ones later.
+/// Gap (m) within which impacts up to the depth of whole steps are predicted; faster ones are predicted later.
 const LOOKAHEAD_GAP: f64 = 0.01;
 
-/// Finds the groups of elements that may touch in the step under way, or of which impacts are to be foreseen.
+/// Collects the groups of elements that may touch in the current step, or whose impacts are to be predicted.
 ///
-/// Most sleep, so they are asked all together and not each where its forces would be.
+/// Most need no test, so all are filtered first, separately from their forces.
 #[inline(always)]
 fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut Vec<usize>) {
     awake.clear();
@@ -271,7 +270,7 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     }
 }
 
-/// The force elements.
+/// Adds the force elements.
 #[inline(always)]
 fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     let Scratch { wrenches, losses, rotations, loads, .. } = scratch;
@@ -286,7 +285,7 @@ fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     }
 }
 
-/// Rotations of the state at hand, and nothing else yet.
+/// Resets `scratch`, and computes the rotations of the state.
 #[inline(always)]
 fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     for (rotation, pose) in scratch.rotations.iter_mut().zip(&state.poses) {
@@ -306,7 +305,7 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.evaluations += 1;
 }
 
-/// Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
+/// Solves Newton's law for every free body: contact, gravity and viscous damping (eq. 2.8).
 #[inline(always)]
 fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     for (i, body) in model.inert.iter().enumerate() {
@@ -331,8 +330,8 @@ fn accelerate<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratc
     }
 }
 
-/// Accepts the state that `scratch` was evaluated at: the memory of every stick is cut back to what
-/// friction can hold, contact elements that do not touch forget, and force elements that cannot hold break.
+/// Accepts the state that `scratch` was evaluated at: limits every stick to the friction capacity, resets elements
+/// without contact, and breaks force elements that fail.
 pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     commit_corrected(
         model,
@@ -343,8 +342,8 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     );
 }
 
-/// As [`commit`], of displacements that are `corrected` first: from an element and its displacement (m) to the one
-/// that the step accepts.
+/// Accepts as [`commit`], with displacements `corrected` first: from an element and its displacement (m) to the
+/// accepted one.
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -371,7 +370,7 @@ fn commit_all<S: Space>(
     let mut next = 0;
     for pressed in scratch.pressed.chunk_by(|a, b| a.pair == b.pair) {
         let interface = &model.interfaces[model.pair(pressed[0].pair).interface];
-        // Asked once for a pair, not at every contact.
+        // Dispatch on the friction law once per pair, not per contact.
         match interface.friction {
             FrictionLaw::Coulomb {
                 static_coefficient,
@@ -408,8 +407,8 @@ fn commit_all<S: Space>(
     sticks[next..].fill(Stick::default());
 }
 
-/// Commits the sticks of a pair; those between its contacts, and those before them that no pair has
-/// reached yet, forget.
+/// Commits the sticks of a pair; resets those between its contacts, and those before them that belong to no touching
+/// pair.
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,
@@ -437,7 +436,7 @@ fn commit_pair<S: Space>(
     }
 }
 
-/// The length of boundary (m) that a node of a pair stands for.
+/// Returns the tributary length (m) of a node of a pair.
 pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: usize) -> S::Real {
     match model.pair_nodes(pair) {
         Nodes::Fixed(nodes) => nodes[node].tributary_length,
@@ -447,7 +446,7 @@ pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: us
     }
 }
 
-/// The force (N) of a contact on its contactor and the point (m) where it acts, in the inertial frame.
+/// Returns the force (N) of a contact on its contactor and its point of action (m), in the inertial frame.
 pub fn contact_force<S: Space>(
     model: &Model<S>,
     state: &State<S>,

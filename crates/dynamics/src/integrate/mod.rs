@@ -1,9 +1,8 @@
 //! Time integration: from one accepted state to the next.
 //!
-//! Every method finds in `scratch` the forces at the state it starts from, and leaves there the
-//! forces at the state it accepts.
-//! Sticks are advanced like every other coordinate, by their rates; their memory is committed only
-//! with the accepted state.
+//! Every method starts with the forces of the initial state in `scratch`, and leaves there the forces of the accepted
+//! state. Sticks are advanced like every other coordinate, by their rates; their memory is committed only with the
+//! accepted state.
 
 mod runge_kutta;
 mod verlet;
@@ -14,9 +13,10 @@ use crate::model::Model;
 use crate::space::{Pose, Space, Twist};
 use crate::state::State;
 
-/// How the ground moves.
+/// Ground motion.
 pub trait Drive<S: Space> {
-    /// Displacement (m) and velocity (m/s) of the ground at a time (s); one the derivative of the other.
+    /// Returns displacement (m) and velocity (m/s) of the ground at a time (s); the velocity is the derivative of the
+    /// displacement.
     fn at(&self, time: S::Real) -> (S::Vector, S::Vector);
 }
 
@@ -26,7 +26,7 @@ impl<S: Space, D: Drive<S> + ?Sized> Drive<S> for &D {
     }
 }
 
-/// Ground that does not move.
+/// Ground at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Still;
 
@@ -36,7 +36,7 @@ impl<S: Space> Drive<S> for Still {
     }
 }
 
-/// The user's choice of time integration.
+/// Integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// Symplectic Euler: one evaluation a step, first order.
@@ -48,14 +48,13 @@ pub enum Method {
     RungeKutta4,
     /// Bogacki–Shampine 3(2) with step control: three evaluations a step.
     BogackiShampine {
-        /// Largest local error of a position (m), and of a velocity over one time step of the
-        /// stiffest contact.
+        /// Largest local error of a position (m), and of a velocity times one time step of the stiffest contact.
         tolerance: f64,
     },
 }
 
 impl Method {
-    /// The name used in files and reports.
+    /// Returns the name used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::SemiImplicitEuler => "semi-implicit-euler",
@@ -65,13 +64,13 @@ impl Method {
         }
     }
 
-    /// Whether the method chooses its own steps.
+    /// Returns `true` if the method is adaptive.
     pub fn is_adaptive(self) -> bool {
         matches!(self, Self::BogackiShampine { .. })
     }
 }
 
-/// Advances states by a method; holds only working memory.
+/// Advances states by a method; has working memory only.
 #[derive(Debug)]
 pub struct Integrator<S: Space> {
     method: Method,
@@ -79,12 +78,12 @@ pub struct Integrator<S: Space> {
 }
 
 impl<S: Space> Integrator<S> {
-    /// An integrator of a method.
+    /// Creates an integrator for a method.
     pub fn new(method: Method) -> Self {
         Self { method, stages: runge_kutta::Stages::default() }
     }
 
-    /// Places what the ground carries and evaluates the forces: what every method starts from.
+    /// Positions the bodies carried by the ground and evaluates the forces: the start of every method.
     pub fn start(
         model: &Model<S>,
         drive: &impl Drive<S>,
@@ -96,7 +95,7 @@ impl<S: Space> Integrator<S> {
         evaluate(model, state, scratch);
     }
 
-    /// Advances `state` to the time `until` (s) in one step, or by less where the method wants less.
+    /// Advances `state` to the time `until` (s) in one step, or by less if the method requires.
     ///
     /// Returns the step (s) to try next.
     pub fn step(
@@ -133,10 +132,10 @@ impl<S: Space> Integrator<S> {
     }
 }
 
-/// Brings the element list up to date; where it changed, so do the element numbers in `scratch`.
+/// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` stay as they are: evaluating them anew, at corrected velocities and
-/// committed sticks, would give other ones, and the list would no longer be a matter of speed alone.
+/// The forces in `scratch` are kept: evaluating them again, with corrected velocities and committed sticks, would
+/// change them, and the list would no longer affect speed alone.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -148,7 +147,7 @@ fn refresh<S: Space>(
     }
 }
 
-/// Puts every prescribed body where the ground carries it at the time of the state.
+/// Moves every prescribed body with the ground to the time of the state.
 pub(crate) fn place_prescribed<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -162,12 +161,12 @@ pub(crate) fn place_prescribed<S: Space>(
     }
 }
 
-/// The bodies that forces move.
+/// Returns the free bodies.
 fn free<S: Space>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
     model.inert.iter().enumerate().filter(|(_, b)| b.motion == Motion::Free).map(|(i, _)| i)
 }
 
-/// Ends a step: the state that `scratch` was evaluated at is accepted.
+/// Ends a step: accepts the state that `scratch` was evaluated at.
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
     forces::commit(model, state, scratch);
 }

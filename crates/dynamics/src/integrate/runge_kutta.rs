@@ -1,4 +1,4 @@
-//! Explicit Runge–Kutta methods as data, one stepper for all.
+//! Explicit Runge–Kutta methods as tableaus, with one stepper for all.
 
 use super::{Drive, accept, free, place_prescribed};
 use crate::contact::Stick;
@@ -11,13 +11,13 @@ use crate::state::State;
 
 /// The coefficients of an explicit method.
 pub(super) struct Tableau {
-    /// Times of the stages as shares of the step; the first is zero.
+    /// Times of the stages as fractions of the step; the first is zero.
     times: &'static [f64],
-    /// How much of each earlier stage goes into a stage, row by row from the second stage.
+    /// Weights of the earlier stages in a stage, row by row from the second stage.
     rows: &'static [&'static [f64]],
-    /// How much of each stage goes into the step.
+    /// Weights of the stages in the step.
     weights: &'static [f64],
-    /// The same for the embedded result, with the new state as one more stage.
+    /// Weights of the embedded result, with the new state as one more stage.
     embedded: Option<&'static [f64]>,
 }
 
@@ -41,22 +41,22 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
 struct Rates<S: Space> {
-    /// Velocity of every body, and the rate of its turn from the start of the step ([`Space::turn_rate`]).
+    /// Velocity of every body, and the rate of its rotation from the start of the step ([`Space::turn_rate`]).
     ways: Vec<Twist<S>>,
-    /// Its acceleration, and the rate of what [`Space::momentum`] tells.
+    /// Its acceleration, and the rate of its [`Space::momentum`].
     kicks: Vec<Twist<S>>,
     slip_rates: Vec<S::Tangent>,
 }
 
-/// Working memory: the rates of every stage, and the state a step starts from.
+/// Working memory: the rates of every stage, and the initial state of a step.
 #[derive(Debug)]
 pub(super) struct Stages<S: Space> {
     rates: Vec<Rates<S>>,
     poses: Vec<Pose<S>>,
-    /// Velocity of every body, and what [`Space::momentum`] tells.
+    /// Velocity of every body, and its [`Space::momentum`].
     momenta: Vec<Twist<S>>,
     sticks: Vec<Stick<S>>,
-    /// The turn of every body from there to the stage at hand.
+    /// Rotation of every body from the start to the current stage.
     turned: Vec<S::Spin>,
 }
 
@@ -73,7 +73,7 @@ impl<S: Space> Default for Stages<S> {
 }
 
 impl<S: Space> Stages<S> {
-    /// One step of a fixed length.
+    /// Takes one step of a fixed length.
     pub(super) fn fixed(
         &mut self,
         tableau: &Tableau,
@@ -88,9 +88,9 @@ impl<S: Space> Stages<S> {
         accept(model, state, scratch);
     }
 
-    /// One step that is as long as the tolerance allows, and ends at `until` at the latest.
+    /// Takes one step that is as long as the tolerance allows, and ends at `until` at the latest.
     ///
-    /// Returns the step (s) to try next. Lanes share the step that the worst of them needs.
+    /// Returns the step (s) to try next. Lanes share the step that the worst of them requires.
     #[expect(clippy::too_many_arguments, reason = "the method, its tolerance, and what it acts on")]
     pub(super) fn adaptive(
         &mut self,
@@ -109,8 +109,8 @@ impl<S: Space> Stages<S> {
             self.attempt(tableau, model, drive, state, scratch, until);
             let dt = (until - start).largest_lane();
             let error = self.error(tableau, model, scratch, state, dt) / tolerance;
-            // A step that can hardly move the clock is accepted: at a touch-down the damper's force
-            // jumps, and no step is short enough to make a jump smooth.
+            // Steps at the lower limit are accepted: at touch-down the force of the damper jumps, and no step length
+            // makes a jump smooth.
             let smallest = 1e-9;
             if error <= 1.0 || dt <= smallest {
                 accept(model, state, scratch);
@@ -147,11 +147,11 @@ impl<S: Space> Stages<S> {
         }
         self.turned.fill(S::Spin::default());
         state.contact_elements.sticks.clone_from(&self.sticks);
-        // The first stage is the start itself and stays.
+        // The first stage is the start itself and remains valid.
         self.rates.truncate(1);
     }
 
-    /// Goes through the stages and leaves `state` and `scratch` at the new state, not yet accepted.
+    /// Computes all stages and leaves `state` and `scratch` at the new state, not yet accepted.
     fn attempt(
         &mut self,
         tableau: &Tableau,
@@ -193,7 +193,7 @@ impl<S: Space> Stages<S> {
         self.rates.push(rates);
     }
 
-    /// The rates of a body at a stage: of its place and turn, and of its velocity and momentum.
+    /// Returns the rates of a body at a stage: of position and rotation, and of velocity and momentum.
     fn rates_of(
         &self,
         model: &Model<S>,
@@ -206,7 +206,7 @@ impl<S: Space> Stages<S> {
         (way, momentum(model, scratch, body, scratch.accelerations[body]))
     }
 
-    /// The start plus a weighted sum of the rates.
+    /// Sets the state to the start plus a weighted sum of the rates.
     fn combine(&mut self, model: &Model<S>, state: &mut State<S>, weights: &[f64], dt: S::Real) {
         for i in free(model) {
             let mut velocity = Twist::default();
@@ -229,8 +229,8 @@ impl<S: Space> Stages<S> {
         }
     }
 
-    /// The largest difference (m) between the step and its embedded result; velocities count with
-    /// the way they make in the step.
+    /// Returns the largest difference (m) between the step and its embedded result; velocities count as displacements
+    /// in the step.
     fn error(
         &self,
         tableau: &Tableau,
@@ -275,8 +275,8 @@ impl<S: Space> Stages<S> {
     }
 }
 
-/// A twist with what [`Space::momentum`] tells of its spin: methods add these, since spins turn with their
-/// bodies where no moment acts.
+/// Replaces the spin of a twist by its [`Space::momentum`]: methods add momenta, since spins turn with their bodies
+/// even without a moment.
 fn momentum<S: Space>(
     model: &Model<S>,
     scratch: &Scratch<S>,
@@ -287,7 +287,7 @@ fn momentum<S: Space>(
     Twist { linear: twist.linear, angular: S::momentum(inertia, rotation, twist.angular) }
 }
 
-/// The twist of what [`momentum`] tells, of a body with this orientation.
+/// Converts back from [`momentum`] to a twist, for a body with this orientation.
 fn of_momentum<S: Space>(
     model: &Model<S>,
     body: usize,

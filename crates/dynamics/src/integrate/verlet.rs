@@ -7,11 +7,11 @@ use crate::real::Real;
 use crate::space::Space;
 use crate::state::State;
 
-/// `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, all with the new velocity.
+/// Steps `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, all with the new velocity.
 ///
-/// The new slip rates are known only after the evaluation, so sticks are predicted with the old ones
-/// and corrected: a stick advanced by old rates alone would gain energy in every step, by a share of
-/// ω² dt² for a tangential frequency ω.
+/// The new slip rates are known only after the evaluation, so sticks are predicted with the old ones and corrected: a
+/// stick advanced by old rates alone would gain energy in every step, by a fraction of ω² dt² for a tangential
+/// frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -33,14 +33,14 @@ pub(super) fn semi_implicit_euler<S: Space>(
     accept(model, state, scratch, step);
 }
 
-/// Half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces of
-/// the new place.
+/// Steps half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces at
+/// the new position.
 ///
-/// Those forces depend on the velocity, which is predicted from the old acceleration and corrected
-/// afterwards; sticks likewise, from the old slip rate.
-/// Springs met or left within the step push for a part of it only
+/// Those forces depend on the velocity, which is predicted from the old acceleration and corrected afterwards; sticks
+/// likewise, from the old slip rate.
+/// Springs that engage or release within the step act for a part of it only
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
-/// Prediction errors are of second order and do not add up, since the corrected values are kept.
+/// Prediction errors are of second order and do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -63,7 +63,7 @@ pub(super) fn velocity_verlet<S: Space>(
     accept(model, state, scratch, S::Real::splat(0.5) * step);
 }
 
-/// Places at the end of the step, and velocities and sticks as the old forces would have them.
+/// Computes positions at the end of the step, and velocities and sticks from the old forces.
 #[inline(always)]
 fn predict<S: Space>(
     model: &Model<S>,
@@ -78,14 +78,14 @@ fn predict<S: Space>(
         let (pose, arrived) = state.poses[i].coasted(model.inert[i].inertia, middle, step);
         state.poses[i] = pose;
         state.twists[i] = arrived.plus(kick, half);
-        // Until the new forces are known, the old acceleration waits here for the correction.
+        // Kept for the correction once the new forces are known.
         scratch.old_accelerations[i] = kick;
     }
     advance_sticks(state, &scratch.slip_rates, step);
     std::mem::swap(&mut scratch.old_slip_rates, &mut scratch.slip_rates);
 }
 
-/// Trades half of the old accelerations for the new ones.
+/// Replaces half of the old accelerations by the new ones.
 #[inline(always)]
 fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, step: S::Real) {
     let half = S::Real::splat(0.5) * step;
@@ -96,8 +96,8 @@ fn correct<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S
     }
 }
 
-/// Ends a step: the state that `scratch` was evaluated at is accepted, with a share (s) of the old slip rates traded
-/// for the new ones.
+/// Ends a step: accepts the state that `scratch` was evaluated at, after replacing a share (s) of the old slip rates
+/// by the new ones.
 fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>, share: S::Real) {
     let (new, old) = (&scratch.slip_rates, &scratch.old_slip_rates);
     commit_corrected(

@@ -12,60 +12,59 @@ use crate::state::State;
 
 use super::{Lanewise, MOST_LANES};
 
-/// A case that is ready to run: its model, the state it starts from, its ground, and how long.
+/// A case that is ready to run: model, initial state, ground motion, and duration.
 pub struct Case<'a, D> {
-    /// What stands there.
+    /// The model.
     pub model: &'a Model<Planar>,
-    /// Where it starts.
+    /// Initial state.
     pub state: State<Planar>,
-    /// What moves the ground.
+    /// Ground motion.
     pub drive: D,
     /// Time step (s).
     pub time_step: f64,
-    /// When it ends (s) unless it is stopped.
+    /// End time (s), unless it is stopped.
     pub end_time: f64,
 }
 
-/// What a case leaves behind.
+/// Result of a case.
 #[derive(Clone, Debug)]
 pub struct End {
-    /// How it came to its end, or why it broke down.
+    /// Reason for its end, or the error.
     pub finish: Result<Finish, RunError>,
-    /// When (s).
+    /// End time (s).
     pub time: f64,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
-    /// The energy books.
+    /// Energy balance.
     pub energy: EnergySummary,
 }
 
-/// Who brings cases, watches them, and takes what they leave behind.
+/// Case source and result sink for a lockstep batch.
 pub trait Batch<'a, R: Real> {
-    /// The ground of a case.
+    /// Ground motion of a case.
     type Drive: Drive<Planar>;
 
-    /// The next case, for a lane; all cases of a batch have one [`Topology`](super::Topology).
+    /// Returns the next case for a lane; all cases of a batch have one [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
 
-    /// The state a case starts from, placed on its ground, with the forces at it.
+    /// Called with the initial state of a case, placed on its ground, and its forces.
     fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>);
 
-    /// Looks at an accepted step of all lanes; the lanes in which it is enough.
+    /// Called after each accepted step of all lanes; returns the lanes to stop.
     ///
-    /// Lanes that have no case any more are in it, too, and stand still.
+    /// Lanes without a case are included, with constant state.
     fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask;
 
-    /// A case has ended.
+    /// Called when a case has ended.
     fn end(&mut self, lane: usize, end: End);
 }
 
 /// Runs all cases of a batch, as many side by side as a bundle has lanes.
 ///
-/// A lane gets the next case as soon as its own has ended.
-/// Every case takes the same steps to the same bits as [`simulate`](crate::simulate()) takes alone:
-/// lanes share nothing but the list of contact elements, which is a matter of speed, and the order
-/// of work.
-/// Only methods of a fixed step run so.
+/// A lane gets the next case as soon as its own has ended. Every case takes the same steps with the same bits as a
+/// single run by [`simulate`](crate::simulate()): lanes share only the list of contact elements, which affects speed
+/// alone, and the order of work.
+/// Only methods of a fixed step are supported.
 pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
     let Some(first) = batch.next(0) else { return };
     let mut lanes = Lanes::<R, C::Drive>::of(&first);
@@ -93,16 +92,16 @@ pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
     }
 }
 
-/// The cases that run.
+/// The running cases.
 struct Lanes<R: Real, D> {
     model: Model<Planar<R>>,
     state: State<Planar<R>>,
     scratch: Scratch<Planar<R>>,
     energy: EnergyLedger<Planar<R>>,
     drives: Drives<D>,
-    /// The lanes that have a case.
+    /// The lanes with a case.
     busy: R::Mask,
-    /// Which of them the batch stopped in the last step.
+    /// The lanes that the batch stopped in the last step.
     stopped: R::Mask,
     start: R,
     steps: R,
@@ -111,7 +110,7 @@ struct Lanes<R: Real, D> {
     end_time: R,
 }
 
-/// The ground of every lane; still where it has no case.
+/// Ground motion of every lane; at rest for a lane without a case.
 struct Drives<D>(Vec<Option<D>>);
 
 impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
@@ -136,7 +135,7 @@ impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
 }
 
 impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
-    /// All lanes as one case stands, none of them busy.
+    /// Creates lanes with the state of one case, none of them busy.
     fn of(case: &Case<'_, D>) -> Self {
         let model = Model::<Planar<R>>::in_all(case.model);
         let mut state = State::initial(&model);
@@ -163,7 +162,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         }
     }
 
-    /// Puts a case into a lane.
+    /// Loads a case into a lane.
     fn load<'a>(
         &mut self,
         lane: usize,
@@ -186,8 +185,7 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.busy = R::Mask::from_lanes(|l| l == lane || self.busy.lane(l));
     }
 
-    /// Lets a lane stand still, in the state of a lane that goes on: so it asks for no contact element
-    /// that the others do not need.
+    /// Freezes a lane in the state of a running lane, so that it needs no additional contact elements.
     fn retire(&mut self, lane: usize) {
         self.busy = R::Mask::from_lanes(|l| l != lane && self.busy.lane(l));
         self.drives.0[lane] = None;
@@ -240,14 +238,14 @@ impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
         self.energy.put(lane, &EnergyLedger::new(model, state, scratch));
     }
 
-    /// One step of all lanes; the lanes whose case has ended.
+    /// Takes one step of all lanes; returns the lanes whose case has ended.
     #[inline(always)]
     fn step<'a>(
         &mut self,
         integrator: &mut Integrator<Planar<R>>,
         batch: &mut impl Batch<'a, R, Drive = D>,
     ) -> R::Mask {
-        // As `simulate` counts: whole multiples of the step, the last one cut short.
+        // As in `simulate`: whole multiples of the step, the last one shortened.
         let sliver = R::splat(1e-9) * self.time_step;
         let target =
             self.start + self.times.next(self.scratch.needs_substeps, self.scratch.is_hard);

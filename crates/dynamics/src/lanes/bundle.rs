@@ -1,6 +1,6 @@
-//! Eight numbers in one vector register, or in as many as the machine needs for them.
+//! Bundles of eight numbers in one or more vector registers.
 //!
-//! The vectors are those of `fearless_simd`; here they become a [`Real`].
+//! Implements [`Real`] for the vectors of `fearless_simd`.
 #![allow(clippy::inline_always, reason = "vector code is fast only inside its scope")]
 
 use std::fmt;
@@ -10,13 +10,13 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8
 
 use crate::real::{Mask, Real};
 
-/// A vector unit of which it is known that this machine has it.
+/// A vector unit that this machine is known to have.
 pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
-    /// The proof that the machine has it, which takes no room.
+    /// Zero-sized proof that the machine has it.
     const TOKEN: Self;
 }
 
-/// Eight numbers that run together.
+/// Eight numbers in lockstep.
 #[derive(Clone, Copy)]
 pub(super) struct Bundle<U: Unit>(f64x8<U>);
 
@@ -74,9 +74,8 @@ impl<U: Unit> Real for Bundle<U> {
         U::TOKEN.vectorize(
             #[inline(always)]
             || {
-                // A bundle that is known to lie in memory: the compiler lays out the memory of a function for bundles
-                // only where it sees one before it chooses registers, and those that it moves out of registers later
-                // would lie across the lines of the cache.
+                // A bundle that must lie in memory: the compiler aligns the stack frame of a function for bundles
+                // only if it finds one before register allocation; bundles spilled later would straddle cache lines.
                 std::hint::black_box(&Self::splat(0.0));
                 work()
             },
@@ -216,7 +215,7 @@ mod tests {
     use crate::lanes::{Task, Width};
     use crate::real::Real;
 
-    /// The smaller and the larger of two numbers as they are found, by their bits.
+    /// Bits of the minimum and the maximum of two numbers.
     struct Extremes(f64, f64);
 
     impl Task for Extremes {

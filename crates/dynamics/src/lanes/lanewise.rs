@@ -1,4 +1,4 @@
-//! From things made of single numbers to the same things made of bundles, lane by lane.
+//! Conversion between values of single numbers and values of bundles, lane by lane.
 
 use crate::body::{Body, Face, Inert, Motion, Node, Nodes, Placed, Round};
 use crate::contact::{Basis, Exponent, FrictionLaw, Interface, NormalLaw, Rolling, Stick, Stop};
@@ -8,23 +8,23 @@ use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
 
-/// A thing made of bundles of numbers, each lane of which is the same thing made of single numbers.
+/// A value of bundles, each lane of which is the same kind of value of single numbers.
 ///
-/// What decides how much memory a thing takes and which way it is computed (the number of nodes, the
-/// kind of a law) must be the same in all lanes; [`Topology`](super::Topology) compares it beforehand.
-/// [`lanewise!`](crate::lanewise) writes it for structs and enums by the names of their fields.
+/// Everything that decides memory layout and control flow (the number of nodes, the kind of a law) must be equal in
+/// all lanes; [`Topology`](super::Topology) compares it beforehand. [`lanewise!`](crate::lanewise) implements it for
+/// structs and enums by the names of their fields.
 pub trait Lanewise {
-    /// The thing made of single numbers.
+    /// The value of single numbers.
     type Single;
-    /// The same thing in every lane.
+    /// Returns the same value in every lane.
     fn in_all(single: &Self::Single) -> Self;
-    /// Puts a thing into one lane.
+    /// Sets the value of one lane.
     fn put(&mut self, lane: usize, single: &Self::Single);
-    /// The thing in one lane.
+    /// Returns the value of one lane.
     fn of_lane(&self, lane: usize) -> Self::Single;
 }
 
-/// Why things that share a bundle have the same parts.
+/// Message for values of different topology in a bundle.
 #[doc(hidden)]
 pub const ALIKE: &str = "things that share a bundle are of one topology";
 
@@ -102,12 +102,12 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     }
 }
 
-/// What every lane has for itself and no arithmetic is done with; a single run has one lane.
+/// A value per lane that takes no part in arithmetic; a single run has one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerLane<T>(Vec<T>);
 
 impl<T: Clone> PerLane<T> {
-    /// That of a single run.
+    /// Creates the value of a single run.
     pub fn single(value: T) -> Self {
         Self(vec![value])
     }
@@ -139,12 +139,12 @@ impl<T: Clone> Lanewise for PerLane<T> {
     }
 }
 
-/// Writes [`Lanewise`] by the names of fields:
+/// Implements [`Lanewise`] by the names of fields:
 ///
 /// - `struct Name<R> { a, b }` and `struct Name<Planar<R>> { a, b }`, all of whose fields are lanewise
 ///   but for those after `masks`, which are truth values;
-/// - `enum Name<R> { One { a, b }, Two(a), Three }`, whose variants are told apart by the topology;
-/// - `same Name, Other;` for what is the same in all lanes.
+/// - `enum Name<R> { One { a, b }, Two(a), Three }`, whose variant is part of the topology;
+/// - `same Name, Other;` for types that are equal in all lanes.
 #[macro_export]
 macro_rules! lanewise {
     (struct $name:ident<R> $($rest:tt)*) => {
@@ -241,7 +241,7 @@ macro_rules! lanewise {
     };
 }
 
-/// Puts a truth value into one lane.
+/// Sets a truth value of one lane.
 pub fn put_truth<M: Mask>(mask: &mut M, lane: usize, single: bool) {
     let others = *mask;
     *mask = M::from_lanes(|l| if l == lane { single } else { others.lane(l) });
@@ -303,7 +303,7 @@ lanewise!(struct Substepping<R> { substeps, whole_step_depth, resting_allowance,
 lanewise!(struct Fast<R> { whole_step_way, hard });
 
 impl<R: Real> Model<Planar<R>> {
-    /// The model of one case in every lane.
+    /// Returns the model of one case in every lane.
     pub(crate) fn in_all(single: &Model<Planar>) -> Self {
         Self {
             bodies: Lanewise::in_all(&single.bodies),
@@ -318,7 +318,7 @@ impl<R: Real> Model<Planar<R>> {
         }
     }
 
-    /// Puts the model of a case into one lane.
+    /// Sets the model of one lane.
     pub(crate) fn put(&mut self, lane: usize, single: &Model<Planar>) {
         self.bodies.put(lane, &single.bodies);
         self.inert.put(lane, &single.inert);
@@ -327,11 +327,11 @@ impl<R: Real> Model<Planar<R>> {
         self.gravity.put(lane, &single.gravity);
         self.substepping.put(lane, &single.substepping);
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
-            // Balls that hold the body of every lane.
+            // The ball must hold the body of every lane.
             *reach = reach.max(*single);
         }
         for (body, (alike, single)) in self.alike.iter_mut().zip(&single.alike).enumerate() {
-            // Those that are alike in one case need not be in another.
+            // Bodies with equal boundaries in one case may differ in another.
             if alike != single {
                 *alike = body;
             }

@@ -1,12 +1,11 @@
-//! Many cases side by side in the lanes of a vector register.
+//! Many cases in the lanes of a vector register.
 //!
-//! A lane computes what a single run computes, with the same source and the same bits: laws, shapes,
-//! methods and books are written once over [`Real`], and here are the bundles that stand in for it.
-//! Which vector unit they use is found out when the program runs.
+//! A lane computes the same bits as a single run, from the same source: laws, shapes, methods and energy balance are
+//! written once over [`Real`], and the bundles here implement it. The vector unit is detected at run time.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
-//! - [`Topology`]: what cases must share to run in one bundle.
-//! - [`Lanewise`]: how a single thing is put into a lane, and taken out of it.
+//! - [`Topology`]: properties that cases must share to run in one bundle.
+//! - [`Lanewise`]: insertion and extraction of single lanes.
 //! - [`run_batch`]: the run loop of all lanes, which refills the lane of a case that has ended.
 
 mod batch;
@@ -23,38 +22,38 @@ pub use lanewise::{ALIKE, put_truth};
 pub use lanewise::{Lanewise, PerLane};
 pub use topology::Topology;
 
-/// No bundle has more lanes.
+/// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// How numbers are bundled.
+/// Width of a bundle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
-    /// One number after the other.
+    /// Single numbers.
     Scalar,
     /// AVX2.
     Avx2,
-    /// AVX-512 of the kind that Ice Lake brought.
+    /// AVX-512 with the extensions of Ice Lake.
     Avx512,
 }
 
-/// Work that is written over the scalar and done with the bundles of a width.
+/// Work that is generic over the scalar, to run with the bundles of a width.
 pub trait Task {
-    /// What it makes.
+    /// Result of the work.
     type Output;
-    /// Does it.
+    /// Runs it.
     fn run<R: Real>(self) -> Self::Output;
 }
 
 impl Width {
-    /// All of them, the narrowest first.
+    /// All widths, the narrowest first.
     pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
 
-    /// The widest that this machine has.
+    /// Returns the widest that this machine supports.
     pub fn widest() -> Self {
         Self::ALL.into_iter().rev().find(|width| width.is_here()).unwrap_or(Self::Scalar)
     }
 
-    /// Whether this machine has it.
+    /// Returns `true` if this machine supports it.
     pub fn is_here(self) -> bool {
         match self {
             Self::Scalar => true,
@@ -63,7 +62,7 @@ impl Width {
         }
     }
 
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
@@ -72,12 +71,12 @@ impl Width {
         }
     }
 
-    /// The width of a [`Width::name`].
+    /// Returns the width with a [`Width::name`].
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
 
-    /// Does work with the bundles of this width; none where this machine does not have it.
+    /// Runs a task with the bundles of this width; `None` if this machine does not support it.
     pub fn run<T: Task>(self, task: T) -> Option<T::Output> {
         if !self.is_here() {
             return None;
@@ -89,11 +88,10 @@ impl Width {
     }
 }
 
-/// The vector units of this kind of processor.
+/// Vector units of this processor architecture.
 ///
-/// A token proves that the machine has a unit; bundles need it in every number they make, so it is a
-/// constant here, and the functions of this module are the only way to code that uses it: each asks
-/// the machine first.
+/// A token proves that the machine has a unit. Bundles need it in every operation, so it is a constant here, and the
+/// functions of this module are the only access to code that uses it: each checks the machine first.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every way to them asks the machine first")]
 pub(crate) mod units {
@@ -105,11 +103,11 @@ pub(crate) mod units {
     use super::{Task, Width};
 
     impl Unit for Avx2 {
-        // SAFETY: `run` is the only user, and asks `has_avx2` first.
+        // SAFETY: `run` is the only user, and checks `has_avx2` first.
         const TOKEN: Self = unsafe { Self::assume_supported() };
     }
     impl Unit for Avx512 {
-        // SAFETY: `run` is the only user, and asks `has_avx512` first.
+        // SAFETY: `run` is the only user, and checks `has_avx512` first.
         const TOKEN: Self = unsafe { Self::assume_supported() };
     }
 
@@ -121,8 +119,8 @@ pub(crate) mod units {
         Level::new().as_avx512().is_some()
     }
 
-    /// Does work with single numbers by the instructions of a vector unit, where the machine has one: these keep
-    /// what they compute from, and are a tenth fewer. None of them fuses a product and a sum, so bits stay.
+    /// Runs scalar work with the instructions of a vector unit, if the machine has one: they preserve their operands,
+    /// which saves a tenth of the instructions. None of them fuses a product and a sum, so the bits are the same.
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());
@@ -141,7 +139,7 @@ pub(crate) mod units {
     }
 }
 
-/// Elsewhere one number goes after the other.
+/// Fallback for other architectures: single numbers.
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) mod units {
     use super::{Task, Width};

@@ -1,4 +1,4 @@
-//! What must be the same in all lanes.
+//! Properties that must be equal in all lanes.
 
 use std::mem::{Discriminant, discriminant};
 
@@ -10,14 +10,14 @@ use crate::pairs::Pairs;
 use crate::shape::Shape;
 use crate::space::Planar;
 
-/// What two models must share to run in one bundle: their bodies, boundaries, laws and pairs in
-/// kind and number. Masses, places, sizes and constants may differ.
+/// Properties that models must share to run in one bundle: bodies, boundaries, laws and pairs in kind and number.
+/// Masses, positions, sizes and constants may differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Topology {
     bodies: Vec<BodyKind>,
     interfaces: Vec<InterfaceKind>,
     pairs: Pairs,
-    /// Kind of every force element, and the bodies that it joins.
+    /// Kind and joined bodies of every force element.
     elements: Vec<(Discriminant<Element<Planar>>, [BodyId; 2])>,
 }
 
@@ -27,11 +27,11 @@ struct BodyKind {
     motion: Motion,
     damped: bool,
     faces: usize,
-    /// Kind of every surface, and how many sides it has.
+    /// Kind and number of sides of every surface.
     surfaces: Vec<(Discriminant<Shape>, usize)>,
-    /// Kind of every node set, and how many nodes it has.
+    /// Kind and number of nodes of every node set.
     nodes: Vec<(Discriminant<Nodes<Planar>>, usize)>,
-    /// For every round piece whether it takes its limit, and which limits and sides it has.
+    /// For every round piece: `takes_limit`, and which limits and sides it has.
     rounds: Vec<(bool, [bool; 2], [bool; 2])>,
 }
 
@@ -46,7 +46,7 @@ struct InterfaceKind {
 }
 
 impl Topology {
-    /// The topology of a model.
+    /// Returns the topology of a model.
     pub fn of(model: &Model<Planar>) -> Self {
         Self {
             bodies: model.bodies.iter().map(BodyKind::of).collect(),

@@ -1,4 +1,4 @@
-//! Many stacks come to rest side by side, each to the bits that it comes to alone.
+//! Settles many stacks side by side, each to the bits of settling alone.
 
 use crate::contact_elements::ContactElements;
 use crate::forces::{Scratch, evaluate};
@@ -13,23 +13,23 @@ use super::refusal::Departure;
 use super::relax::Relaxation;
 use super::{LOOK, Locked, MOST_STEPS, SettleError, Settled, TRIES, gravity, settle, stop};
 
-/// A stack that is left to gravity.
+/// A stack to be settled under gravity.
 #[derive(Debug)]
 pub struct Stack<'a> {
-    /// What stands there.
+    /// The model.
     pub model: &'a Model<Planar>,
-    /// From where it sinks; left at rest.
+    /// Initial state; left at rest.
     pub state: &'a mut State<Planar>,
-    /// Left with the forces at rest, contacts among them.
+    /// Left with the forces at rest, including contacts.
     pub scratch: &'a mut Scratch<Planar>,
 }
 
-/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes;
-/// what [`settle`] says of each, in their order, or nothing when asked to stop.
+/// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns
+/// the result of [`settle`] for each, in their order, or `None` when stopped.
 ///
-/// A lane gets the next stack as soon as its own rests.
-/// Lanes share nothing but the list of contact elements, so every stack goes the way that it goes alone.
-/// One that does not come to rest on the first try is settled alone: only there is said what it lacks.
+/// A lane gets the next stack as soon as its own rests. Lanes share only the list of contact elements, so every stack
+/// takes the path that it takes alone. A stack that does not come to rest on the first try is settled alone, where
+/// the cause is diagnosed.
 pub fn settle_all<R: Real>(
     stacks: &mut [Stack<'_>],
     tolerance: f64,
@@ -70,26 +70,26 @@ pub fn settle_all<R: Real>(
     stacks.iter_mut().zip(settled).map(alone).collect()
 }
 
-/// The stacks that sink.
+/// The stacks that are settling.
 struct Lanes<R: Real> {
     model: Model<Planar<R>>,
     state: State<Planar<R>>,
     scratch: Scratch<Planar<R>>,
     relaxation: Relaxation<Planar<R>>,
-    /// What every lane tries; none where it has no stack.
+    /// The current try of every lane; `None` without a stack.
     tries: Vec<Option<Try>>,
 }
 
-/// A first try to bring a stack to rest.
+/// A first try to settle a stack.
 struct Try {
-    /// Which stack.
+    /// Index of the stack.
     stack: usize,
     departure: Departure<Planar>,
     steps: u64,
 }
 
 impl<R: Real> Lanes<R> {
-    /// Lanes that all hold one model, and none of them a stack.
+    /// Creates lanes that all hold one model, without stacks.
     fn of(model: &Model<Planar>) -> Self {
         let model = Model::<Planar<R>>::in_all(model);
         let state = State::initial(&model);
@@ -102,7 +102,7 @@ impl<R: Real> Lanes<R> {
         Self { model, state, scratch, relaxation, tries: (0..R::LANES).map(|_| None).collect() }
     }
 
-    /// Puts a stack into a lane, where it starts; the list of contact elements does not know it yet.
+    /// Loads a stack at its start into a lane; the list of contact elements is not updated yet.
     fn load(&mut self, lane: usize, index: usize, stack: &mut Stack<'_>) {
         let Stack { model, state, .. } = stack;
         stop(model, state);
@@ -115,7 +115,7 @@ impl<R: Real> Lanes<R> {
         self.tries[lane] = Some(Try { stack: index, departure, steps: 0 });
     }
 
-    /// Leaves a lane without a stack, in the places from where its own has sunk.
+    /// Leaves a lane without a stack, at the initial poses of its last one.
     fn retire(&mut self, lane: usize) {
         let start: Vec<Pose<Planar>> =
             self.model.bodies.iter().map(|body| body.pose.of_lane(lane)).collect();
@@ -131,7 +131,7 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Lists the contact elements of all lanes anew; those of lanes that begin remember what their stacks do.
+    /// Rebuilds the list of contact elements of all lanes; those of starting lanes get the memory of their stacks.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);
@@ -146,7 +146,7 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// The forces where all are, and which of them rest there or must be settled alone: those lanes.
+    /// Evaluates the forces; returns the lanes whose stacks rest or must be settled alone.
     fn step(
         &mut self,
         tolerance: f64,
@@ -182,7 +182,7 @@ impl<R: Real> Lanes<R> {
         ended
     }
 
-    /// Takes a stack that rests out of its lane.
+    /// Takes a settled stack out of its lane.
     fn take(&self, lane: usize, stack: &mut Stack<'_>, (steps, unbalanced): (u64, f64)) -> Settled {
         let Stack { model, state, scratch } = stack;
         state.poses = self.state.poses.of_lane(lane);

@@ -1,8 +1,8 @@
 //! Static equilibrium under gravity, before anything shakes.
 //!
-//! Equilibrium is a matter of places and sticks alone, so it is looked for in a time of its own, in which
-//! masses are chosen for speed and nothing has a speed: dampers, whatever their law, say nothing about
-//! where bodies come to rest, nor whether they do.
+//! Equilibrium depends on positions and sticks alone, so it is solved in a fictitious time, with masses chosen for
+//! fast convergence and vanishing velocities: dampers, whatever their law, affect neither the equilibrium nor its
+//! existence.
 
 mod lanes;
 mod refusal;
@@ -21,57 +21,56 @@ use refusal::Departure;
 pub use refusal::{Lack, SettleError};
 use relax::Relaxation;
 
-/// What settling found.
+/// Result of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Steps of the try that brought it to rest, each of one evaluation of the forces.
+    /// Number of steps of the successful try, each with one force evaluation.
     pub steps: u64,
-    /// Largest acceleration left over, as a share of gravity.
+    /// Largest residual acceleration, over gravity.
     pub unbalanced: f64,
-    /// What friction locked in.
+    /// Locked-in friction.
     pub locked: Locked,
 }
 
-/// Friction at rest: forces that equilibrium alone does not fix, and that remain from how it was reached.
+/// Friction at rest: forces that equilibrium alone does not determine, and that depend on the path to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locked {
-    /// Contacts whose stick holds.
+    /// Number of contacts whose stick holds.
     pub holding: usize,
-    /// Contacts at the limit of their friction.
+    /// Number of contacts at the friction limit.
     pub slipping: usize,
-    /// Sum of the friction forces of all contacts, as a share of that of their normal forces.
+    /// Sum of the friction forces of all contacts, over that of their normal forces.
     pub friction: f64,
 }
 
-/// Steps after which a try is given up.
+/// Maximum number of steps of a try.
 const MOST_STEPS: u64 = 40_000;
 
-/// How settling is tried, until it succeeds: with what margin of the fictitious masses, and with how many
-/// steps without momentum at first. Heavier masses go slower, and less far beyond where bodies lie.
+/// Retry schedule: fictitious-mass factor, and number of initial steps without momentum. Heavier masses converge more
+/// slowly, with less overshoot.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
-/// Steps between two looks for bodies that have left.
+/// Number of steps between two checks for bodies that have left.
 const LOOK: u64 = 20;
 
-/// Units in the last place of a body's position that its contacts may leave unbalanced: with springs that
-/// are stiff for the weight they bear, nothing better can be written down.
+/// Units in the last place of a body's position that its contacts may leave unbalanced: with springs that are stiff
+/// for their load, positions cannot be represented more accurately.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Lets the bodies sink into their contacts until all forces balance.
 ///
-/// Gravity acts on all bodies at once, and friction acts all the while, so forces locked in by sticking
-/// as the stack sinks remain, as they would after stacking; [`Settled::locked`] says how much that is.
-/// The way there is relaxation with momentum: every step carries on a growing share of the way of the
-/// step before, and all bodies are stopped whenever the forces have come to work against their ways.
-/// What does not come to rest so is tried again with heavier masses before it is refused.
-/// The mass of a body is what the stiffness of its contacts allows in a step, and velocities are so small
-/// that dampers feel nothing, so no damping constant and no time step decides where bodies come to rest or
-/// how many steps that takes.
+/// Gravity acts on all bodies at once, and friction acts throughout, so forces locked in by sticking as the stack
+/// sinks remain, as they would after stacking; [`Settled::locked`] reports their amount. The method is relaxation
+/// with momentum: every step carries on a growing share of the displacement of the step before, and all bodies are
+/// stopped whenever the power of the forces becomes negative. If relaxation fails it is retried with heavier masses
+/// before returning an error.
+/// The mass of a body is the stiffness of its contacts times a factor, and velocities are too small for dampers, so
+/// neither damping constants nor the time step affect the equilibrium or the number of steps.
 ///
-/// `state` is left at rest at its time; prescribed bodies stay where they are.
+/// `state` is left at rest at its time; prescribed bodies do not move.
 ///
 /// # Errors
-/// When a body leaves its place, or the forces do not balance to `tolerance` (share of gravity).
+/// If a body leaves its place, or the forces do not balance to `tolerance` (share of gravity).
 pub fn settle<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -85,8 +84,7 @@ pub fn settle<S: Space>(
     let start = state.clone();
     let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
     for way in &TRIES[1..] {
-        // With momentum bodies sink somewhat deeper than they lie, which is too deep for some. What goes all
-        // the same is what went first.
+        // With momentum bodies overshoot, for some too far. If every try fails, the first error is returned.
         if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
             state.clone_from(&start);
             evaluate(model, state, scratch);
@@ -101,7 +99,7 @@ pub fn settle<S: Space>(
     result.map(|(steps, unbalanced)| Settled { steps, unbalanced, locked })
 }
 
-/// Steps until every lane rests, in one way of [`TRIES`]; how many, and what is left unbalanced.
+/// Steps until every lane rests, with one entry of [`TRIES`]; returns the number of steps and the residual.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -135,7 +133,7 @@ fn sink<S: Space>(
     }
 }
 
-/// Takes all motion from what moves freely.
+/// Stops all free bodies.
 fn stop<S: Space>(model: &Model<S>, state: &mut State<S>) {
     for (twist, body) in state.twists.iter_mut().zip(&model.bodies) {
         if body.motion == Motion::Free {
@@ -145,7 +143,7 @@ fn stop<S: Space>(model: &Model<S>, state: &mut State<S>) {
 }
 
 impl Locked {
-    /// Of the contacts at rest; over all lanes.
+    /// Summarizes the contacts at rest, over all lanes.
     fn of<S: Space>(state: &State<S>, scratch: &Scratch<S>) -> Self {
         let mut locked = Self::default();
         let (mut friction, mut normal) = (0.0, 0.0);
@@ -167,7 +165,7 @@ impl Locked {
     }
 }
 
-/// The magnitude of gravity (m/s²), not less than what keeps it fit to divide by.
+/// Returns the magnitude of gravity (m/s²), bounded below so that it can be a divisor.
 fn gravity<S: Space>(model: &Model<S>) -> S::Real {
     model.gravity.dot(model.gravity).sqrt().max(S::Real::splat(1e-12))
 }

@@ -1,4 +1,4 @@
-//! Why bodies do not come to rest: which one goes, and what it lacks.
+//! Diagnosis of bodies that do not come to rest: which one fails, and the cause.
 
 use crate::body::BodyId;
 use crate::contact::FrictionLaw;
@@ -10,42 +10,42 @@ use crate::state::State;
 
 use super::gravity;
 
-/// Share of its reach that a body has moved when it is looked at for what it lacks: more than it sinks,
-/// and not so much that all is lost.
+/// Displacement of a body over its reach at which the cause is diagnosed: more than it settles, and before the scene
+/// is disturbed.
 const GOING: f64 = 0.1;
 
-/// Share of its reach by which a body that stays may stray.
+/// Displacement of a body over its reach beyond which it has left its place.
 const LEFT: f64 = 0.5;
 
-/// Share of the way of the body that goes furthest from which a body goes with it.
+/// Displacement, over that of the farthest body, from which another body moves with it.
 const WITH_IT: f64 = 0.25;
 
-/// Share of its way that is penetration where a body sinks.
+/// Ratio of penetration to displacement above which a body is classed as sinking.
 const SINKS: f64 = 0.5;
 
-/// Share of the way of its center of mass by which the boundary of a body that turns over has turned: all
-/// of it where it rolls, or tips over its corner.
+/// Ratio of boundary rotation to center-of-mass displacement above which a body is classed as tipping: 1 if it rolls,
+/// or tips over its corner.
 const TURNS: f64 = 0.7;
 
 /// A body that does not come to rest under gravity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("body \"{body}\" does not come to rest under gravity (it moved {moved:.3} m): {lack}")]
 pub struct SettleError {
-    /// The lowest of the bodies that go: those above lose their hold with it.
+    /// The lowest of the moving bodies: those above lose their support with it.
     pub body: String,
-    /// How far it moved (m).
+    /// Its displacement (m).
     pub moved: f64,
-    /// Why it goes.
+    /// The cause.
     pub lack: Lack,
 }
 
-/// What a body lacks to come to rest.
+/// Cause of a failure to come to rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Lack {
-    /// Nothing was ever in touch with it.
+    /// No contact with any body.
     #[error("nothing lies under it, and nothing holds it")]
     Support,
-    /// What it lies on gives way under it.
+    /// Its support is too soft.
     #[error(
         "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for what lies \
          on them"
@@ -66,7 +66,7 @@ pub enum Lack {
         /// The interface between the two.
         interface: String,
     },
-    /// Its friction law does not hold what is at rest.
+    /// Its friction law does not hold at rest.
     #[error(
         "it creeps on \"{on}\": the regularized friction of {interface} resists motion, but holds \
          nothing at rest"
@@ -77,7 +77,7 @@ pub enum Lack {
         /// The interface between the two.
         interface: String,
     },
-    /// It turns over what it lies on.
+    /// It turns over on its support.
     #[error(
         "it tips or rolls over on \"{on}\", which does not hold its weight and what it bears upright"
     )]
@@ -85,7 +85,7 @@ pub enum Lack {
         /// The body it lies on.
         on: String,
     },
-    /// It leaves what bore it.
+    /// It leaves its support.
     #[error("it is pushed out of its place")]
     Place,
     /// The forces neither balance nor move it away.
@@ -93,19 +93,19 @@ pub enum Lack {
         "after {steps} steps its forces still miss their balance, by {unbalanced:.0e} of gravity"
     )]
     Time {
-        /// The steps.
+        /// Number of steps.
         steps: u64,
-        /// The acceleration that is left, as a share of gravity.
+        /// The residual acceleration, over gravity.
         unbalanced: f64,
     },
 }
 
-/// Watches for bodies that go.
+/// Detects bodies that leave their place.
 pub(super) struct Departure<S: Space> {
     start: Vec<Pose<S>>,
     /// The bodies, the lowest first.
     upward: Vec<BodyId>,
-    /// The lowest body that went when the first did, and what it lacked then.
+    /// The lowest body that moved when the first did, and the cause at that time.
     first: Option<(BodyId, Lack)>,
 }
 
@@ -117,8 +117,8 @@ impl<S: Space> Departure<S> {
         Self { start, upward, first: None }
     }
 
-    /// How far every body has strayed (m): sideways, up, or down by more than any body below it, since what
-    /// lies on soft contacts sinks with them.
+    /// Returns the drift (m) of every body: sideways, up, or down by more than any body below it, since bodies on
+    /// soft contacts sink with them.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];
@@ -135,10 +135,10 @@ impl<S: Space> Departure<S> {
         strayed
     }
 
-    /// Looks for bodies that go: notes what the first lacks that strays further than sinking explains, and
-    /// says so once a body has left.
+    /// Detects bodies that leave: diagnoses the first that drifts further than settling explains, and returns the
+    /// error once a body has left.
     ///
-    /// By the time that it has left, it has met other bodies and pushed them away.
+    /// The diagnosis comes early since a body that has left has already met others and pushed them away.
     pub(super) fn watch(
         &mut self,
         model: &Model<S>,
@@ -166,12 +166,13 @@ impl<S: Space> Departure<S> {
         Err(self.refusal(model, state, first, lack))
     }
 
-    /// Whether [`Departure::watch`] would say that a body has left.
+    /// Returns `true` if [`Departure::watch`] would report that a body has left.
     pub(super) fn has_left(&self, model: &Model<S>, poses: &[Pose<S>]) -> bool {
         most(model, &self.strayed(model, poses)) >= LEFT
     }
 
-    /// Why there is no rest, though no body has left: for the body that feels most of what is left.
+    /// Returns the error if the forces do not balance, though no body has left: for the body with the largest
+    /// residual.
     pub(super) fn unbalanced(
         &mut self,
         model: &Model<S>,
@@ -187,13 +188,13 @@ impl<S: Space> Departure<S> {
         SettleError { body: model.bodies[body].name.clone(), moved, lack }
     }
 
-    /// How far a body has gone (m), in the lane where it is most.
+    /// Returns the displacement (m) of a body, in the lane where it is largest.
     fn moved(&self, state: &State<S>, body: BodyId) -> f64 {
         let way = state.poses[body].position - self.start[body].position;
         way.dot(way).sqrt().largest_lane()
     }
 
-    /// What a body lacks that goes, with those others that go.
+    /// Diagnoses a moving body, given the others that move.
     fn lack(
         &self,
         body: BodyId,
@@ -211,7 +212,7 @@ impl<S: Space> Departure<S> {
             let pair = &model.pair(contact.pair);
             if pair.contactor == body { pair.target } else { pair.contactor }
         };
-        // What bears it stays; where all go, the last that bears it tells as much as any.
+        // Its support is among the bodies at rest; if all move, any contact will do.
         let bearing: Vec<_> = scratch.contacts.iter().filter(of).collect();
         let staying: Vec<_> = bearing.iter().copied().filter(|c| !going[partner(c)]).collect();
         let bearing = if staying.is_empty() { bearing } else { staying };
@@ -251,13 +252,13 @@ impl<S: Space> Departure<S> {
     }
 }
 
-/// The most that any body has strayed, as a share of its extent.
+/// Returns the largest drift of any body, over its extent.
 fn most<S: Space>(model: &Model<S>, strayed: &[f64]) -> f64 {
     let shares = strayed.iter().enumerate().map(|(body, far)| far / extent(model, body));
     shares.fold(0.0, f64::max)
 }
 
-/// How far a body extends from its center of mass (m); a meter where it has no boundary.
+/// Returns the extent of a body from its center of mass (m); 1 m if it has no boundary.
 fn extent<S: Space>(model: &Model<S>, body: usize) -> f64 {
     let reach = model.reach[body];
     if reach > 0.0 { reach } else { 1.0 }

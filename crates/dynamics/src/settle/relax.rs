@@ -1,4 +1,4 @@
-//! Relaxation: steps with fictitious masses, in which nothing has a speed.
+//! Relaxation: steps with fictitious masses and vanishing velocities.
 
 use crate::body::Motion;
 use crate::contact::Stick;
@@ -12,18 +12,17 @@ use crate::state::State;
 
 use super::{ROUNDING, gravity};
 
-/// Share of its reach that a body falls in its first step while nothing holds it.
+/// Displacement of a body over its reach in its first step while it is in free fall.
 const FIRST_FALL: f64 = 1e-4;
 
-/// Share of its reach that a body moves in a step at most: contacts that stiffen with penetration are soft
-/// when they are met.
+/// Maximum displacement of a body over its reach in a step: nonlinear contacts are soft at first touch.
 const LONGEST_WAY: f64 = 2e-3;
 
-/// Velocities (per step of relaxation) that forces see: a power of two, by which bits do not change, so
-/// small that no damper feels it and that of smooth friction laws only what holds at rest is left.
+/// Scale of velocities (per step of relaxation) in forces: a power of two, which preserves bits, so small that
+/// dampers vanish and smooth friction laws keep only their static part.
 const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
 
-/// A contact, seen from both of its bodies.
+/// A contact with the geometry of both of its bodies.
 struct Touch<S: Space> {
     element: usize,
     touching: <S::Real as Real>::Mask,
@@ -37,7 +36,7 @@ struct Touch<S: Space> {
     normal: S::Vector,
 }
 
-/// The stiffness of all that holds a body: for its way (N/m) and for its turn (N·m).
+/// Stiffness of all supports of a body: for its displacement (N/m) and for its rotation (N·m).
 #[derive(Clone, Copy)]
 struct Held<R> {
     way: R,
@@ -53,36 +52,36 @@ impl<R: Real> Held<R> {
     }
 }
 
-/// What relaxation carries from step to step. Lanes decide alone; a lane that rests stays as it is.
+/// Relaxation state. Each lane converges independently; converged lanes are frozen.
 pub(super) struct Relaxation<S: Space> {
-    /// Fictitious mass over the stiffness that a body's contacts add up to.
+    /// Fictitious mass over the total stiffness of a body's contacts.
     ///
-    /// A contact of stiffness k between two bodies, seen in their ways and turns, is at most four times k
-    /// on the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of
-    /// the stiffness: so 1 is just stable for springs, and the rest is for friction that breaks.
+    /// A contact of stiffness k between two bodies, in terms of their displacements and rotations, is at most four
+    /// times k on the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of the
+    /// stiffness: so 1 is just stable for springs, and the rest is for friction that slips.
     margin: f64,
-    /// The lanes that rest.
+    /// The lanes at rest.
     pub(super) resting: <S::Real as Real>::Mask,
-    /// The bodies that have touched something, or hung on something.
+    /// The bodies that have had a contact, or a loaded force element.
     pub(super) met: Vec<bool>,
-    /// How far every body extends from its center of mass (m).
+    /// Extent of every body from its center of mass (m).
     pub(super) reach: Vec<S::Real>,
-    /// The ways and turns of the last step.
+    /// Displacements and rotations of the last step.
     ways: Vec<Twist<S>>,
-    /// The stiffest that every body has been held: a body that leaves its contacts for a moment must not
-    /// become light while others lie on it.
+    /// Maximum stiffness of every body so far: a body that leaves its contacts for a moment must not become light
+    /// while others lie on it.
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
-    /// Whether every element of the list touched.
+    /// The lanes in which each element of the list touched.
     pub(super) touched: Vec<<S::Real as Real>::Mask>,
-    /// Steps that are still to be made without momentum.
+    /// Number of remaining steps without momentum.
     calm: u64,
-    /// Steps since the last stop.
+    /// Number of steps since the last stop.
     since: S::Real,
 }
 
 impl<S: Space> Relaxation<S> {
-    /// At the start: nothing moves, and no body has been held. The first steps may go without momentum.
+    /// Creates the initial state, with `calm` steps without momentum.
     pub(super) fn new(model: &Model<S>, margin: f64, calm: u64) -> Self {
         Self {
             margin,
@@ -98,22 +97,22 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// How far a body extends from its center of mass (m); a meter where it has no boundary.
+    /// Returns the extent of a body from its center of mass (m); 1 m if it has no boundary.
     #[inline(always)]
     fn extent(&self, body: usize) -> S::Real {
         let reach = self.reach[body];
         S::Real::select(S::Real::zero().lt(reach), reach, S::Real::splat(1.0))
     }
 
-    /// The acceleration (m/s²) that is left to a body, rotation counted at its reach.
+    /// Returns the residual acceleration (m/s²) of a body, with rotation taken at its reach.
     #[inline(always)]
     pub(super) fn acceleration(&self, scratch: &Scratch<S>, body: usize) -> S::Real {
         let Twist { linear, angular } = scratch.accelerations[body];
         length::<S>(linear).max(S::spin_magnitude(angular) * self.reach[body])
     }
 
-    /// Where what is left to every body is less than a share of gravity, or than rounding makes of stiff
-    /// contacts; and the largest acceleration (m/s²) that is left.
+    /// Returns the lanes in which the residual of every body is below a share of gravity, or below the rounding error
+    /// of stiff contacts; and the largest residual acceleration (m/s²).
     pub(super) fn left_over(
         &self,
         model: &Model<S>,
@@ -141,7 +140,7 @@ impl<S: Space> Relaxation<S> {
         )
     }
 
-    /// Looks at all that touches in the last evaluation, and at how stiff that holds each body.
+    /// Updates the contacts of the last evaluation, and the stiffness that supports each body.
     pub(super) fn weigh(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -197,7 +196,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// One step: from the forces at a state to a state nearer to rest, and the forces there.
+    /// Takes one step: from the forces at a state to a state nearer to rest, and its forces.
     pub(super) fn advance(
         &mut self,
         model: &Model<S>,
@@ -208,7 +207,7 @@ impl<S: Space> Relaxation<S> {
         self.arrive(model, state, scratch);
     }
 
-    /// The first part of a step: bodies and sticks go their ways.
+    /// Takes the first part of a step: moves bodies and sticks.
     pub(super) fn set_out(&mut self, model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>) {
         S::Real::scope(
             #[inline(always)]
@@ -223,7 +222,7 @@ impl<S: Space> Relaxation<S> {
         );
     }
 
-    /// The second part of a step: the forces where the bodies are now, and what sticks keep of their ways.
+    /// Takes the second part of a step: computes the forces of the new state, and commits the sticks.
     pub(super) fn arrive(
         &mut self,
         model: &Model<S>,
@@ -254,7 +253,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Follows a new list of elements.
+    /// Renumbers to a new list of elements.
     pub(super) fn renumber(&mut self, origins: &[Option<usize>], scratch: &mut Scratch<S>) {
         scratch.renumber(origins);
         let touched =
@@ -262,7 +261,7 @@ impl<S: Space> Relaxation<S> {
         self.touched = origins.iter().map(touched).collect();
     }
 
-    /// Gives lanes that rest back what they remembered.
+    /// Restores the memory of resting lanes.
     #[inline(always)]
     fn keep(&self, state: &mut State<S>, sticks: &[Stick<S>], memory: &[Memory<S>]) {
         let rests = self.resting;
@@ -276,8 +275,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// The ways of the next step: a share of those of the last one, which grows until the forces work
-    /// against them, and what the forces give to the fictitious masses.
+    /// Computes the displacements of the next step: a share of those of the last one, which grows until the power of
+    /// the forces is negative, plus the response of the fictitious masses to the forces.
     #[inline(always)]
     fn choose_ways(&mut self, model: &Model<S>, scratch: &Scratch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -305,7 +304,7 @@ impl<S: Space> Relaxation<S> {
             let falling = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
             let holds = zero.lt(held.way);
             let stiffness = S::Real::select(holds, held.way, falling);
-            // What holds a body in one point through its center of mass does not resist its turn.
+            // A single support through its center of mass does not resist the rotation of a body.
             let turning = held.turn.max(S::Real::splat(1e-3) * stiffness * extent * extent);
             let linear = way.linear * carried + forces.force * (given / stiffness);
             let angular = way.angular * carried + forces.moment * (given / turning);
@@ -316,7 +315,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Takes every stick along with its contact.
+    /// Moves every stick with its contact.
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {
@@ -330,7 +329,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Gives the sticks of contacts that have just met the share of the step for which they touched.
+    /// Moves the sticks of new contacts by the share of the step for which they touched.
     #[inline(always)]
     fn slide_fresh(&self, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);
@@ -350,7 +349,7 @@ impl<S: Space> Relaxation<S> {
 }
 
 impl<R: Real> Relaxation<Planar<R>> {
-    /// Lets a lane begin anew: nothing moves, and no body has been held.
+    /// Resets a lane to the initial state.
     pub(super) fn begin(&mut self, lane: usize) {
         for (way, held) in self.ways.iter_mut().zip(&mut self.held) {
             way.put(lane, &Twist::default());
@@ -366,7 +365,7 @@ fn length<S: Space>(vector: S::Vector) -> S::Real {
     vector.dot(vector).sqrt()
 }
 
-/// The force on every body with gravity, and its moment about the center of mass.
+/// Returns the force on every body including gravity, and its moment about the center of mass.
 #[inline(always)]
 fn each<'a, S: Space>(
     model: &'a Model<S>,

@@ -21,7 +21,7 @@ impl<R: Real> Circle<R> {
         self.gap_from(point, point.dot(point))
     }
 
-    /// The gap of a point whose squared distance (m²) from the center is known.
+    /// Returns the gap of a point from its squared distance (m²) from the center.
     #[inline(always)]
     pub(super) fn gap_from(&self, point: Vec2<R>, squared: R) -> Gap<Planar<R>> {
         let length = squared.sqrt();
@@ -31,10 +31,10 @@ impl<R: Real> Circle<R> {
         Gap { distance: length - self.radius, normal: Vec2::select(at_center, up, point * inverse) }
     }
 
-    /// The squared distance (m²) from the center below which a point may penetrate.
+    /// Returns the squared distance (m²) from the center below which a point may penetrate.
     #[inline(always)]
     pub(super) fn within(&self) -> R {
-        // A hair of slack, so that rounding never hides a node that the square root would find.
+        // Slack for rounding, so that no node is missed that the square root would find.
         self.radius * self.radius * R::splat(1.0 + 1e-14)
     }
 
@@ -45,7 +45,7 @@ impl<R: Real> Circle<R> {
 }
 
 impl Circle {
-    /// The whole circle.
+    /// Returns the whole circle as one round piece.
     pub(super) fn rounds(self, tributary_length: f64) -> Vec<Round<Planar>> {
         vec![Round {
             center: Vec2::default(),

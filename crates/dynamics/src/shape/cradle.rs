@@ -9,8 +9,8 @@ use crate::space::{Linear, Planar, Vec2};
 
 /// An arc about the origin, open upward, with matter outside the circle.
 ///
-/// A point within the opening angle is free while it is inside the circle and penetrates once it is
-/// outside; beyond the opening angle only the two tips are there to be touched.
+/// Within the opening angle a point is free inside the circle and penetrates outside of it; beyond the opening angle
+/// only the two tips can be touched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cradle<R = f64> {
     /// Radius of the arc (m).
@@ -27,7 +27,7 @@ impl<R: Real> Cradle<R> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let length = point.length();
         let safe = R::select(length.le(zero), one, length);
-        // Inside the opening angle when the direction is nearer to straight down than the tips.
+        // Within the opening angle if the direction is nearer to straight down than the tips.
         let inside = (-point.z).lt(length * self.cos);
         let tip = Vec2::new(
             R::select(point.x.lt(zero), -self.sin, self.sin) * self.radius,
@@ -44,13 +44,13 @@ impl<R: Real> Cradle<R> {
 }
 
 impl Cradle {
-    /// A cradle of a radius (m) that spans `half_angle` (rad, below π) to either side of straight down.
+    /// Creates a cradle of a radius (m) that spans `half_angle` (rad, below π) to either side of straight down.
     pub fn new(radius: f64, half_angle: f64) -> Self {
         let (sin, cos) = math::sin_cos(half_angle);
         Self { radius, sin, cos }
     }
 
-    /// Half the opening angle (rad).
+    /// Returns half the opening angle (rad).
     pub fn half_angle(&self) -> f64 {
         math::atan2(self.sin, self.cos)
     }
@@ -80,7 +80,7 @@ impl Cradle {
             .collect()
     }
 
-    /// A thin arc of uniform matter along the boundary.
+    /// Returns a thin uniform arc along the boundary.
     pub(super) fn section(&self) -> Section {
         let half = self.half_angle();
         let centroid = Vec2::new(0.0, -self.radius * self.sin / half);

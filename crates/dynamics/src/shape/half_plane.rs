@@ -1,4 +1,4 @@
-//! All that lies below the line `z = 0`: the floor.
+//! A half-plane: everything below the line `z = 0`, such as the floor.
 
 use super::Gap;
 use crate::real::Real;

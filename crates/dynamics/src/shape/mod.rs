@@ -1,9 +1,8 @@
 //! Boundaries: the surface Φ = 0 of a target, and the nodes of a contactor.
 //!
-//! A shape answers in its own frame: how far a point is from its surface and which way is out
-//! ([`Surface::gap`]), where its boundary nodes are, how its outline is drawn and how its section
-//! is distributed.
-//! One file holds one shape; [`Shape`] is the table.
+//! A shape computes in its own frame: the distance of a point from its surface and the normal ([`Surface::gap`]), its
+//! boundary nodes, its outline for drawing, and the mass distribution of its section.
+//! Each file has one shape; [`Shape`] lists them.
 
 mod circle;
 mod cradle;
@@ -27,7 +26,7 @@ pub use whole::{
     Axes, Bearing, MOST_POINTS, NoWhole, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
 };
 
-/// How far a point is from a surface, and which way is out.
+/// Distance of a point from a surface, and normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<S: Space> {
     /// Distance (m) from the surface to the point along `normal`; **negative when penetrating**.
@@ -36,12 +35,12 @@ pub struct Gap<S: Space> {
     pub normal: S::Vector,
 }
 
-/// How far a point is from a surface, and what piece of it is nearest.
+/// Distance of a point from a surface, and the nearest piece of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest<S: Space> {
     /// Distance and normal.
     pub gap: Gap<S>,
-    /// Whether the piece is round: a corner or an arc.
+    /// `true` if the piece is round: a corner or an arc.
     pub round: <S::Real as Real>::Mask,
     /// Distance (m) from the companion point to the nearer end of a straight piece; infinite elsewhere.
     pub to_end: S::Real,
@@ -52,7 +51,7 @@ pub struct Nearest<S: Space> {
 }
 
 impl<S: Space> Nearest<S> {
-    /// On a piece that is round or not, far from any end.
+    /// Creates the result for a piece that is round or not, far from any end.
     #[inline(always)]
     pub(crate) fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
         let to_end = S::Real::splat(f64::INFINITY);
@@ -60,26 +59,26 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// In which directions a boundary faces at a point of it.
+/// Directions in which a boundary faces at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
-    /// Unit vectors in the frame of the surface that is met, as [`Round::limits`].
+    /// Unit vectors in the frame of the other surface, as [`Round::limits`].
     pub limits: [S::Vector; 2],
-    /// The most that the direction toward a piece of that surface may have of a limit.
+    /// Maximum component, along a limit, of the direction toward a piece of that surface.
     pub most: f64,
-    /// How far (m) past the pieces that it does not face a point may lie.
+    /// Maximum distance (m) of a point past the pieces that it does not face.
     pub slack: f64,
 }
 
 impl<S: Space> Facing<S> {
-    /// Of a point where a boundary has this outward unit normal, the mean of both at a corner: it bears on
+    /// Creates the directions for a point with this outward unit normal, the mean of both at a corner: it bears on
     /// pieces turned by less than 70° from it, which both sides of a right corner are.
     #[inline(always)]
     pub(crate) fn outward(normal: S::Vector) -> Self {
         Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
     }
 
-    /// Whether a piece with an outward normal can be borne on.
+    /// Returns the lanes in which a piece with an outward normal can be borne on.
     #[inline(always)]
     pub(crate) fn includes(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
         let most = S::Real::splat(self.most);
@@ -92,7 +91,7 @@ impl<S: Space> Facing<S> {
 }
 
 impl<R: Real> Nearest<Planar<R>> {
-    /// This where the mask holds, and the other elsewhere.
+    /// Selects `self` in lanes of the mask, and `other` elsewhere.
     #[inline(always)]
     fn where_it(self, holds: R::Mask, other: Self) -> Self {
         Self {
@@ -108,37 +107,36 @@ impl<R: Real> Nearest<Planar<R>> {
     }
 }
 
-/// A surface that nodes can touch; all points are in its own frame.
+/// A target surface; all points are in its own frame.
 pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Signed distance and outward normal at a point (m).
+    /// Returns signed distance and outward normal at a point (m).
     fn gap(&self, point: S::Vector) -> Gap<S>;
 
-    /// The same, and what piece of the boundary is nearest.
+    /// Returns the gap and the nearest piece of the boundary.
     ///
-    /// A straight side counts as longer at both ends by `slack` (m): of two corners one above the other
-    /// one has a side before it and the other has not, whatever the last digit says.
+    /// A straight side is extended at both ends by `slack` (m): of two corners one above the other one has a side
+    /// before it and the other has not, whatever the last digit.
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
-    /// Where a point lies inside of the core, the nearest of the pieces that it can bear on as a point of the
-    /// boundary of another body; elsewhere what is `nearest`.
+    /// Returns, for a point inside the core, the nearest of the pieces that it can bear on as a point of another
+    /// body's boundary; elsewhere `nearest`.
     ///
-    /// Which piece of a boundary is nearest does not tell by itself which of them a point inside presses
-    /// into: a corner of a box that stands flush on an equal box lies on the side of the lower one and below
-    /// its top. The directions in which the boundary of the other body faces at that point decide.
+    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush
+    /// on an equal box lies on the side of the lower one and below its top. The directions in which the boundary of
+    /// the other body faces at that point decide.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest
     }
 
-    /// A cheap test that holds wherever `gap(point).distance < 0`, and may hold elsewhere.
+    /// Tests cheaply: returns `true` wherever `gap(point).distance < 0`, and possibly elsewhere.
     #[inline(always)]
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
         self.gap(point).distance.lt(S::Real::zero())
     }
 
-    /// Visits the points (m) that penetrate in at least one lane, in order: which of `count` points it
-    /// is, where, and its gap. `facing` returns in which directions their boundary faces there, where that
-    /// is known.
+    /// Visits the points (m) that penetrate in at least one lane, in order, with index out of `count`, position and
+    /// gap. `facing` returns the directions in which their boundary faces there, if known.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -158,7 +156,7 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
         }
     }
 
-    /// Radius (m) of a ball about the origin that holds the surface; infinite for a half-plane.
+    /// Returns the radius (m) of a ball about the origin that encloses the surface; infinite for a half-plane.
     fn reach(&self) -> f64;
 }
 
@@ -167,11 +165,11 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 pub struct BoundaryNode {
     /// Position (m) in the frame of the shape.
     pub position: Vec2,
-    /// Length of boundary (m) that the node stands for.
+    /// Tributary length of boundary (m).
     pub tributary_length: f64,
 }
 
-/// How the matter of a uniform section is distributed.
+/// Mass distribution of a uniform section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
     /// Area (m²) of a solid section, or length (m) of a thin one.
@@ -182,14 +180,14 @@ pub struct Section {
     pub gyration_squared: f64,
 }
 
-/// Every shape of the plane.
+/// A shape of the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<R = f64> {
-    /// A barrel in transverse section, a disc.
+    /// A disc, or a barrel in transverse section.
     Circle(Circle<R>),
     /// The floor.
     HalfPlane(HalfPlane),
-    /// A rack beam, a block.
+    /// A convex polygon, such as a rack beam or a block.
     Polygon(Polygon<R>),
     /// A concave arc that holds a barrel.
     Cradle(Cradle<R>),
@@ -246,7 +244,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
         }
     }
 
-    /// Asks once which shape it is, not at every point.
+    /// Dispatches on the shape once, not at every point.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -314,7 +312,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
 }
 
 impl<R: Real> Shape<R> {
-    /// The gap of a point of another body whose boundary faces in known directions there.
+    /// Returns the gap of a point of another body whose boundary faces in known directions there.
     #[inline(always)]
     fn gap_facing(&self, point: Vec2<R>, facing: Option<Facing<Planar<R>>>) -> Gap<Planar<R>> {
         let gap = self.gap(point);
@@ -328,8 +326,8 @@ impl<R: Real> Shape<R> {
 }
 
 impl Shape {
-    /// The unit outward normal of the boundary at a point of it (m), at a corner the mean of both sides; none
-    /// for a point that is not on it, and for a cradle, which nothing bears on but what it bears.
+    /// Returns the unit outward normal at a point (m) of the boundary, at a corner the mean of both sides; `None` for
+    /// a point off the boundary, and for a cradle, which is only touched by the body that it carries.
     pub fn outward(&self, point: Vec2) -> Option<Vec2> {
         let near = 1e-9 * self.reach();
         let on_it = self.gap(point).distance.abs() < near;
@@ -343,8 +341,8 @@ impl Shape {
             .flatten()
     }
 
-    /// Nodes along the whole boundary, no further apart than `spacing` (m).
-    /// Their tributary lengths add up to the length of the boundary; a half-plane has none.
+    /// Returns nodes along the whole boundary, at most `spacing` (m) apart. Their tributary lengths add up to the
+    /// length of the boundary; a half-plane has none.
     pub fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         match self {
             Self::Circle(shape) => shape.nodes(spacing),
@@ -355,8 +353,8 @@ impl Shape {
         }
     }
 
-    /// The round pieces of the boundary, each contact of which stands for `tributary_length` (m); none
-    /// for a half-plane, which has none, and for a cradle, which is not convex.
+    /// Returns the round pieces of the boundary, each with a tributary length (m); empty for a half-plane, and for a
+    /// cradle, which is not convex.
     pub fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         match self {
             Self::Circle(shape) => shape.rounds(tributary_length),
@@ -366,7 +364,7 @@ impl Shape {
         }
     }
 
-    /// The boundary as a chain of points (m) for drawing, and whether it closes on itself.
+    /// Returns the boundary as a chain of points (m) for drawing, and `true` if it is closed.
     pub fn outline(&self) -> (Vec<Vec2>, bool) {
         match self {
             Self::Circle(shape) => (shape.outline(), true),
@@ -377,8 +375,8 @@ impl Shape {
         }
     }
 
-    /// The section of uniform matter inside the boundary (along it, for a cradle);
-    /// none for a half-plane, which has no end.
+    /// Returns the uniform section inside the boundary (along it, for a cradle); `None` for a half-plane, which is
+    /// unbounded.
     pub fn section(&self) -> Option<Section> {
         match self {
             Self::Circle(shape) => Some(shape.section()),
@@ -401,9 +399,9 @@ pub(crate) enum Piece {
         center: Vec2,
         /// Radius (m).
         radius: f64,
-        /// Where it starts (rad).
+        /// Start angle (rad).
         from: f64,
-        /// How far it turns (rad).
+        /// Angle of the arc (rad).
         turn: f64,
     },
 }
@@ -416,7 +414,7 @@ impl Piece {
         }
     }
 
-    /// The point (m) at a share of its length.
+    /// Returns the point (m) at a share of its length.
     fn at(self, share: f64) -> Vec2 {
         match self {
             Self::Side(from, to) => from + (to - from) * share,
@@ -428,8 +426,8 @@ impl Piece {
     }
 }
 
-/// Nodes along an open or closed boundary, each piece cut into equal parts no longer than `spacing`
-/// (m) that turn by no more than `most_turn` (rad).
+/// Returns nodes along an open or closed boundary, each piece divided into equal parts no longer than `spacing` (m)
+/// that turn by no more than `most_turn` (rad).
 pub(crate) fn nodes_along(
     pieces: &[Piece],
     closed: bool,
@@ -463,7 +461,7 @@ pub(crate) fn nodes_along(
     nodes
 }
 
-/// Into how many equal parts no longer than `spacing` a length is cut.
+/// Returns the number of equal parts no longer than `spacing` in a length.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
 pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
     ((length / spacing - 1e-9).ceil().clamp(1.0, 1e6) as usize).max(1)

@@ -1,4 +1,4 @@
-//! A convex polygon, its corners sharp or rounded: a rack beam, a block, a brick.
+//! A convex polygon with sharp or rounded corners: a rack beam, a block, a brick.
 
 use std::f64::consts::TAU;
 
@@ -9,17 +9,17 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// How far (m) outside of a side a node of a flush body may lie: a nanometer, and not a number that a scene
-/// states, at which nodes would come and go by rounding.
+/// Tolerance (m) outside of a side for a node of a flush body: about a nanometer, and not a round number, at which
+/// nodes of a scene would come and go by rounding.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// The most that a part of a rounded corner turns (rad).
+/// Maximum angle of a part of a rounded corner (rad).
 const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
 ///
-/// It is held as the core polygon whose points lie `corner_radius` inside every side;
-/// the boundary is the core grown by that radius, so signed distance stays exact at the corners.
+/// It is stored as the core polygon whose points lie `corner_radius` inside every side; the boundary is the core
+/// grown by that radius, so signed distance stays exact at the corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon<R = f64> {
     /// Sides of the core, counterclockwise (from `x` toward `z`).
@@ -31,10 +31,10 @@ pub struct Polygon<R = f64> {
 /// A side of the core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Side<R> {
-    /// Where it starts (m).
+    /// Start point (m).
     start: Vec2<R>,
-    /// Its middle (m). Distances are measured from here and not from an end, since the other end is
-    /// the start in the mirror: so a mirrored polygon rounds as this one does.
+    /// Midpoint (m). Distances are measured from here and not from an end, which a mirror swaps: so a mirrored
+    /// polygon rounds as this one does.
     middle: Vec2<R>,
     /// Unit vector along it.
     along: Vec2<R>,
@@ -44,29 +44,29 @@ struct Side<R> {
     half_length: R,
 }
 
-/// Why corners do not make a convex polygon.
+/// Reason why corners do not form a convex polygon.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PolygonError {
-    /// Fewer than three corners.
+    /// There are fewer than three corners.
     #[error("a polygon needs at least 3 corners, found {found}")]
     TooFew {
-        /// How many were given.
+        /// Number of corners given.
         found: usize,
     },
-    /// A corner that turns inward, or three corners in a line.
+    /// A corner turns inward, or three corners are in line.
     #[error(
         "corner {corner} at ({x:.6} m, {z:.6} m) does not turn left: give the corners of a convex \
          polygon counterclockwise, none of them in line with its neighbors"
     )]
     NotConvex {
-        /// Which corner, counted from 1.
+        /// The corner, counted from 1.
         corner: usize,
         /// Its abscissa (m).
         x: f64,
         /// Its height (m).
         z: f64,
     },
-    /// Corners that go around more than once.
+    /// The corners go around more than once.
     #[error(
         "the corners go around more than once at corner {corner}: give each corner of a convex \
          polygon once"
@@ -75,7 +75,7 @@ pub enum PolygonError {
         /// The corner at which the first turn is complete, counted from 1.
         corner: usize,
     },
-    /// Corners rounded by more than the polygon can hold.
+    /// The corner radius is too large for the polygon.
     #[error("the corner radius {radius} m leaves nothing of the polygon: make it smaller")]
     RadiusTooLarge {
         /// The radius given (m).
@@ -89,11 +89,11 @@ impl<R: Real> Polygon<R> {
         self.nearest(point, R::zero()).gap
     }
 
-    /// The gap, and whether a corner or a side is nearest; sides are longer by `slack` (m) at both ends.
+    /// Returns the gap and the nearest piece; sides are longer by `slack` (m) at both ends.
     #[inline(always)]
     pub(super) fn nearest(&self, point: Vec2<R>, slack: R) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
-        // Inside: the side that is nearest decides. Outside: the nearest point of any side.
+        // Inside: the nearest side decides. Outside: the nearest point of any side.
         let mut deepest = R::splat(f64::NEG_INFINITY);
         let mut deepest_normal = Vec2::new(zero, one);
         let mut nearest_squared = R::splat(f64::INFINITY);
@@ -135,8 +135,8 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
-    /// The nearest of the sides that a point of another body can bear on, for a point inside of the core:
-    /// see [`Surface::bearing`](super::Surface::bearing).
+    /// Returns the nearest of the sides that a point of another body, inside the core, can bear on: see
+    /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,
@@ -187,15 +187,15 @@ lanewise!(struct Polygon<R> { sides, corner_radius });
 lanewise!(struct Side<R> { start, middle, along, outward, half_length });
 
 impl Polygon {
-    /// How many sides it has.
+    /// Returns the number of sides.
     pub(crate) fn side_count(&self) -> usize {
         self.sides.len()
     }
 
-    /// A convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
+    /// Creates a convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
     ///
     /// # Errors
-    /// When the corners are fewer than three, do not all turn left, go around twice, or leave no core.
+    /// If the corners are fewer than three, do not all turn left, go around twice, or leave no core.
     pub fn new(corners: &[Vec2], corner_radius: f64) -> Result<Self, PolygonError> {
         let count = corners.len();
         if count < 3 {
@@ -239,11 +239,11 @@ impl Polygon {
         Ok(Self::grown(&core, corner_radius))
     }
 
-    /// All points no farther than a radius (m) from the line between two points (m): a bar seen from
-    /// the side, its ends round.
+    /// Creates the set of points within a radius (m) of the line between two points (m): a bar from the side, with
+    /// round ends.
     ///
     /// # Errors
-    /// When the points coincide or the radius is not positive.
+    /// If the points coincide or the radius is not positive.
     pub fn bar(from: Vec2, to: Vec2, radius: f64) -> Result<Self, PolygonError> {
         let length = (to - from).length();
         if !(length > 0.0 && length.is_finite()) {
@@ -255,7 +255,7 @@ impl Polygon {
         Ok(Self::grown(&[from, to], radius))
     }
 
-    /// Its corners as round pieces.
+    /// Returns its corners as round pieces.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let count = self.sides.len();
         (0..count)
@@ -289,10 +289,10 @@ impl Polygon {
         Self { sides, corner_radius }
     }
 
-    /// A rectangle about the origin.
+    /// Creates a rectangle about the origin.
     ///
     /// # Errors
-    /// When a side is not positive, or the corner radius leaves no core.
+    /// If a side is not positive, or the corner radius leaves no core.
     pub fn rectangle(width: f64, height: f64, corner_radius: f64) -> Result<Self, PolygonError> {
         let (a, b) = (0.5 * width, 0.5 * height);
         Self::new(
@@ -301,7 +301,7 @@ impl Polygon {
         )
     }
 
-    /// The boundary as a chain of points, corners rounded with steps of at most 15 degrees.
+    /// Returns the boundary as a chain of points, corners rounded with steps of at most 15 degrees.
     pub(super) fn outline(&self) -> Vec<Vec2> {
         if self.corner_radius == 0.0 {
             return self.sides.iter().map(|side| side.start).collect();
@@ -318,14 +318,14 @@ impl Polygon {
         chain
     }
 
-    /// Where the arc of a rounded corner starts and how far it turns (rad).
+    /// Returns start and angle (rad) of the arc of a rounded corner.
     fn corner(&self, i: usize) -> (f64, f64) {
         let count = self.sides.len();
         let (a, b) = (self.sides[(i + count - 1) % count].along, self.sides[i].along);
         (math::atan2(-a.x, a.z), math::atan2(a.x * b.z - a.z * b.x, a.dot(b)))
     }
 
-    /// Corner and side, corner and side; no corners where they are sharp.
+    /// Returns corners and sides in turn; without corners if they are sharp.
     fn pieces(&self) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (i, side) in self.sides.iter().enumerate() {
@@ -344,7 +344,7 @@ impl Polygon {
         nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
     }
 
-    /// The mean of the outward normals at a point (m) of the boundary.
+    /// Returns the mean of the outward normals at a point (m) of the boundary.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         if self.corner_radius > 0.0 {
             return self.gap(point).normal;
@@ -357,13 +357,13 @@ impl Polygon {
         unit(touching)
     }
 
-    /// The corners themselves as nodes, each standing for half of both its sides; a rounded one is
-    /// cut into parts that turn by at most 15 degrees.
+    /// Returns the corners as nodes, each with half of both its sides as tributary length; a rounded one is divided
+    /// into parts that turn by at most 15 degrees.
     pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// The same number of equal parts on every side, and a node at every end.
+    /// Returns nodes at equal parts of every side, in the same number, and at every end.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
         let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {
@@ -384,7 +384,7 @@ impl Polygon {
         nodes_along(&pieces, true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// The polygon seen in a mirror: every `x` becomes `−x`.
+    /// Returns the mirror image of the polygon: every `x` becomes `−x`.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let core: Vec<Vec2> =
@@ -392,7 +392,7 @@ impl Polygon {
         Self::grown(&core, self.corner_radius)
     }
 
-    /// The polygon with every length multiplied by `factor` (positive).
+    /// Returns the polygon with every length multiplied by `factor` (positive).
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let core: Vec<Vec2> = self.sides.iter().map(|side| side.start * factor).collect();
@@ -404,7 +404,7 @@ impl Polygon {
     }
 }
 
-/// Area, centroid and radius of gyration of a closed polygon (Green's theorem).
+/// Returns area, centroid and radius of gyration of a closed polygon (Green's theorem).
 pub(crate) fn section_of(corners: &[Vec2]) -> Section {
     let origin = corners[0];
     let (mut area, mut first, mut second) = (0.0, Vec2::default(), 0.0);

@@ -22,13 +22,13 @@ pub struct BarrelProfile<R = f64> {
     pub bilge_radius: R,
     /// Radius of the stave's arc (m): `((L/2)² + s²) / 2s` with `s` the bulge.
     pub stave_radius: R,
-    /// Radius of the round of its edges (m), with which staves end and heads begin.
+    /// Radius of the rounded edges (m) between staves and heads.
     pub rounding: R,
-    /// Height of the center of that round above the axis (m).
+    /// Height of the center of such an edge above the axis (m).
     pub corner_height: R,
 }
 
-/// Parts into which a round edge is cut for drawing.
+/// Number of parts of a rounded edge for drawing.
 const EDGE_STEPS: usize = 6;
 
 impl<R: Real> BarrelProfile<R> {
@@ -40,11 +40,11 @@ impl<R: Real> BarrelProfile<R> {
     #[inline(always)]
     pub(super) fn nearest(&self, point: Vec2<R>) -> Nearest<Planar<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
-        // By symmetry only the quarter of positive x and z is looked at.
+        // By symmetry only the quarter of positive x and z is needed.
         let (left, below) = (point.x.lt(zero), point.z.lt(zero));
         let p = Vec2::new(point.x.abs(), point.z.abs());
         let arc_center = Vec2::new(zero, self.bilge_radius - self.stave_radius);
-        // Distances are those from the core, which lies inside by the radius of the edges.
+        // Distances are measured from the core, which lies inside by the radius of the edges.
         let core_length = self.half_length - self.rounding;
         let corner = Vec2::new(core_length, self.corner_height);
 
@@ -54,7 +54,7 @@ impl<R: Real> BarrelProfile<R> {
         let arc_normal = from_center * (one / arc_length);
         let head_distance = p.x - core_length;
 
-        // Past the corner, seen from the arc's center or along the head: the corner is nearest.
+        // Beyond both the arc and the head: the corner is nearest.
         let beyond_arc = (from_center.z * (corner.x - arc_center.x))
             .lt(from_center.x * (corner.z - arc_center.z));
         let beyond_head = self.corner_height.lt(p.z);
@@ -64,7 +64,7 @@ impl<R: Real> BarrelProfile<R> {
         let corner_distance = from_corner.length();
         let safe = R::select(corner_distance.le(zero), one, corner_distance);
 
-        // Inside: the nearer of stave and head. Outside: the one whose own extent is faced.
+        // Inside: the nearer of stave and head. Outside: the one faced by the point.
         let inside_by_head = arc_distance.lt(head_distance);
         let by_head = (outside & beyond_arc) | (!outside & inside_by_head);
         let flat = Vec2::new(one, zero);
@@ -89,8 +89,8 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// The nearer of the stave and the head that a point of another body can bear on, for a point inside
-    /// of the core: see [`Surface::bearing`](super::Surface::bearing).
+    /// Returns the nearer of the stave and the head that a point of another body, inside the core, can bear on: see
+    /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
         &self,
@@ -135,9 +135,9 @@ impl<R: Real> BarrelProfile<R> {
 }
 
 impl BarrelProfile {
-    /// A profile from the length between the heads and the two diameters (m).
+    /// Creates a profile from the length between the heads and the two diameters (m).
     ///
-    /// Returns none unless `0 < head diameter < bilge diameter` and the length is positive.
+    /// Returns `None` unless `0 < head diameter < bilge diameter` and the length is positive.
     pub fn new(length: f64, head_diameter: f64, bilge_diameter: f64) -> Option<Self> {
         let bulge = 0.5 * (bilge_diameter - head_diameter);
         let half_length = 0.5 * length;
@@ -152,9 +152,9 @@ impl BarrelProfile {
         })
     }
 
-    /// The same with edges rounded by a radius (m), which must leave something of the heads.
+    /// Returns the profile with edges rounded by a radius (m).
     ///
-    /// Returns none where it does not.
+    /// Returns `None` if that leaves nothing of the heads.
     pub fn rounded(self, rounding: f64) -> Option<Self> {
         let across = self.half_length - rounding;
         let apart = self.stave_radius - rounding;
@@ -164,16 +164,16 @@ impl BarrelProfile {
         sound.then_some(Self { rounding, corner_height, ..self })
     }
 
-    /// Radius (m) of the barrel at a distance (m) along its axis from the bilge.
+    /// Returns the radius (m) of the barrel at a distance (m) along its axis from the bilge.
     pub fn radius_at(&self, x: f64) -> f64 {
         self.bilge_radius - self.stave_radius
             + (self.stave_radius * self.stave_radius - x * x).max(0.0).sqrt()
     }
 
-    /// The four edges and the two staves.
+    /// Returns the four edges and the two staves.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let rise = self.stave_radius - self.bilge_radius;
-        // Where a stave ends its normal leans by an angle with this sine and cosine.
+        // Sine and cosine of the angle of the stave's normal at its end.
         let sin = (self.half_length - self.rounding) / (self.stave_radius - self.rounding);
         let cos = (rise + self.corner_height) / (self.stave_radius - self.rounding);
         let edge = |x: f64, z: f64| {
@@ -207,7 +207,8 @@ impl BarrelProfile {
         edges.chain([1.0, -1.0].map(stave)).collect()
     }
 
-    /// The outward normal at a point (m) of the boundary; at a sharp edge the mean of those of head and stave.
+    /// Returns the outward normal at a point (m) of the boundary; at a sharp edge the mean of those of head and
+    /// stave.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         let normal = self.gap(point).normal;
         let head = Vec2::new(point.x.signum(), 0.0);
@@ -223,7 +224,7 @@ impl BarrelProfile {
         sum * (1.0 / sum.length())
     }
 
-    /// Half the angle (rad) over which a stave bends.
+    /// Returns half the angle (rad) of the arc of a stave.
     fn half_stave(&self) -> f64 {
         math::atan2(
             self.half_length - self.rounding,
@@ -231,7 +232,7 @@ impl BarrelProfile {
         )
     }
 
-    /// The chain from the right head over the top, the left head and the bottom.
+    /// Returns the chain from the right head over the top, the left head and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
         let direction = |angle: f64| {
@@ -243,7 +244,7 @@ impl BarrelProfile {
             Vec2::new(0.0, self.bilge_radius - self.stave_radius)
                 + direction(angle) * self.stave_radius
         });
-        // An edge turns from the end of a stave to the normal of the head, or the other way.
+        // An edge turns from the end of a stave to the normal of the head, or back.
         let edge = |x: f64, from: f64, to: f64| {
             let center = Vec2::new(x * (self.half_length - self.rounding), self.corner_height);
             let steps = if self.rounding > 0.0 { EDGE_STEPS } else { 0 };
@@ -263,7 +264,7 @@ impl BarrelProfile {
         self.chain(24)
     }
 
-    /// Nodes of the profile with sharp edges.
+    /// Returns nodes of the profile with sharp edges.
     pub(super) fn nodes(&self, spacing: f64) -> Vec<BoundaryNode> {
         let half =
             math::atan2(self.half_length, self.stave_radius - self.bilge_radius + self.head_radius);
@@ -284,7 +285,7 @@ impl BarrelProfile {
         nodes_along(&pieces, true, spacing, f64::INFINITY)
     }
 
-    /// The flat section inside the outline (a barrel's own inertia is not that of a plate).
+    /// Returns the flat section inside the outline (a barrel's own inertia is not that of a plate).
     pub(super) fn section(&self) -> Section {
         super::polygon::section_of(&self.chain(2000))
     }

@@ -4,11 +4,11 @@ use crate::real::{Mask, Real};
 use crate::shape::Gap;
 use crate::space::{Spatial, Vec3};
 
-/// A barrel about the origin with its axis along `x`, as its core: the same barrel drawn in by the
-/// rounding of its chime.
+/// A barrel about the origin with its axis along `x`, stored as its core: the barrel shrunk by the rounding of its
+/// chime.
 ///
-/// Seen in the half-plane of `x` and the distance `r` from the axis, the stave of the core is the arc
-/// `x² + (r + a)² = R²`, whose center lies on the far side of the axis.
+/// In the half-plane of `x` and the distance `r` from the axis, the stave of the core is the arc `x² + (r + a)² =
+/// R²`, whose center lies on the far side of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrel<R = f64> {
     /// Half the length (m) of the core.
@@ -17,13 +17,13 @@ pub struct Barrel<R = f64> {
     pub head_radius: R,
     /// `R`, the radius (m) of the stave of the core along the barrel.
     pub stave_radius: R,
-    /// `a`, how far (m) the center of the stave's arc lies beyond the axis.
+    /// `a`, the distance (m) of the center of the stave's arc beyond the axis.
     pub stave_offset: R,
-    /// How far (m) the barrel reaches beyond its core.
+    /// Distance (m) of the surface from the core.
     pub rounding: R,
 }
 
-/// Why dimensions make no barrel.
+/// Invalid dimensions of a barrel.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "a barrel {length} m long, with heads of {head_radius} m and a bilge of {bilge_radius} m in radius and a \
@@ -38,11 +38,11 @@ pub struct BarrelError {
 }
 
 impl Barrel {
-    /// A barrel of a length (m), the radii (m) of its heads and of its bilge, and a rounding (m) of its
-    /// chime, which takes that much from the corner between head and stave.
+    /// Creates a barrel of a length (m), the radii (m) of its heads and of its bilge, and a rounding (m) of its
+    /// chime, which is taken off the corner between head and stave.
     ///
     /// # Errors
-    /// When these make no barrel.
+    /// If these are not the dimensions of a barrel.
     pub fn new(
         length: f64,
         head_radius: f64,
@@ -65,7 +65,7 @@ impl Barrel {
             && rise > 0.0
             && barrel.half_length > 0.0
             && barrel.head_radius > 0.0
-            // An arc whose center lies on this side of the axis would be no hull of itself.
+            // An arc whose center lies on this side of the axis would not be its own hull.
             && stave_offset >= 0.0
             && arc.is_finite();
         if sound {
@@ -77,16 +77,16 @@ impl Barrel {
 }
 
 impl<R: Real> Barrel<R> {
-    /// Radius (m) of a ball that holds it.
+    /// Returns the radius (m) of an enclosing ball.
     pub(super) fn reach(&self) -> R {
         let corner = self.half_length * self.half_length + self.head_radius * self.head_radius;
         corner.sqrt().max(self.stave_radius - self.stave_offset) + self.rounding
     }
 
-    /// Distance and normal at a point (m).
+    /// Returns distance and normal at a point (m).
     ///
-    /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they
-    /// meet; inside, the face that is nearer counts.
+    /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they meet; inside,
+    /// the nearer face counts.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -111,7 +111,7 @@ impl<R: Real> Barrel<R> {
 
         // The center of the arc lies outside of every barrel, so no length is zero near one.
         let of_stave = plane(along, from_center) * (one / R::select(length.le(zero), one, length));
-        // Nearly all that is asked for.
+        // Nearly all queries end here.
         if on_stave.all() {
             return Gap { distance: stave - self.rounding, normal: of_stave };
         }
@@ -128,7 +128,7 @@ impl<R: Real> Barrel<R> {
         Gap { distance: distance - self.rounding, normal }
     }
 
-    /// The point of the core (m) that lies furthest in a direction of length one.
+    /// Returns the support point (m) of the core in a direction of length one.
     #[inline(always)]
     pub(super) fn furthest(&self, direction: Vec3<R>) -> Vec3<R> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -143,7 +143,7 @@ impl<R: Real> Barrel<R> {
         Vec3::select(on_stave, stave, chime)
     }
 
-    /// In one lane.
+    /// Returns one lane.
     pub(super) fn lane(&self, lane: usize) -> Barrel {
         Barrel {
             half_length: self.half_length.lane(lane),
@@ -156,13 +156,13 @@ impl<R: Real> Barrel<R> {
 }
 
 impl Barrel {
-    /// Three derivatives along `way` (m) of half the square of the distance (m) from the center of the stave's arc,
-    /// `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
+    /// Returns three derivatives along `way` (m) of half the square of the distance (m) from the center of the
+    /// stave's arc, `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
     #[inline(always)]
     pub(super) fn derivatives(&self, point: Vec3, way: Vec3) -> [f64; 3] {
         let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();
         let (across, square) = (point.y * way.y + point.z * way.z, way.y * way.y + way.z * way.z);
-        // Of r.
+        // Derivatives of r.
         let first = across * inverse;
         let second = (square - first * first) * inverse;
         let third = -3.0 * first * second * inverse;

@@ -1,4 +1,4 @@
-//! A block with rounded edges, and where another convex solid is closest to it.
+//! A block with rounded edges, and its closest point to another convex solid.
 
 use super::closest::{Closest, along};
 use super::rounded::Hull;
@@ -6,23 +6,23 @@ use crate::real::Real;
 use crate::shape::Gap;
 use crate::space::{Linear, Rotation3, Spatial, Vec3};
 
-/// A block about the origin, with its edges along the axes of its frame, as its core: the same block drawn
-/// in by the rounding of its edges.
+/// A block about the origin, with its edges along the axes of its frame, stored as its core: the block shrunk by the
+/// rounding of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block<R = f64> {
     /// Half the sides (m) of the core.
     pub half: Vec3<R>,
-    /// How far (m) the block reaches beyond its core.
+    /// Distance (m) of the surface from the core.
     pub rounding: R,
 }
 
 impl<R: Real> Block<R> {
-    /// Radius (m) of a ball that holds it.
+    /// Returns the radius (m) of an enclosing ball.
     pub(super) fn reach(&self) -> R {
         self.half.length() + self.rounding
     }
 
-    /// Distance and normal at a point (m); inside of the core the nearest face counts.
+    /// Returns distance and normal at a point (m); inside of the core the nearest face counts.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -47,7 +47,7 @@ impl<R: Real> Block<R> {
         }
     }
 
-    /// The corners (m) of the core, in the order of their signs.
+    /// Returns the corners (m) of the core, in the order of their signs.
     #[inline(always)]
     pub(super) fn corners(&self) -> [Vec3<R>; 8] {
         std::array::from_fn(|corner| {
@@ -56,7 +56,7 @@ impl<R: Real> Block<R> {
         })
     }
 
-    /// The point of the core (m) that lies furthest in a direction.
+    /// Returns the support point (m) of the core in a direction.
     #[inline(always)]
     pub(super) fn furthest(&self, direction: Vec3<R>) -> Vec3<R> {
         let side = |x: R, half: R| R::select(x.lt(R::zero()), -half, half);
@@ -67,13 +67,13 @@ impl<R: Real> Block<R> {
         )
     }
 
-    /// In one lane.
+    /// Returns one lane.
     pub(super) fn lane(&self, lane: usize) -> Block {
         Block { half: self.half.lane(lane), rounding: self.rounding.lane(lane) }
     }
 }
 
-/// The edges of a block, as the numbers of their corners.
+/// Edges of a block, as indices of their corners.
 const EDGES: [(usize, usize); 12] = [
     (0, 1),
     (2, 3),
@@ -89,11 +89,11 @@ const EDGES: [(usize, usize); 12] = [
     (3, 7),
 ];
 
-/// Where another solid, with its origin at `at` (m) in the frame of the block, to which `frame` leads from
-/// its own, is closest to a block: in the frame of the block, the other one being the contactor.
+/// Returns the closest points of a block and another solid, with its origin at `at` (m) in the frame of the block, to
+/// which `frame` transforms from its own: in the frame of the block, with the other one as contactor.
 ///
-/// Cores that are apart are closest on an edge of the block, or inside of a face, and there is the point of
-/// the other that lies furthest toward it. Of cores that are not, the face counts that is left soonest.
+/// Separate cores are closest at an edge of the block, or inside a face, at the support point of the other toward it.
+/// For overlapping cores the face with the least penetration counts.
 pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     let (grown, radius) = (block.rounding, other.rounding());
     let mut best = Closest {
@@ -139,7 +139,7 @@ pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3
             best.point = at + frame.apply(on_edge - gap.normal * gap.distance);
         }
     }
-    // What is no nearer along the normal than at the edge is apart; else the other is in the block.
+    // The cores are separate if the support distance along the normal is not less than that at the edge.
     let separated = (toward(best.normal) - block.furthest(best.normal)).dot(best.normal);
     let apart = best.distance + grown + radius;
     if separated < apart - 1e-9 {
@@ -149,7 +149,7 @@ pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3
     }
 }
 
-/// Unit normals of the faces.
+/// Returns the unit normals of the faces.
 fn faces() -> [Vec3; 6] {
     let [x, y, z] = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
     [x, -x, y, -y, z, -z]

@@ -1,13 +1,13 @@
-//! The points of two convex bodies that are closest to each other.
+//! Closest points of two convex bodies.
 //!
-//! All is single numbers: lanes ask one after the other, and so have the bits of a single run.
+//! All computations are scalar: lanes are processed one after the other, with the bits of a single run.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
 use crate::shape::Gap;
 use crate::space::{Linear, Rotation3, Spatial, Vec3};
 
-/// Where two bodies are closest, or deepest in each other, in the frame of the target.
+/// Closest or deepest points of two bodies, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
     /// Distance (m) of the surfaces, negative where they overlap.
@@ -16,35 +16,35 @@ pub struct Closest {
     pub normal: Vec3,
     /// The point (m) of the contactor's surface.
     pub point: Vec3,
-    /// How often a distance or a support was asked for.
+    /// Number of distance and support evaluations.
     pub evaluations: u32,
-    /// Whether the search came to its end.
+    /// `true` if the search converged.
     pub converged: bool,
 }
 
-/// Evaluations after which the search along an axis gives up; bisection alone needs 50, and every third
-/// evaluation bisects where false position is slower, as on a line that is flat to nine digits up to a kink.
+/// Maximum number of evaluations of the search along an axis; bisection alone needs 50, and every third evaluation
+/// bisects where false position is slower, as on a line that is flat to nine digits up to a kink.
 const MOST_ALONG: u32 = 180;
 
-/// What is found along a segment: where, between `middle − half`, told as −1, and `middle + half`, told as 1;
-/// the gap there; how often one was asked for; and whether it is the least.
+/// Result along a segment: position from −1 at `middle − half` to 1 at `middle + half`; gap there; number of
+/// evaluations; and `true` if it is the minimum.
 type Along = (f64, Gap<Spatial>, u32, bool);
 
-/// How much shorter or longer (1) than its parts the slope of a gap along a segment may be where it is least.
+/// Tolerance (1) of the slope of a gap along a segment at its minimum, relative to the parts of the slope.
 const FLAT: f64 = 1e-14;
-/// Steps along a segment before the search takes over.
+/// Maximum number of steps along a segment before the search takes over.
 const MOST_HALLEY: u32 = 6;
-/// What is left after a step is some cube of it; below this it is lost in rounding.
+/// The error after a step is of third order; below this it is lost in rounding.
 const LAST_HALLEY: f64 = 1e-5;
 
-/// The point of a segment that is closest to a hull.
+/// Returns the point of a segment that is closest to a hull.
 ///
-/// Beside a tube it is known, and derivatives lead there in two or three steps where it is on a stave, as nearly always.
-/// What is found so is the point only if the gap does not fall to either side, since it is convex. Else
-/// [`along_axis`] searches for it.
+/// Beside a tube it has a closed form; on a stave, the usual case, Halley's method converges in two or three steps.
+/// The result is valid only if the gap does not decrease to either side, since it is convex. Otherwise [`along_axis`]
+/// searches for it.
 #[inline(always)]
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
-    // Closures are told to be inlined, or they are compiled outside of the scope of the vector unit.
+    // `inline(always)`: a closure left out of line loses the target feature.
     let found = match hull {
         Hull::Barrel(barrel) => halley(
             middle,
@@ -70,8 +70,8 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     )
 }
 
-/// Where along a segment a quantity is least of which three derivatives are given, by Halley's method. From the other end
-/// it is the same place to the last bit.
+/// Finds the minimum of a quantity along a segment from its three derivatives, by Halley's method. The result is the
+/// same from the other end to the last bit.
 #[inline(always)]
 fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> Option<f64> {
     let mut place = (-middle.dot(half) / half.dot(half)).clamp(-1.0, 1.0);
@@ -88,11 +88,10 @@ fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> O
     None
 }
 
-/// As [`along`], of any convex body, with the gap alone.
+/// Searches as [`along`], for any convex body, with the gap alone.
 ///
-/// The distance is convex along the segment, so its slope `n · half` never falls and has one zero: found
-/// between the ends by false position, guarded by bisection. From the other end the search is the same
-/// to the last bit.
+/// The distance is convex along the segment, so its slope `n · half` never decreases and has one zero: found between
+/// the ends by false position, guarded by bisection. From the other end the search is the same to the last bit.
 #[inline(always)]
 fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> Along {
     let (first, falling) = slope(&gap, middle, half, -1.0);
@@ -103,14 +102,14 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     if rising <= 0.0 {
         return (1.0, last, 2, true);
     }
-    // Place and slope at both ends of what holds the zero.
+    // Position and slope at both ends of the bracket.
     let (mut low, mut high) = ((-1.0, falling), (1.0, rising));
     let flat = 1e-15 * half.length();
     let (mut kept, mut best, mut wide) = (0, (-1.0, first), 2.0);
     for evaluation in 3..MOST_ALONG {
         let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         let narrowed: f64 = high.0 - low.0;
-        // Every third time the interval has to be half as long, or it is halved.
+        // Every third time the interval must have halved, or it is bisected.
         let slow = evaluation % 3 == 0 && narrowed > 0.5 * wide;
         if evaluation % 3 == 0 {
             wide = if slow { 0.5 * narrowed } else { narrowed };
@@ -122,7 +121,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
         if slope.abs() <= flat || narrowed <= 8.0 * f64::EPSILON {
             return (place, here, evaluation, true);
         }
-        // The end that stays a second time counts half (the Illinois rule), so that both come nearer.
+        // An end that is kept twice counts half (the Illinois rule), so that both approach.
         if slope < 0.0 {
             low = (place, slope);
             if kept == 1 {
@@ -140,7 +139,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     (best.0, best.1, MOST_ALONG, false)
 }
 
-/// The gap at a place of a segment, and how it grows along it.
+/// Returns the gap at a position on a segment, and its slope.
 #[inline(always)]
 fn slope(
     gap: &impl Fn(Vec3) -> Gap<Spatial>,
@@ -152,7 +151,7 @@ fn slope(
     (gap, gap.normal.dot(half))
 }
 
-/// A barrel at its place, in the frame of another.
+/// A barrel with its pose in the frame of another.
 #[derive(Clone, Copy)]
 struct Set<'a> {
     barrel: &'a Barrel,
@@ -160,17 +159,17 @@ struct Set<'a> {
     rotation: Rotation3,
 }
 
-/// Part of a core: how it supports a direction.
+/// Support point of a core with local curvature.
 struct Support {
-    /// The point (m) that lies furthest.
+    /// The support point (m).
     point: Vec3,
-    /// `r ⊥ ⊗ ⊥`: curvature radius (m) along the barrel, alike in all tangential directions.
+    /// `r ⊥ ⊗ ⊥`: curvature radius (m) along the barrel, equal in all tangential directions.
     along: f64,
-    /// What is added of it (m) across the axis, in direction `around`.
+    /// Additional curvature radius (m) in direction `around`.
     across: f64,
     /// The unit vector around the axis.
     around: Vec3,
-    /// β, the part of the direction across the axis.
+    /// β, the component of the direction perpendicular to the axis.
     outward: f64,
 }
 
@@ -179,17 +178,17 @@ impl Set<'_> {
         self.rotation.apply(Vec3::new(1.0, 0.0, 0.0))
     }
 
-    /// The nearest point (m) of the core to one outside of it.
+    /// Returns the nearest point (m) of the core to one outside of it.
     fn project(&self, point: Vec3) -> Vec3 {
         let gap = self.barrel.gap(self.rotation.unapply(point - self.center));
         let depth = (gap.distance + self.barrel.rounding).max(0.0);
         point - self.rotation.apply(gap.normal) * depth
     }
 
-    /// The support of a unit direction, with the curvature of the surface there.
+    /// Returns the support of a unit direction, with the curvature of the surface there.
     ///
-    /// On the stave `h = R |n| − a β`, on the chime `h = l |α| + r β`, with α along the axis and β across
-    /// it; the second derivatives of `|n|` and `β` are `1` tangentially and `1/β` around the axis.
+    /// On the stave `h = R |n| − a β`, on the chime `h = l |α| + r β`, with α along the axis and β across it; the
+    /// second derivatives of `|n|` and `β` are `1` tangentially and `1/β` around the axis.
     fn support(&self, direction: Vec3) -> Support {
         let local = self.rotation.unapply(direction);
         let barrel = self.barrel;
@@ -207,7 +206,7 @@ impl Set<'_> {
         Support { point, along, across, around, outward }
     }
 
-    /// The support of the direction of a head, at the side of the rim that lies toward a point (m).
+    /// Returns the support in the direction of a head, at the side of the rim toward a point (m).
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
         let (barrel, way) = (self.barrel, self.rotation.unapply(toward - self.center));
         let radial = Vec3::new(0.0, way.y, way.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
@@ -223,21 +222,21 @@ impl Set<'_> {
     }
 }
 
-/// Directions (rad) nearer to an axis than this are those of its head.
+/// Angle (rad) to an axis below which a direction is that of the head.
 const HEAD: f64 = 1e-7;
 
-/// How a direction separates two cores.
+/// Separation of two cores in a direction.
 struct Separation {
-    /// From the support of the target to that of the contactor.
+    /// Vector from the support of the target to that of the contactor.
     way: Vec3,
-    /// Distance (m) of the planes that bear the cores.
+    /// Distance (m) of the supporting planes.
     distance: f64,
     supports: [Support; 2],
 }
 
 fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation {
     let mut supports = [target.support(normal), contactor.support(-normal)];
-    // Where a whole head bears, the point of its rim that is nearest to the other body counts.
+    // Where a whole head bears, use the point of its rim nearest to the other body.
     if supports[0].outward < HEAD {
         supports[0] = target.on_rim(normal, supports[1].point);
     }
@@ -248,23 +247,23 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
     Separation { way, distance: way.dot(normal), supports }
 }
 
-/// Tangential parts of the way (m) below which a normal is exact to rounding.
+/// Tangential parts of `way` (m) below which a normal is exact to rounding.
 const TANGENTIAL: f64 = 4e-15;
-/// Newton steps (rad) below which a normal is exact: near the edge of a head, where a support turns much
-/// faster than its direction, its place is lost in rounding long before the normal is.
+/// Newton steps (rad) below which a normal is exact: near the edge of a head a support turns much faster than its
+/// direction, so its position is lost in rounding long before the normal is.
 const TURN: f64 = 1e-11;
-/// Newton steps before projections help out.
+/// Maximum number of Newton steps before projections are used.
 const MOST_STEPS: u32 = 25;
-/// How often projections may help out.
+/// Maximum number of rounds of projections.
 const MOST_HELP: u32 = 40;
 
-/// Two barrels, the target at the origin.
+/// Returns the closest points of two barrels, the target at the origin.
 ///
-/// Of all directions the one that separates the cores most is the normal, and the distance of the bearing
-/// planes that of the cores: `g(n) = n · c − h₁(n) − h₂(−n)`, concave where the cores are apart.
-/// Where a head bears, `g` has a kink, so heads are asked first; else Newton's method on the sphere of
-/// directions, begun by projections from one core to the other and back, which also help out where
-/// it does not ascend: they always come nearer.
+/// The direction that separates the cores most is the normal, and the distance of its supporting planes is that of
+/// the cores: `g(n) = n · c − h₁(n) − h₂(−n)`, concave where the cores are separate. Where a head bears, `g` has a
+/// kink, so heads are tested first; otherwise Newton's method runs on the sphere of directions. It starts from
+/// projections from one core to the other and back, which also take over where it does not ascend: they always
+/// approach.
 pub(super) fn barrels(
     target: &Barrel,
     contactor: &Barrel,
@@ -284,7 +283,7 @@ pub(super) fn barrels(
     let mut evaluations = 0;
     for (bearing, resting, sense) in [(&one, &other, 1.0), (&other, &one, -1.0)] {
         if let Some((normal, point, distance)) = on_head(bearing, resting) {
-            // The point is that of the body which rests on the head.
+            // The point belongs to the body that rests on the head.
             let at = if sense > 0.0 { point } else { point - normal * distance };
             return found(normal * sense, at, distance, 4, true);
         }
@@ -314,7 +313,7 @@ pub(super) fn barrels(
             };
             (normal, best) = (next, reached);
         }
-        // What rounding alone keeps from ascending is there.
+        // Converged if only rounding prevents an ascent.
         let tangential = best.way - normal * best.distance;
         if newton(normal, &best, tangential).length() <= 2e-9 {
             let (normal, point, distance) = polished(&one, &other, normal, &best);
@@ -327,7 +326,7 @@ pub(super) fn barrels(
         }
         let way = to - from;
         if way.length() <= 1e-9 * grown {
-            // The cores meet: there is no nearest pair, and the best direction found has to do.
+            // The cores overlap: there is no closest pair, and the best direction so far is returned.
             break;
         }
         normal = way.unit_or(normal);
@@ -336,8 +335,8 @@ pub(super) fn barrels(
     found(normal, best.supports[1].point, best.distance, evaluations, false)
 }
 
-/// Where the core of one body is closest to the inside of a head of another: normal out of the head,
-/// the point of the core and its distance (m).
+/// Returns the closest point of one core to the inside of a head of another: normal out of the head, the point of the
+/// core and its distance (m).
 fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let axis = bearing.axis();
     let side = if (resting.center - bearing.center).dot(axis) < 0.0 { -1.0 } else { 1.0 };
@@ -354,12 +353,12 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     ))
 }
 
-/// Where the rims of two heads that face each other are closest, where they cross as seen along the axis:
-/// normal out of the target, point of the contactor's core and distance (m).
+/// Returns the closest points of the rims of two heads that face each other, if they cross in projection along the
+/// axis: normal out of the target, point of the contactor's core and distance (m).
 ///
-/// Two such heads share a lens, at a corner of which they are closest unless the rim of one is inside of
-/// the other. Newton's method on the angles of both points; the normal must lie between the head and the
-/// stave of both, or something else is closer.
+/// Two such heads share a lens, at a corner of which they are closest unless the rim of one is inside the other.
+/// Solved by Newton's method on the angles of both points; the normal must lie between the head and the stave of
+/// both, otherwise another feature is closer.
 fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let side = contactor.center.x.signum();
     let facing = contactor.axis() * -(side * contactor.axis().x.signum());
@@ -373,7 +372,7 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
     let apart = aside.length();
     let along = 0.5 * (apart + (radius * radius - other_radius * other_radius) / apart);
     let square = radius * radius - along * along;
-    // Rims that nearly coincide cross nowhere for sure.
+    // Crossings of nearly coincident rims are ill-conditioned.
     if apart < 1e-6 || square <= 1e-6 * radius * radius {
         return None;
     }
@@ -390,7 +389,7 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
         let mut way = Vec3::default();
         for _ in 0..12 {
             way = other_head + other_out * other_radius - head - out * radius;
-            // Along both rims, as if the points turned by a radian.
+            // Along both rims, per radian of the points.
             let (slope, other_slope) =
                 (axis.cross(out) * radius, facing.cross(other_out) * other_radius);
             let (a, c) = (
@@ -426,8 +425,8 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
     best
 }
 
-/// Normal, point of the contactor's core and distance (m), from the surer of both supports: the place of one
-/// on a rim turns much faster than the direction where that is nearly an axis.
+/// Returns normal, point of the contactor's core and distance (m), from the more accurate of both supports: one on a
+/// rim turns much faster than the direction where that is nearly an axis.
 fn polished(
     target: &Set<'_>,
     contactor: &Set<'_>,
@@ -440,7 +439,7 @@ fn polished(
     } else {
         (from.point, contactor.project(from.point))
     };
-    // Nearer than this the difference of two points tells no direction.
+    // At smaller distances the difference of two points has no reliable direction.
     if here.distance < 1e-6 {
         return (normal, here.supports[1].point, here.distance);
     }
@@ -448,7 +447,7 @@ fn polished(
     (way.unit_or(normal), to, way.length())
 }
 
-/// A Newton step (rad) on the sphere of directions, toward where the cores are separated most.
+/// Returns a Newton step (rad) on the sphere of directions, toward the largest separation of the cores.
 fn newton(normal: Vec3, here: &Separation, tangential: Vec3) -> Vec3 {
     let slope = tangential.length();
     let first = tangential.unit_or(normal);
@@ -470,7 +469,7 @@ fn newton(normal: Vec3, here: &Separation, tangential: Vec3) -> Vec3 {
     }
 }
 
-/// A step, shortened until the cores are better separated.
+/// Returns a step, shortened until the separation of the cores increases.
 fn ascend(
     target: &Set<'_>,
     contactor: &Set<'_>,
@@ -479,7 +478,7 @@ fn ascend(
     tangential: Vec3,
     step: Vec3,
 ) -> Option<(Vec3, Separation)> {
-    // No step turns further than half a radian: curvatures change.
+    // No step turns by more than half a radian, since curvatures change.
     let mut share = 0.5 / step.length().max(0.5);
     for _ in 0..40 {
         let next = (normal + step * share).unit_or(normal);

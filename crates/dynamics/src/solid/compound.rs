@@ -1,4 +1,4 @@
-//! Bodies of several solids, such as racks of tubes, and which of their solids may meet.
+//! Bodies of several solids, such as racks of tubes, and their contact pairs.
 
 use super::{Bulk, Hull, Rounded};
 use crate::body::{Body, BodyId, Nodes, Placed};
@@ -8,21 +8,21 @@ use crate::space::{Pose, Rotation3, Spatial, Vec3};
 /// A solid of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// What touches and can be touched.
+    /// Its surface, both contactor and target.
     pub hull: Hull,
-    /// Its origin (m) in the frame in which the body is described.
+    /// Its origin (m) in the frame of the description.
     pub center: Vec3,
-    /// How its frame is turned there.
+    /// Its rotation in that frame.
     pub rotation: Rotation3,
-    /// Its matter, in its own frame.
+    /// Its mass distribution, in its own frame.
     pub bulk: Bulk,
 }
 
-/// A free body of several solids, at the place where it is described: its frame becomes that of its
-/// principal axes about its center of mass, its pose says where that is.
+/// Creates a free body of several solids, in place: its frame becomes that of its principal axes about its center of
+/// mass, and its pose is where that is.
 ///
-/// Solids touch one by one, so a pair of bodies is as many contact pairs as [`pairs_between`] says; those
-/// that are far apart cost a look at their balls when the list of contact elements is built.
+/// Solids touch one by one, so a pair of bodies has the contact pairs of [`pairs_between`]; for distant ones only
+/// their balls are tested when the list of contact elements is built.
 pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spatial> {
     let whole = Bulk::sum(parts.iter().map(|part| part.bulk.placed(part.center, part.rotation)));
     let (inertia, orientation) = whole.principal();
@@ -46,7 +46,7 @@ pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spati
     }
 }
 
-/// The contact pairs of two bodies whose solids may all meet, each once: those of the first are the
+/// Returns the contact pairs of two bodies all of whose solids may touch, each once: those of the first are the
 /// contactors.
 pub fn pairs_between(
     bodies: &[Body<Spatial>],

@@ -1,7 +1,7 @@
-//! Lines and faces that two bounded solids share: tubes side by side, a tube or a head on a head or on the
-//! face of a block.
+//! Lines and faces that two bounded solids share: tubes side by side, a tube or a head on a head or on the face of a
+//! block.
 //!
-//! As [`closest`](super::closest), all is single numbers.
+//! As in [`closest`](super::closest), all computations are scalar.
 
 use super::barrel::Barrel;
 use super::block::Block;
@@ -9,35 +9,35 @@ use super::{Capsule, Hull};
 use crate::shape::{Gap, Shares, Slopes};
 use crate::space::{Linear, Quaternion, Rotation3, Spatial, Vec3, Wrench};
 
-/// The middle of what two bodies share, in the frame of the target.
+/// Middle of a patch that two bodies share, in the frame of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flat {
     /// The point (m) of the contactor's surface.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
-    /// As those of [`Spread`](crate::shape::Spread).
+    /// As in [`Spread`](crate::shape::Spread).
     pub(super) shares: Shares<f64>,
     pub(super) radius: f64,
-    /// Unit vectors along it; a line has but the first.
+    /// Unit vectors along it; a line has only the first.
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the angle between two bodies from which on they share nothing.
+/// Sine of the angle between two bodies above which they share no patch.
 pub(super) const WIDEST: f64 = 0.1;
-/// How far (m) from its middle a line or a face extends that counts in full.
+/// Extent (m) from the middle above which a line or a face has full weight.
 const LONG: f64 = 0.05;
 
-/// `3 u² − 2 u³` between 0 and 1.
+/// Returns `3 u² − 2 u³`, clamped to 0 and 1.
 pub(super) fn smooth(u: f64) -> f64 {
     let u = u.clamp(0.0, 1.0);
     u * u * (3.0 - u - u)
 }
 
-/// How much counts of what bears like a number of springs and extends `length` (m) from its middle, of two
-/// bodies turned out of it by an angle with a sine.
+/// Returns the weights of a patch that bears like a number of springs and extends `length` (m) from its middle, for
+/// two bodies turned out of it by an angle with a sine.
 ///
-/// The shorter it is the less they may be turned: what a turned tube has left before the edge of a head is not where
-/// it lies deepest, and has to be nothing before it ends.
+/// The shorter it is, the smaller the permitted angle: the part of a turned tube before the edge of a head is not at
+/// its deepest point, and its weight must vanish before it ends.
 fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     let short = LONG / length;
     let flat = smooth(1.0 - sine_squared * (1.0 + short * short) / (WIDEST * WIDEST));
@@ -46,9 +46,9 @@ fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
 }
 
-/// What a contactor with its origin at `at` (m) shares with a target, in the frame of the target, from
-/// that of the contactor to which `frame` leads, where `normal` points out of the target; none where they
-/// touch in a point.
+/// Returns the patch that a contactor with its origin at `at` (m) shares with a target, in the frame of the target,
+/// to which `frame` transforms from that of the contactor; `normal` points out of the target. `None` if they touch in
+/// a point.
 pub(super) fn shared(
     contactor: &Hull,
     target: &Hull,
@@ -72,7 +72,7 @@ pub(super) fn shared(
                 axes: [direction; 2],
             })
         }
-        // The contactor tells, in its own frame.
+        // Computed in the frame of the contactor.
         (hull, Hull::Capsule(tube)) => {
             let own = [at, axis, normal].map(|vector| frame.unapply(vector));
             let line = along(hull, tube, -own[0], own[1], own[2])?;
@@ -98,7 +98,7 @@ pub(super) fn shared(
         (Hull::Barrel(barrel), Hull::Block(block)) => {
             head_on_block(block, barrel, at, frame, normal)
         }
-        // The block tells, in its own frame.
+        // Computed in the frame of the block.
         (Hull::Block(block), Hull::Barrel(barrel)) => {
             let flat = head_on_block(
                 block,
@@ -115,15 +115,16 @@ pub(super) fn shared(
                 ..flat
             })
         }
-        // A face of one may lie on an edge of the other, which no middle of a face tells: see `faces`.
+        // A face of one may lie on an edge of the other, which has no middle of a face: see `faces`.
         (Hull::Block(_), Hull::Block(_)) => None,
     }
 }
 
-/// Step (m, rad) by which slopes are told: both ways, so they are good to eight digits.
+/// Step (m, rad) of central differences, good to eight digits.
 const HAIR: f64 = 1e-6;
 
-/// How a patch changes as the contactor moves and turns about its origin, from as many looks at neighboring poses.
+/// Returns the derivatives of a patch with respect to the motion of the contactor, by differences of neighboring
+/// poses.
 pub(super) fn slopes(
     flat: &Flat,
     contactor: &Hull,
@@ -139,7 +140,7 @@ pub(super) fn slopes(
             let (at, frame) = along(way);
             shared(contactor, target, at, frame, normal).map(|flat| (way, tell(&flat)))
         };
-        // Where it ends on one side, from there to here.
+        // One-sided where the patch ends.
         let from = there(-HAIR).unwrap_or((0.0, here));
         let to = there(HAIR).unwrap_or((0.0, here));
         let way = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
@@ -152,19 +153,19 @@ pub(super) fn slopes(
         force: Vec3::new(x[value], y[value], z[value]),
         moment: Vec3::new(yz[value], zx[value], xy[value]),
     });
-    // What the points there tell: depth falls as the contactor leaves along the normal.
+    // The contribution of material points: depth decreases as the contactor leaves along the normal.
     middle.force += flat.gap.normal;
     middle.moment += (flat.point - at).cross(flat.gap.normal);
     Slopes { middle, deepest, others }
 }
 
-/// Two tubes, the target along `x`.
+/// Returns the patch of two tubes, the target along `x`.
 fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> Option<Flat> {
     let sine_squared = 1.0 - direction.x * direction.x;
     if sine_squared >= WIDEST * WIDEST {
         return None;
     }
-    // Along the tube, where what is closest lies: as the overlap ends there is nothing beside its middle.
+    // Along the tube, which has the closest point: as the overlap ends, only its middle remains.
     let (least, most, radius) =
         overlap(tube.half_length, -at.dot(direction), target.half_length * direction.x.abs());
     if radius <= 0.0 {
@@ -181,7 +182,7 @@ fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> 
     })
 }
 
-/// From where to where an interval about zero and one about `center` overlap, and half of how long.
+/// Returns the ends of the overlap of an interval about zero and one about `center`, and half its length.
 fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
     let (least, most) = ((center - other).max(-half), (center + other).min(half));
     (least, most, 0.5 * (most - least))
@@ -189,25 +190,25 @@ fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
 
 /// A line on a head or a face.
 struct Line {
-    /// The middle of what of the tube's axis lies before it (m).
+    /// Middle of the part of the tube's axis that lies before it (m).
     center: Vec3,
     /// Distance (m) of the surfaces there.
     distance: f64,
     /// Unit normal out of the head or face.
     normal: Vec3,
     shares: Shares<f64>,
-    /// How far (m) it extends from its middle.
+    /// Extent (m) from its middle.
     length: f64,
 }
 
-/// A tube on a head or a face, in the frame of the solid that has it.
+/// Returns the line of a tube on a head or a face, in the frame of the solid that has it.
 fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -> Option<Line> {
     match hull {
         Hull::Capsule(_) => None,
-        // What lies on the stave is nowhere before a head.
+        // On the stave, no part lies before a head.
         Hull::Barrel(_) if normal.x.abs() < 0.5 => None,
         Hull::Barrel(barrel) => {
-            // From where to where along the tube its axis lies before the circle of the head.
+            // The part of the tube whose axis lies before the circle of the head.
             let across = Vec3::new(0.0, direction.y, direction.z);
             let (a, b) = (across.dot(across), across.dot(at));
             let beyond = at.y * at.y + at.z * at.z - barrel.head_radius * barrel.head_radius;
@@ -218,7 +219,7 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
         }
         Hull::Block(block) => {
             let axis = facing(normal);
-            // From where to where along the tube its axis lies before the face.
+            // The part of the tube whose axis lies before the face.
             let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
             for other in AXES {
                 if other.dot(axis) == 0.0 {
@@ -241,8 +242,8 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// A tube on a plane across an axis, at a height and with a rounding (m), that bears it along a chord: its
-/// middle and half its length (m) along the tube.
+/// Returns the line of a tube on a plane perpendicular to an axis, at a height and with a rounding (m), along a chord
+/// given by its middle and half its length (m) along the tube.
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -268,7 +269,7 @@ fn on_plane(
 const AXES: [Vec3; 3] =
     [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
 
-/// The axis of the face of a block that a normal leaves, either way.
+/// Returns the axis of the face of a block nearest to a normal, with either sign.
 fn facing(normal: Vec3) -> Vec3 {
     let steep = |axis: &Vec3| normal.dot(*axis).abs();
     let [x, y, z] = AXES;
@@ -276,7 +277,7 @@ fn facing(normal: Vec3) -> Vec3 {
     if steep(&z) > steep(&steeper) { z } else { steeper }
 }
 
-/// A head on the face of a block, in the frame of the block.
+/// Returns the patch of a head on the face of a block, in the frame of the block.
 fn head_on_block(
     block: &Block,
     barrel: &Barrel,
@@ -295,15 +296,15 @@ fn head_on_block(
                 radius = radius.min(length);
             }
         }
-        // Before a corner the middle of what overlaps along both sides may lie beside the head.
+        // Near a corner the middle of the overlaps along both sides may lie beside the head.
         (middle, radius.min(barrel.head_radius - (middle - aside).length()))
     };
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// The head of a barrel on a plane across an axis, at a height and with a rounding (m); `middle` tells from
-/// where the center of the head is aside of that axis the middle of what is shared, and how far (m) that
-/// extends from there.
+/// Returns the patch of the head of a barrel on a plane perpendicular to an axis, at a height and with a rounding
+/// (m); `middle` returns the middle of the shared area and its extent (m), for a position of the center of the head
+/// in the plane.
 fn head_on(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -326,7 +327,7 @@ fn head_on(
     if radius <= 0.0 {
         return None;
     }
-    // The point of the head's plane before that.
+    // The point of the head's plane opposite to that.
     let reach = (middle - aside).dot(outward) / outward.dot(normal);
     let facing = middle + normal * (head.dot(normal) - reach);
     let distance = facing.dot(normal) - height - rounding - barrel.rounding;

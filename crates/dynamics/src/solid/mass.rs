@@ -1,10 +1,10 @@
-//! Mass, center and moments of inertia: of solids, of bodies of several parts, of barrels by their fill.
+//! Mass, center and moments of inertia of solids, of bodies of several parts, and of filled barrels.
 
 use super::{Ball, Barrel, Capsule};
 use crate::math;
 use crate::space::{Quaternion, Rotation3, Vec3};
 
-/// How the matter of a body is distributed.
+/// Mass distribution of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bulk {
     /// Mass (kg).
@@ -16,24 +16,24 @@ pub struct Bulk {
 }
 
 impl Bulk {
-    /// Matter about the origin, alike on both sides of every plane of the frame, by its mass (kg) and
-    /// `∫ x² dm`, `∫ y² dm`, `∫ z² dm` (kg·m²).
+    /// Creates a distribution about the origin, symmetric about every plane of the frame, from its mass (kg) and `∫
+    /// x² dm`, `∫ y² dm`, `∫ z² dm` (kg·m²).
     fn symmetric(mass: f64, second: Vec3) -> Self {
         let Vec3 { x, y, z } = second;
         let rows = [Vec3::new(x, 0.0, 0.0), Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 0.0, z)];
         Self { mass, center: Vec3::default(), second: rows }
     }
 
-    /// A homogeneous ball of a mass (kg).
+    /// Creates a homogeneous ball of a mass (kg).
     pub fn of_ball(ball: &Ball, mass: f64) -> Self {
         let second = 0.2 * mass * ball.radius * ball.radius;
         Self::symmetric(mass, Vec3::new(second, second, second))
     }
 
-    /// A homogeneous capsule of a mass (kg).
+    /// Creates a homogeneous capsule of a mass (kg).
     pub fn of_capsule(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
-        // Shares of the tube and of the ball that both of its ends make.
+        // Shares of the tube and of the ball formed by both ends.
         let ball = 2.0 * r / (2.0 * r + 3.0 * l);
         let tube = 1.0 - ball;
         let along = tube * l * l / 3.0 + ball * (l * l + 0.75 * l * r + 0.2 * r * r);
@@ -41,26 +41,26 @@ impl Bulk {
         Self::symmetric(mass, Vec3::new(along, across, across) * mass)
     }
 
-    /// A homogeneous tube of a mass (kg) with a thin wall, open at its ends, of which a capsule is the
-    /// outside: as the tubes of racks are.
+    /// Creates a homogeneous tube of a mass (kg) with a thin wall and open ends, whose outside is a capsule: as the
+    /// tubes of racks are.
     pub fn of_hollow(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         let across = 0.5 * r * r;
         Self::symmetric(mass, Vec3::new(l * l / 3.0, across, across) * mass)
     }
 
-    /// A homogeneous block of a mass (kg) with sharp edges, by half its sides (m).
+    /// Creates a homogeneous block of a mass (kg) with sharp edges, from half its sides (m).
     pub fn of_block(half: Vec3, mass: f64) -> Self {
         Self::symmetric(mass, half.times(half) * (mass / 3.0))
     }
 
-    /// A homogeneous barrel of a mass (kg).
+    /// Creates a homogeneous barrel of a mass (kg).
     pub fn of_barrel(barrel: &Barrel, mass: f64) -> Self {
         let outside = revolved(barrel);
         outside.of_density(mass / outside.volume)
     }
 
-    /// The same matter at another place (m), turned.
+    /// Returns the distribution displaced (m) and rotated.
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.
@@ -69,7 +69,7 @@ impl Bulk {
         Self { mass: self.mass, center: offset + rotation.apply(self.center), second }
     }
 
-    /// Several of them as one.
+    /// Returns the sum of several distributions.
     pub fn sum(parts: impl IntoIterator<Item = Self> + Clone) -> Self {
         let (mut mass, mut first) = (0.0, Vec3::default());
         for part in parts.clone() {
@@ -87,10 +87,10 @@ impl Bulk {
         Self { mass, center, second }
     }
 
-    /// The principal moments of inertia (kg·m²) about the center of mass, and how their axes are turned.
+    /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation of their axes.
     ///
-    /// Jacobi's method: plane after plane is turned until nothing is left beside the diagonal. What is
-    /// symmetric about the planes of its frame keeps its axes.
+    /// Jacobi's method: planes are rotated one by one until the matrix is diagonal. Distributions symmetric about the
+    /// planes of their frame keep its axes.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
         let mut second = self.second;
@@ -122,39 +122,39 @@ impl Bulk {
 }
 
 impl Barrel {
-    /// Its volume (m³).
+    /// Returns the volume (m³).
     pub fn volume(&self) -> f64 {
         revolved(self).volume
     }
 }
 
-/// What is in a barrel.
+/// Contents of a barrel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fill {
     /// Nothing.
     Empty,
-    /// It is full of what turns with the wood.
+    /// Full, with contents that turn with the wood.
     Frozen,
-    /// It is full of wine, which does not turn with the wood about the axis, and partly about others.
+    /// Full of wine, which does not turn with the wood about the axis, and partly about others.
     Fluid,
 }
 
-/// A barrel of wood about a room for wine.
+/// A barrel of wood with a room for wine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cask {
-    /// Its outside.
+    /// Outer surface.
     pub barrel: Barrel,
     /// Thickness (m) of staves and heads.
     pub wall: f64,
-    /// How far (m) the heads lie within the ends of the staves.
+    /// Depth (m) of the heads within the ends of the staves.
     pub chime: f64,
     /// Mass (kg) of the wood.
     pub wood: f64,
-    /// Density (kg/m³) of what fills it.
+    /// Density (kg/m³) of the contents.
     pub density: f64,
 }
 
-/// Integrals over a body of revolution about `x`, alike on both sides.
+/// Integrals over a symmetric body of revolution about `x`.
 #[derive(Clone, Copy, Debug)]
 struct Revolved {
     /// Volume (m³).
@@ -181,18 +181,18 @@ impl Revolved {
 }
 
 impl Cask {
-    /// The room for wine, and all that the staves enclose.
+    /// Returns the room for wine, and all that the staves enclose.
     fn rooms(&self) -> [Revolved; 2] {
         let end = self.barrel.half_length + self.barrel.rounding;
         [end - self.chime - self.wall, end].map(|end| within(&self.barrel, self.wall, end))
     }
 
-    /// Volume (m³) of the room for wine.
+    /// Returns the volume (m³) of the room for wine.
     pub fn capacity(&self) -> f64 {
         self.rooms()[0].volume
     }
 
-    /// The wood: staves, and two heads between them.
+    /// Returns the wood: staves, and two heads between them.
     fn staves_and_heads(&self) -> Revolved {
         let [room, open] = self.rooms();
         let outer_face = self.barrel.half_length + self.barrel.rounding - self.chime;
@@ -205,13 +205,12 @@ impl Cask {
         }
     }
 
-    /// Wood and contents.
+    /// Returns the mass distribution of wood and contents.
     ///
-    /// Wine does not turn about the axis of a barrel that rolls, where its skin on the wood is thin, and
-    /// about an axis across like that in a spheroid of the same moments, with
-    /// `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb, Hydrodynamics, on the ellipsoidal shell filled with
-    /// liquid). Its mass is where it is: the returned second moments are those with which a rigid body
-    /// turns alike.
+    /// Wine does not turn about the axis of a rolling barrel, since its boundary layer is thin; about a transverse
+    /// axis it turns like that in a spheroid of the same moments, with `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb,
+    /// Hydrodynamics, on the ellipsoidal shell filled with liquid). Its mass is at its place: the returned second
+    /// moments are those of an equivalent rigid body.
     pub fn bulk(&self, fill: Fill) -> Bulk {
         let wood = self.staves_and_heads();
         let wood = wood.of_density(self.wood / wood.volume);
@@ -220,7 +219,7 @@ impl Cask {
             Fill::Empty => wood,
             Fill::Frozen => Bulk::sum([wood, room.of_density(self.density)]),
             Fill::Fluid => {
-                // No moment about the axis: nothing across; and about others what a spheroid has.
+                // No moment about the axis; about others that of the spheroid.
                 let (across, along) = (room.across, room.along);
                 let turning = (along - across) * (along - across) / (along + across);
                 let wine = Revolved { volume: room.volume, along: turning, across: 0.0 };
@@ -229,15 +228,15 @@ impl Cask {
         }
     }
 
-    /// Wine at rest in a barrel that lies, `filled` (0 to 1) of its room: its mass and place, as it lies at
-    /// the bottom with a level surface, `z` being up.
+    /// Returns mass and position of wine at rest in a lying barrel, `filled` (0 to 1) of its room, at the bottom with
+    /// a level surface; `z` is up.
     ///
     /// It stays there while the barrel rolls.
     pub fn wine_at_rest(&self, filled: f64) -> Bulk {
         let room = self.rooms()[0];
         let end = self.barrel.half_length + self.barrel.rounding - self.chime - self.wall;
         let radius = |x: f64| stave(&self.barrel, x) - self.wall;
-        // The level (m above the axis) below which there is so much.
+        // The level (m above the axis) of that volume.
         let (mut low, mut high) = (-radius(0.0), radius(0.0));
         for _ in 0..60 {
             let level = 0.5 * (low + high);
@@ -256,13 +255,13 @@ impl Cask {
     }
 }
 
-/// The radius (m) of the full stave at a place (m) along the barrel.
+/// Returns the radius (m) of the full stave at a position (m) along the barrel.
 fn stave(barrel: &Barrel, x: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding;
     (arc * arc - x * x).sqrt() - barrel.stave_offset
 }
 
-/// The integral over an interval, by five points of Gauss in each of many parts.
+/// Integrates over an interval, by five Gauss points in each of many parts.
 fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     const PARTS: u32 = 16;
     let inner = (5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
@@ -289,23 +288,23 @@ fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]
     sum
 }
 
-/// What a disc of a radius (m) adds at a place (m) along the axis.
+/// Returns the integrands of a disc of a radius (m) at a position (m) along the axis.
 fn disc(x: f64, r: f64) -> [f64; 3] {
     let area = std::f64::consts::PI * r * r;
     [area, area * x * x, 0.25 * area * r * r]
 }
 
-/// Both halves.
+/// Doubles the integrals of one half.
 fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
 }
 
-/// All of a barrel.
+/// Integrates over a whole barrel.
 fn revolved(barrel: &Barrel) -> Revolved {
     let grown = barrel.rounding;
     let arc = barrel.stave_radius + grown;
     let turn = math::asin(barrel.half_length / barrel.stave_radius);
-    // By the direction of the normal, so that the round of the chime is smooth to its end.
+    // By the angle of the normal, so that the integrand is smooth to the end of the chime.
     let of_stave = integral((0.0, turn), |angle| {
         let (sin, cos) = (math::sin(angle), math::cos(angle));
         disc(arc * sin, arc * cos - barrel.stave_offset).map(|part| part * arc * cos)
@@ -318,13 +317,13 @@ fn revolved(barrel: &Barrel) -> Revolved {
     doubled(std::array::from_fn(|i| of_stave[i] + of_chime[i]))
 }
 
-/// What lies within the staves of a barrel, of a thickness (m), up to an end (m from its middle).
+/// Integrates the inside of the staves of a barrel, of a thickness (m), up to an end (m from its middle).
 fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// Volume, first moment upward, and second moments along, across and upward about the axis, of what lies
-/// below a level (m above the axis) within a radius up to an end (m).
+/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part below
+/// a level (m above the axis) within a radius up to an end (m).
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
     let section = |x: f64| {
         let r = radius(x);
@@ -337,7 +336,7 @@ fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
         let across = 0.25 * r * r * area + h * cube / 6.0;
         [area, -2.0 / 3.0 * cube, area * x * x, across, upward]
     };
-    // Where the level meets the staves the section changes its law.
+    // The formula of the section changes where the level meets the staves.
     let (mut inside, mut outside) = (0.0, end);
     for _ in 0..60 {
         let x = 0.5 * (inside + outside);

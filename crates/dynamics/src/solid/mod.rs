@@ -1,11 +1,11 @@
 //! Boundaries in space: ball, half-space, capsule, block, barrel of revolution, and the dish.
 //!
-//! All but the dish are convex cores grown by a radius, so that at the depths of contact the cores are apart, and
-//! what is asked is the distance of convex bodies that do not meet.
-//! A target answers how far a point is from it ([`Surface::gap`]); a capsule, a block or a barrel touches as
-//! a whole ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and
-//! legs with their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
-//! One file holds one solid; [`Solid`] is the table.
+//! All but the dish are convex cores grown by a radius, so that at the depths of contact the cores are separate, and
+//! only distances of separate convex bodies are needed.
+//! A target computes the distance of a point ([`Surface::gap`]); a capsule, a block or a barrel touches as a whole
+//! ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs with
+//! their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
+//! Each file has one solid; [`Solid`] lists them.
 
 mod barrel;
 mod block;
@@ -67,7 +67,7 @@ pub struct Capsule<R = f64> {
 }
 
 impl<R: Real> Capsule<R> {
-    /// In one lane.
+    /// Returns one lane.
     fn lane(&self, lane: usize) -> Capsule {
         Capsule { half_length: self.half_length.lane(lane), radius: self.radius.lane(lane) }
     }
@@ -81,9 +81,9 @@ impl<R: Real> Capsule<R> {
 }
 
 impl Capsule {
-    /// Where the line from `middle` (m), told as 0, to `middle + half`, told as 1, is closest to the axis: beside it
-    /// the distance grows with what is across, beyond an end with what is along as well. Not a number where the line
-    /// is parallel.
+    /// Returns the position of the point closest to the axis on the line from `middle` (m), position 0, to `middle +
+    /// half`, position 1: beside the axis the distance grows with the transverse part, beyond an end with the axial
+    /// part as well. NaN if the line is parallel.
     #[inline(always)]
     fn nearest_on_line(&self, middle: Vec3, half: Vec3) -> f64 {
         let across = half.y * half.y + half.z * half.z;
@@ -101,10 +101,10 @@ impl Capsule {
     }
 }
 
-/// Every solid that can be a target.
+/// A solid that can be a target.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid<R = f64> {
-    /// All below `z = 0`: the floor.
+    /// Everything below `z = 0`: the floor.
     HalfSpace,
     /// A ball.
     Ball(Ball<R>),

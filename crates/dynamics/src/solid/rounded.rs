@@ -1,4 +1,4 @@
-//! Capsules and barrels as they touch: with the points that lie deepest.
+//! Capsules, barrels and blocks as contactors, which touch with their deepest points.
 
 use super::barrel::Barrel;
 use super::block::{Block, from_block};
@@ -11,7 +11,7 @@ use crate::shape::{
 };
 use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
-/// What touches as a whole, about the origin, along `x`.
+/// A solid that touches as a whole, about the origin, along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
     /// A tube with round ends.
@@ -22,27 +22,27 @@ pub enum Hull<R = f64> {
     Block(Block<R>),
 }
 
-/// A hull at its place on a body.
+/// A hull positioned on a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded<R = f64> {
-    /// What it is.
+    /// The hull.
     pub hull: Hull<R>,
     /// Its origin (m) in the body frame, from the center of mass.
     pub center: Vec3<R>,
-    /// How its frame is turned in the body frame.
+    /// Rotation of its frame in the body frame.
     pub rotation: Rotation3<R>,
-    /// Length of boundary (m) that each of its contacts stands for.
+    /// Tributary length of boundary (m) of each of its contacts.
     pub tributary_length: R,
 }
 
-/// Sticks of a patch: one at the center of pressure, and two along each of its axes.
+/// Number of sticks of a patch: one at the center of pressure, and two along each of its axes.
 const OF_LINE: usize = 3;
 const OF_FACE: usize = 5;
 /// A block touches the half-space with each of its corners.
 const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
-    /// A hull at the center of mass of its body.
+    /// Creates a hull at the center of mass of its body.
     pub fn centered(hull: Hull<R>) -> Self {
         Self {
             hull,
@@ -78,7 +78,7 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
                     visit(Patch { first, deepest, spread: None });
                 }
             }
-            // What is concave is touched by points only.
+            // A concave surface is touched by points only.
             (_, Solid::Dish(_)) => {}
             (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
                 let mut patch = meeting(hull, surface, origin, frame);
@@ -135,23 +135,23 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
     }
 }
 
-/// Both bodies feel the force midway between their surfaces, whichever of them is the target.
+/// Returns a touch whose force acts midway between the surfaces, whichever body is the target.
 #[inline(always)]
 fn midway<R: Real>(point: Vec3<R>, gap: Gap<Spatial<R>>) -> Touch<Spatial<R>> {
     Touch { node: point + gap.normal * (gap.distance * R::splat(0.5)), gap }
 }
 
-/// A ball of a radius (m) on the half-space.
+/// Returns the touch of a ball of a radius (m) on the half-space.
 #[inline(always)]
 fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
     let up = Vec3::new(R::zero(), R::zero(), R::splat(1.0));
     midway(center - up * radius, Gap { distance: center.z - radius, normal: up })
 }
 
-/// A barrel on the half-space: its deepest point, and the middle of its lower head.
+/// Returns the patch of a barrel on the half-space: its deepest point, and the middle of its lower head.
 ///
-/// Energy and force of one that stands are those of four points of its rim, the deepest and three more a
-/// quarter turn apart: smooth in height and tilt, though upright no direction is that of the lean.
+/// Energy and force of a standing barrel are those of four points of its rim, the deepest and three more a quarter
+/// turn apart: smooth in height and tilt, though the direction of lean is undefined when upright.
 #[inline(always)]
 fn standing<R: Real>(
     barrel: &Barrel<R>,
@@ -168,13 +168,13 @@ fn standing<R: Real>(
         shares: Shares { deepest: one, others: one, aside: one },
         radius: barrel.head_radius,
         axes: Axes::Face([frame.apply(y), frame.apply(z)]),
-        // The middle is a point of the barrel, and all parts count in full.
+        // The middle is a material point of the barrel, and all weights are constant.
         slopes: Slopes::default(),
     };
     Patch { first: 0, deepest: place(barrel.furthest(down)), spread: Some(spread) }
 }
 
-/// Two bounded solids, one lane after the other.
+/// Returns the patch of two bounded solids, lane by lane.
 #[inline(always)]
 fn meeting<R: Real>(
     hull: &Hull<R>,
@@ -223,7 +223,8 @@ fn meeting<R: Real>(
     Patch { first: 0, deepest: midway(point, gap), spread: Some(spread) }
 }
 
-/// Two blocks, one lane after the other: the corners of what their faces share, and the deepest point.
+/// Returns the points of two blocks, lane by lane: the corners of the area that their faces share, and the deepest
+/// point.
 #[inline(always)]
 fn block_on_block<R: Real>(
     block: &Block<R>,
@@ -288,7 +289,7 @@ fn put<R: Real>(vector: &mut Vec3<R>, lane: usize, single: Vec3) {
 }
 
 impl<R: Real> Hull<R> {
-    /// In one lane.
+    /// Returns one lane.
     fn lane(&self, lane: usize) -> Hull {
         match self {
             Self::Capsule(capsule) => Hull::Capsule(capsule.lane(lane)),
@@ -297,7 +298,7 @@ impl<R: Real> Hull<R> {
         }
     }
 
-    /// Distance and normal at a point (m).
+    /// Returns distance and normal at a point (m).
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         match self {
@@ -309,7 +310,7 @@ impl<R: Real> Hull<R> {
 }
 
 impl Hull {
-    /// The same as a surface that can be touched.
+    /// Returns the hull as a target surface.
     pub fn surface(self) -> Solid {
         match self {
             Self::Capsule(capsule) => Solid::Capsule(capsule),
@@ -318,7 +319,7 @@ impl Hull {
         }
     }
 
-    /// How far (m) it reaches beyond its core.
+    /// Returns the distance (m) of its surface from its core.
     pub(super) fn rounding(&self) -> f64 {
         match self {
             Self::Capsule(capsule) => capsule.radius,
@@ -327,7 +328,7 @@ impl Hull {
         }
     }
 
-    /// The point of the core (m) that lies furthest in a direction of length one.
+    /// Returns the support point (m) of the core in a direction of length one.
     pub(super) fn furthest(&self, direction: Vec3) -> Vec3 {
         match self {
             Self::Capsule(capsule) => {
@@ -339,7 +340,7 @@ impl Hull {
     }
 }
 
-/// A bounded convex surface in one lane, a ball as a capsule without length; none for others.
+/// Returns a bounded convex surface in one lane, a ball as a capsule without length; `None` for others.
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     match surface {
         Solid::HalfSpace | Solid::Dish(_) => None,
@@ -352,8 +353,8 @@ fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     }
 }
 
-/// Where a contactor with its origin at `at` (m) is closest to a target, in the frame of the target, from
-/// that of the contactor to which `frame` leads.
+/// Returns the closest points of a contactor with its origin at `at` (m) and a target, in the frame of the target, to
+/// which `frame` transforms from that of the contactor.
 fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     f64::scope(
         #[inline(always)]
@@ -377,7 +378,7 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
                 converged,
             }
         }
-        // The contactor tells how far the axis of the capsule is, in its own frame.
+        // Computed in the frame of the contactor.
         (hull, Hull::Capsule(target)) => {
             let end = frame.unapply(Vec3::new(target.half_length, 0.0, 0.0));
             let middle = frame.unapply(-at);
@@ -392,7 +393,7 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
             }
         }
         (other, Hull::Block(block)) => from_block(block, other, at, frame),
-        // The block tells where the target is closest, in its own frame.
+        // Computed in the frame of the block.
         (Hull::Block(block), target) => {
             let found = from_block(block, target, frame.unapply(-at), frame.back());
             let on_block = found.point - found.normal * found.distance;
@@ -406,9 +407,9 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
 }
 
 impl Rounded {
-    /// Where it is closest to a surface; `position` and `rotation` as in [`Whole::meet`].
+    /// Returns its closest point to a surface; `position` and `rotation` as in [`Whole::meet`].
     ///
-    /// None for the half-space, on which it may lie with more than one point.
+    /// `None` for the half-space, on which it may lie with more than one point, and for a dish.
     pub fn closest(&self, surface: &Solid, position: Vec3, rotation: Rotation3) -> Option<Closest> {
         let origin = position + rotation.apply(self.center);
         let target = bounded(surface, 0)?;

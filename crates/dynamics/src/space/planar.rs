@@ -16,28 +16,28 @@ pub struct Vec2<R = f64> {
 }
 
 impl<R: Real> Vec2<R> {
-    /// The vector `(x, z)`.
+    /// Creates the vector `(x, z)`.
     #[inline(always)]
     pub const fn new(x: R, z: R) -> Self {
         Self { x, z }
     }
-    /// The same vector in every lane.
+    /// Returns the same vector in every lane.
     #[inline(always)]
     pub fn splat(vector: Vec2<f64>) -> Self {
         Self::new(R::splat(vector.x), R::splat(vector.z))
     }
-    /// Its length.
+    /// Returns the length.
     #[inline(always)]
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
-    /// Turned by a quarter turn from `x` toward `z`.
+    /// Rotates by a quarter turn from `x` toward `z`.
     #[inline(always)]
     #[must_use]
     pub fn quarter_turn(self) -> Self {
         Self::new(-self.z, self.x)
     }
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// Returns `yes` in lanes of the mask, `no` elsewhere.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(R::select(mask, yes.x, no.x), R::select(mask, yes.z, no.z))
@@ -97,7 +97,7 @@ impl<R: Real> Linear<R> for R {
     }
 }
 
-/// Cosine and sine of an angle: what turns a vector of the plane.
+/// A rotation in the plane, as cosine and sine of its angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation2<R = f64> {
     /// Cosine.
@@ -107,23 +107,23 @@ pub struct Rotation2<R = f64> {
 }
 
 impl<R: Real> Rotation2<R> {
-    /// The rotation by an angle (rad).
+    /// Creates the rotation by an angle (rad).
     #[inline(always)]
     pub fn new(angle: R) -> Self {
         let (sin, cos) = math::sin_cos(angle);
         Self { cos, sin }
     }
-    /// No rotation.
+    /// Returns the identity.
     #[inline(always)]
     pub fn identity() -> Self {
         Self { cos: R::splat(1.0), sin: R::zero() }
     }
-    /// The turned vector.
+    /// Rotates a vector.
     #[inline(always)]
     pub fn apply(self, v: Vec2<R>) -> Vec2<R> {
         Vec2::new(self.cos * v.x - self.sin * v.z, self.sin * v.x + self.cos * v.z)
     }
-    /// The vector turned back.
+    /// Rotates a vector back.
     #[inline(always)]
     pub fn unapply(self, v: Vec2<R>) -> Vec2<R> {
         Vec2::new(self.cos * v.x + self.sin * v.z, self.cos * v.z - self.sin * v.x)
@@ -189,7 +189,7 @@ impl<R: Real> Space for Planar<R> {
     fn velocity_at(spin: R, arm: Vec2<R>) -> Vec2<R> {
         Vec2::new(-(spin * arm.z), spin * arm.x)
     }
-    /// The longer component and √2 − 1 times the shorter one: at most 8 % above the length.
+    /// Sum of the longer component and √2 − 1 times the shorter one: at most 8 % above the length.
     #[inline(always)]
     fn length_bound(vector: Vec2<R>) -> R {
         let (x, z) = (vector.x.abs(), vector.z.abs());
@@ -246,7 +246,7 @@ impl<R: Real> Space for Planar<R> {
     fn spin_energy(inertia: R, _rotation: Rotation2<R>, spin: R) -> R {
         R::splat(0.5) * inertia * spin * spin
     }
-    /// Positive along the normal turned by a quarter turn from `z` toward `x`: to the right on a floor.
+    /// Positive along the normal rotated by a quarter turn from `z` toward `x`: to the right on a floor.
     #[inline(always)]
     fn tangential(vector: Vec2<R>, normal: Vec2<R>) -> R {
         vector.x * normal.z - vector.z * normal.x
@@ -277,7 +277,7 @@ impl<R: Real> Space for Planar<R> {
     }
 }
 
-/// A row of a damping matrix times a velocity.
+/// Returns a row of a damping matrix times a velocity.
 #[inline(always)]
 fn row<R: Real>(row: [R; 3], linear: Vec2<R>, spin: R) -> R {
     row[0] * linear.x + row[1] * linear.z + row[2] * spin

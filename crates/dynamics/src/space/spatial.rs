@@ -1,4 +1,4 @@
-//! Motion in space: `x` to the right, `y` away, `z` up, turns right-handed.
+//! Motion in space: `x` to the right, `y` away, `z` up, right-handed rotations.
 
 use super::{Linear, Quaternion, Rotation3, Space, Vec3};
 use crate::real::{Mask, Real};
@@ -6,8 +6,8 @@ use crate::solid::{Rounded, Solid};
 
 /// Space, with one number or a bundle of lanes as its scalar.
 ///
-/// A body's frame is that of its principal axes, so its inertia is three numbers.
-/// Spins and moments are those of the inertial frame.
+/// The body frame is that of the principal axes, so the inertia is three numbers. Spins and moments are in the
+/// inertial frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spatial<R = f64>(std::marker::PhantomData<R>);
 
@@ -21,11 +21,11 @@ impl<R: Real> Space for Spatial<R> {
     type Rotation = Rotation3<R>;
     /// The principal moments of inertia (kg·m²) about the axes of the body frame.
     ///
-    /// A body of revolution has its axis along `x`: then it coasts exactly.
+    /// A body of revolution has its axis along `x`, so that its free rotation is exact.
     type Inertia = Vec3<R>;
     type Tangent = Vec3<R>;
     type TangentPlane = Vec3<R>;
-    /// Damping of the velocity (N·s/m) and of the spin (N·m·s), alike in all directions.
+    /// Isotropic damping of the velocity (N·s/m) and of the spin (N·m·s).
     type Damping = [R; 2];
     type Surface = Solid<R>;
     type Whole = Rounded<R>;
@@ -62,7 +62,7 @@ impl<R: Real> Space for Spatial<R> {
     fn velocity_at(spin: Vec3<R>, arm: Vec3<R>) -> Vec3<R> {
         spin.cross(arm)
     }
-    /// The length itself, and a hair for its rounding.
+    /// The length itself, with a margin for rounding.
     #[inline(always)]
     fn length_bound(vector: Vec3<R>) -> R {
         vector.length() * R::splat(1.0 + 1e-15)
@@ -83,8 +83,8 @@ impl<R: Real> Space for Spatial<R> {
     fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
         Quaternion::turn(spin * time).after(orientation).normalized()
     }
-    /// The axis of the turn times its angle, by the series of `asin s / s`: better than 1e-14 rad for
-    /// turns below 0.2 rad, and an underestimate of longer ones.
+    /// The rotation vector, by the series of `asin s / s`: better than 1e-14 rad below 0.2 rad, and an underestimate
+    /// of larger rotations.
     #[inline(always)]
     fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
         let turn = to.after(from.back());
@@ -95,11 +95,10 @@ impl<R: Real> Space for Spatial<R> {
                     + z * (R::splat(15.0 / 336.0)
                         + z * (R::splat(105.0 / 3456.0) + z * R::splat(945.0 / 42_240.0)))));
         let two = R::splat(2.0);
-        // A quaternion and its negative are one turn.
+        // A quaternion and its negative are the same rotation.
         turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
     }
-    /// From the chord `d = 2 sin(θ/4)` between the quaternions, which is √2 at most, where the arc is
-    /// 1.1108 times as long.
+    /// From the chord `d = 2 sin(θ/4)` between the quaternions, at most √2, where the arc is 1.1108 times as long.
     #[inline(always)]
     fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
         let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
@@ -114,8 +113,7 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Refined once: a matrix is orthogonal but for rounding, and what that takes always from one side adds
-    /// up over a run.
+    /// Refined once: a matrix is orthogonal up to rounding, and a systematic error would accumulate over a run.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();
@@ -123,16 +121,16 @@ impl<R: Real> Space for Spatial<R> {
         let missing = momentum - Self::momentum(inertia, rotation, spin);
         spin + Self::spin_rate(inertia, rotation, missing)
     }
-    /// Free rotation in momentum form: the angular momentum **L** stays, and the kinetic energy
+    /// Free rotation in momentum form: the angular momentum **L** is conserved, and the kinetic energy
     ///
     /// ```text
     /// T = ½ (Π₁²/I₁ + (Π₂² + Π₃²)/I₂) + ½ Π₃² (1/I₃ − 1/I₂)      Π = Rᵀ L
     /// ```
     ///
-    /// is that of a body of revolution, whose motion is exact (it turns about **L** at `L/I₂` and about
-    /// its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder that turns it about its third axis.
-    /// Half of the remainder, the body of revolution, the other half: symplectic, reversible, of second
-    /// order, and exact for a body of revolution (after Touma and Wisdom 1994, and Fassò 2003).
+    /// is the sum of that of a body of revolution, whose motion is exact (rotation about **L** at `L/I₂` and about
+    /// its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates it about its third axis. Half of the
+    /// remainder, the body of revolution, the other half: symplectic, reversible, of second order, and exact for a
+    /// body of revolution (after Touma and Wisdom 1994, and Fassò 2003).
     #[inline(always)]
     fn coast(
         inertia: Vec3<R>,
@@ -164,8 +162,8 @@ impl<R: Real> Space for Spatial<R> {
         let turned = turned.normalized();
         (turned, Self::spin_of(inertia, turned, momentum))
     }
-    /// The inverse of the derivative of the exponential map, to the order that methods of fourth order
-    /// need: `ω − ½ u × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
+    /// The inverse of the derivative of the exponential map, to the order that methods of fourth order need: `ω − ½ u
+    /// × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
     #[inline(always)]
     fn turn_rate(turned: Vec3<R>, spin: Vec3<R>) -> Vec3<R> {
         let once = turned.cross(spin);
@@ -173,7 +171,7 @@ impl<R: Real> Space for Spatial<R> {
     }
     fn least_inertia(inertia: Vec3<R>, lane: usize) -> f64 {
         let Vec3 { x, y, z } = inertia.lane(lane);
-        // Comparisons that a lost number fails on purpose: it is the least.
+        // `min` would drop NaN, which must be reported as the smallest.
         if x.is_nan() || y.is_nan() || z.is_nan() { f64::NAN } else { x.min(y).min(z) }
     }
     #[inline(always)]
@@ -193,12 +191,11 @@ impl<R: Real> Space for Spatial<R> {
     fn tangent_plane(normal: Vec3<R>) -> Vec3<R> {
         normal
     }
-    /// By the shortest turn from one normal to the other,
-    /// `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: what lies in the old plane keeps its length, and
-    /// whatever is given lies in the new plane.
+    /// By the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: a vector
+    /// in the old plane keeps its length, and the result is always in the new plane.
     #[inline(always)]
     fn carry(tangent: Vec3<R>, from: Vec3<R>, to: Vec3<R>) -> Vec3<R> {
-        // Where a normal turned right over, the tangent lies in both planes.
+        // For opposite normals, the tangent lies in both planes.
         let least = R::splat(1e-9);
         let scale = (R::splat(1.0) + from.dot(to)).max(least);
         tangent - (from + to) * (tangent.dot(to) / scale)

@@ -1,4 +1,4 @@
-//! Vectors of space and what turns them: unit quaternions, which are integrated, and matrices.
+//! Vectors of space and their rotations: unit quaternions, which are integrated, and matrices.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -11,33 +11,33 @@ use crate::real::Real;
 pub struct Vec3<R = f64> {
     /// To the right.
     pub x: R,
-    /// Away from who looks.
+    /// Away from the viewer.
     pub y: R,
     /// Up.
     pub z: R,
 }
 
 impl<R: Real> Vec3<R> {
-    /// The vector `(x, y, z)`.
+    /// Creates the vector `(x, y, z)`.
     #[inline(always)]
     pub const fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
     }
-    /// The same vector in every lane.
+    /// Returns the same vector in every lane.
     #[inline(always)]
     pub fn splat(vector: Vec3<f64>) -> Self {
         Self::new(R::splat(vector.x), R::splat(vector.y), R::splat(vector.z))
     }
-    /// The vector in one lane.
+    /// Returns the vector in one lane.
     pub fn lane(self, lane: usize) -> Vec3<f64> {
         Vec3::new(self.x.lane(lane), self.y.lane(lane), self.z.lane(lane))
     }
-    /// Its length.
+    /// Returns the length.
     #[inline(always)]
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
-    /// The vector product.
+    /// Returns the vector product.
     #[inline(always)]
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
@@ -47,19 +47,19 @@ impl<R: Real> Vec3<R> {
             self.x * other.y - self.y * other.x,
         )
     }
-    /// The products of the components.
+    /// Returns the products of the components.
     #[inline(always)]
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
-    /// The quotients of the components.
+    /// Returns the quotients of the components.
     #[inline(always)]
     #[must_use]
     pub fn over(self, other: Self) -> Self {
         Self::new(self.x / other.x, self.y / other.y, self.z / other.z)
     }
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// Returns `yes` in lanes of the mask, `no` elsewhere.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self::new(
@@ -68,7 +68,7 @@ impl<R: Real> Vec3<R> {
             R::select(mask, yes.z, no.z),
         )
     }
-    /// The vector of length one in its direction; `instead` where it has no length.
+    /// Returns the unit vector in its direction; `instead` if it has no length.
     #[inline(always)]
     #[must_use]
     pub fn unit_or(self, instead: Self) -> Self {
@@ -129,20 +129,20 @@ impl<R: Real> Linear<R> for Vec3<R> {
 /// A unit quaternion: from the body frame to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion<R = f64> {
-    /// Cosine of half the turn.
+    /// Cosine of half the angle.
     pub w: R,
-    /// The axis, as long as the sine of half the turn.
+    /// The axis, with the sine of half the angle as its length.
     pub v: Vec3<R>,
 }
 
 impl<R: Real> Quaternion<R> {
-    /// No turn.
+    /// Returns the identity.
     #[inline(always)]
     pub fn identity() -> Self {
         Self { w: R::splat(1.0), v: Vec3::default() }
     }
 
-    /// The turn about an axis by its length (rad), right-handed.
+    /// Creates the rotation about a vector by its length (rad), right-handed.
     #[inline(always)]
     pub fn turn(turn: Vec3<R>) -> Self {
         let square = turn.dot(turn) * R::splat(0.25);
@@ -150,7 +150,7 @@ impl<R: Real> Quaternion<R> {
         Self { w: cos, v: turn * (share * R::splat(0.5)) }
     }
 
-    /// First `inner`, then this one.
+    /// Returns `inner` followed by this rotation.
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
@@ -160,7 +160,7 @@ impl<R: Real> Quaternion<R> {
         }
     }
 
-    /// Of length one again: every product of two loses a rounding.
+    /// Normalizes the length: every product of two adds a rounding error.
     #[inline(always)]
     #[must_use]
     pub fn normalized(self) -> Self {
@@ -168,15 +168,15 @@ impl<R: Real> Quaternion<R> {
         Self { w: self.w * inverse, v: self.v * inverse }
     }
 
-    /// The turn back.
+    /// Returns the inverse.
     #[inline(always)]
     #[must_use]
     pub fn back(self) -> Self {
         Self { w: self.w, v: -self.v }
     }
 
-    /// The matrix that turns vectors alike, whatever rounding has made of the length: a share of 1e-16 that
-    /// always has one sign would be a drift of the angular momentum.
+    /// Returns the rotation matrix, corrected for a length that rounding has changed: a systematic error of 1e-16
+    /// would be a drift of the angular momentum.
     #[inline(always)]
     pub fn matrix(self) -> Rotation3<R> {
         let (w, Vec3 { x, y, z }) = (self.w, self.v);
@@ -204,7 +204,7 @@ impl<R: Real> Quaternion<R> {
     }
 }
 
-/// A matrix that turns vectors of space.
+/// A rotation matrix of space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation3<R = f64> {
     /// Its rows.
@@ -212,24 +212,24 @@ pub struct Rotation3<R = f64> {
 }
 
 impl<R: Real> Rotation3<R> {
-    /// No rotation.
+    /// Returns the identity.
     #[inline(always)]
     pub fn identity() -> Self {
         Quaternion::identity().matrix()
     }
-    /// The turned vector.
+    /// Rotates a vector.
     #[inline(always)]
     pub fn apply(self, v: Vec3<R>) -> Vec3<R> {
         let [x, y, z] = self.rows;
         Vec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
-    /// The vector turned back.
+    /// Rotates a vector back.
     #[inline(always)]
     pub fn unapply(self, v: Vec3<R>) -> Vec3<R> {
         let [x, y, z] = self.rows;
         x * v.x + y * v.y + z * v.z
     }
-    /// The rotation back.
+    /// Returns the inverse.
     #[inline(always)]
     #[must_use]
     pub fn back(self) -> Self {
@@ -238,15 +238,15 @@ impl<R: Real> Rotation3<R> {
             rows: [Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z)],
         }
     }
-    /// First `inner`, then this one.
+    /// Returns `inner` followed by this rotation.
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
-        // Not by `map`, which becomes calls.
+        // Not by `map`, which the compiler turns into calls.
         let [x, y, z] = self.rows;
         Self { rows: [inner.unapply(x), inner.unapply(y), inner.unapply(z)] }
     }
-    /// In one lane.
+    /// Returns one lane.
     pub fn lane(self, lane: usize) -> Rotation3 {
         let [x, y, z] = self.rows;
         Rotation3 { rows: [x.lane(lane), y.lane(lane), z.lane(lane)] }

@@ -1,4 +1,4 @@
-//! What the suites share beside the scenes.
+//! Helpers shared by the suites.
 #![allow(dead_code, unused_imports, unreachable_pub, reason = "every suite uses its own share")]
 
 use barrelstack_dynamics::space::Linear as _;
@@ -8,7 +8,7 @@ use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 pub use barrelstack_scenes::GRAVITY;
 pub use barrelstack_scenes::scene::*;
 
-/// Every method, the adaptive one with a tolerance (m).
+/// Returns every method, the adaptive one with a tolerance (m).
 pub fn every_method(tolerance: f64) -> [Method; 4] {
     [
         Method::SemiImplicitEuler,
@@ -18,7 +18,7 @@ pub fn every_method(tolerance: f64) -> [Method; 4] {
     ]
 }
 
-/// The bits of the poses, twists and sticks of a state.
+/// Returns the bits of the poses, twists and sticks of a state.
 pub fn bits(state: &State<Planar>) -> Vec<u64> {
     let mut bits = vec![state.time.to_bits()];
     for (pose, twist) in state.poses.iter().zip(&state.twists) {
@@ -31,7 +31,7 @@ pub fn bits(state: &State<Planar>) -> Vec<u64> {
     bits
 }
 
-/// The six numbers of a body's motion.
+/// Returns the six numbers of a body's motion.
 pub fn numbers(pose: &Pose<Planar>, twist: &Twist<Planar>) -> [f64; 6] {
     [
         pose.position.x,
@@ -43,7 +43,7 @@ pub fn numbers(pose: &Pose<Planar>, twist: &Twist<Planar>) -> [f64; 6] {
     ]
 }
 
-/// Asserts that a number is what it should be, to a share of it; prints the error it measured.
+/// Asserts that a number is as expected, to a relative tolerance; prints the error.
 #[allow(clippy::print_stdout, reason = "shown by cargo test with --nocapture, or when it fails")]
 #[track_caller]
 pub fn assert_close(what: &str, found: f64, expected: f64, relative: f64) {
@@ -55,7 +55,7 @@ pub fn assert_close(what: &str, found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// Settings of random tests: a few cases, always the same ones.
+/// Settings of random tests: a few cases, always the same.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -65,11 +65,11 @@ pub fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Random numbers between -1 and 1, the same ones every time.
+/// Pseudorandom numbers between -1 and 1, always the same.
 pub struct Dice(pub u64);
 
 impl Dice {
-    /// The next one.
+    /// Returns the next number.
     pub fn roll(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -77,12 +77,12 @@ impl Dice {
         (x.wrapping_mul(0xff51_afd7_ed55_8ccd) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Three of them.
+    /// Returns a vector of three numbers.
     pub fn vector(&mut self) -> Vec3 {
         Vec3::new(self.roll(), self.roll(), self.roll())
     }
 
-    /// Any orientation, all as likely.
+    /// Returns an orientation from the uniform distribution.
     pub fn orientation(&mut self) -> Quaternion {
         loop {
             let (w, v) = (self.roll(), self.vector());

@@ -149,7 +149,6 @@ impl CaseResult {
     ///
     /// `barrels` lists those of the whole stack, each with name, level, height (m) over the floor, which counts as
     /// its drop, and wine (m³).
-    /// as its drop, and the wine (m³) in it.
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
         levels: u32,

@@ -1,4 +1,4 @@
-//! Two bodies at their contact: where and how fast their nodes touch.
+//! Relative kinematics of two bodies at their contact.
 
 use crate::contact_elements::ContactElements;
 use crate::forces::Contact;
@@ -9,19 +9,19 @@ use crate::shape::Gap;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// Two bodies, seen from a surface of one of them.
+/// Relative kinematics of two bodies in the frame of a surface of one of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Seen<S: Space> {
-    /// The contactor, the target, and which surface of it.
+    /// The contactor, the target, and the index of its surface.
     of: [usize; 3],
     pub(super) frame: PairFrame<S>,
     motion: Motion<S>,
 }
 
-/// How they move against each other.
+/// Relative motion of two bodies.
 #[derive(Clone, Copy, Debug)]
 struct Motion<S: Space> {
-    /// Center of mass of the contactor from that of the target (m).
+    /// Vector (m) from the center of mass of the target to that of the contactor.
     apart: S::Vector,
     /// Velocity (m/s), at the contactor's center of mass, of the contactor relative to the target.
     linear: S::Vector,
@@ -50,7 +50,7 @@ impl<S: Space> Seen<S> {
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
 
-    /// That of a pair: what the pair before it saw, where that is the same.
+    /// Returns the kinematics of a pair, reusing those of the pair before it if equal.
     #[inline(always)]
     pub(super) fn shared<'a>(
         last: &'a mut Option<Self>,
@@ -71,7 +71,7 @@ impl<S: Space> Seen<S> {
     }
 }
 
-/// Two bodies at their contact, seen from the target's surface.
+/// Two bodies at their contact, in the frame of the target's surface.
 #[derive(Clone, Copy)]
 pub(super) struct Meeting<'a, S: Space> {
     frame: &'a PairFrame<S>,
@@ -84,22 +84,22 @@ impl<'a, S: Space> Meeting<'a, S> {
         Self { frame: &seen.frame, motion: seen.motion }
     }
 
-    /// Spin (rad/s) of the contactor relative to the target.
+    /// Returns the spin (rad/s) of the contactor relative to the target.
     #[inline(always)]
     pub(super) fn spin(&self) -> S::Spin {
         self.motion.spin
     }
 
-    /// Velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
+    /// Returns the velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
     #[inline(always)]
     pub(super) fn velocity(&self, point: S::Vector) -> S::Vector {
         self.motion.linear + S::velocity_at(self.motion.spin, point - self.frame.contactor)
     }
 
-    /// Where and how fast a node at `node` (m, in the surface's frame) touches; no forces yet.
+    /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
     ///
-    /// Both bodies feel the force at the companion point, and both velocities are taken there:
-    /// so the pair conserves momentum, and force times relative velocity is the power it loses.
+    /// The force acts on both bodies at the companion point, and both velocities are taken there, so the pair
+    /// conserves momentum, and force times relative velocity is the power it loses.
     #[inline(always)]
     pub(super) fn contact(
         &self,
@@ -129,7 +129,7 @@ impl<'a, S: Space> Meeting<'a, S> {
         }
     }
 
-    /// What a wrench of the contactor's contacts does to contactor and target, in the inertial frame.
+    /// Returns the wrenches on contactor and target, in the inertial frame, of a wrench of the contactor's contacts.
     #[inline(always)]
     pub(super) fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
         let rotation = self.frame.rotation;

@@ -1,4 +1,4 @@
-//! The forces of a patch: normal ones, which remember nothing, and sticks about the center of pressure.
+//! Forces of a patch: memoryless normal forces, and sticks about the center of pressure.
 
 use super::{Contact, Laws, Press, Pressed};
 use crate::contact::NormalForce;
@@ -7,7 +7,7 @@ use crate::shape::{Bearing, Gap, Patch, Points, Spread, Touch};
 use crate::space::{Linear, Space, Wrench};
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// A patch whose sticks are numbered from `first` in the list of elements.
+    /// Adds the forces of a patch whose sticks start at `first` in the list of elements.
     #[inline(always)]
     pub(super) fn patch(&mut self, first: usize, patch: &Patch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -31,7 +31,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Notes where springs and dampers set in or end too abruptly for a whole step, and where an impact is hard.
+    /// Detects springs and dampers that change too abruptly for a whole step, and hard impacts.
     #[inline(always)]
     fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(fast) = self.fast else { return };
@@ -42,7 +42,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.is_hard = self.is_hard | (near & fast.hard.lt(approach));
     }
 
-    /// A patch of more than one point.
+    /// Adds the forces of a patch of more than one point.
     #[inline(always)]
     fn spread(&mut self, first: usize, mut deepest: Touch<S>, spread: &Spread<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -66,7 +66,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         ];
         let weight = S::Real::select(touching, self.elements.weights[first], zero);
         let (mut forces, mut stiffness) = ([(zero, zero); 3], zero);
-        // The energies that they would store if each counted in full.
+        // Energies at full share.
         let mut energies = [zero; 3];
         for (((depth, rate, count), (total, damped)), energy) in
             springs.into_iter().zip(&mut forces).zip(&mut energies)
@@ -81,7 +81,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             self.totals.elastic += normal.energy * weight;
             stiffness += depth * weight;
         }
-        // As many springs as bear, by what they bear.
+        // Number of springs, weighted by their load.
         let stiffness = stiffness / S::Real::select(touching, depth, one);
         let [deep, mirrored, between] = forces;
         let at_deepest = (deep.0 - mirrored.0, deep.1 - mirrored.1);
@@ -104,7 +104,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let presses = zero.lt(normal_force);
         let safe = S::Real::select(presses, normal_force, one);
         let normal = resultant * (one / safe);
-        // Nothing presses where a damper draws as much as the spring pushes.
+        // Normal force is zero where the damper cancels the spring.
         let normal = normal + deepest.gap.normal * S::Real::select(presses, zero, one);
         let lean = S::Real::select(presses, at_deepest.0 / safe, one).clamp_magnitude(one);
         let (from, to) = (spread.middle.companion(), deepest.companion());
@@ -117,7 +117,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             depth,
             rate,
         };
-        // In a point nothing but the first stick is left.
+        // In a point contact only the first stick remains.
         let aside = (one - lean * lean) * shares.aside;
         self.stick(first, &pressure, S::Vector::default(), one - aside);
         let axes = spread.axes.all();
@@ -130,16 +130,16 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Points that bear together, whose sticks are numbered from `first` in the list of elements.
+    /// Adds the forces of points that bear together, whose sticks start at `first` in the list of elements.
     ///
-    /// Friction acts at the center of pressure, as far aside of it as the points lie in the mean of squares:
-    /// so it takes the moment that theirs would, and remembers its sticks whichever points bear.
+    /// Friction acts about the center of pressure, at the root-mean-square distance of the points: so it carries
+    /// their moment, and its sticks persist whichever points bear.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
         let meeting = self.meeting;
         let (mut resultant, mut deepest) = (S::Vector::default(), (zero, zero));
-        // Sums of the forces, and of these times the place and its square.
+        // Sums of the forces, and of their first and second moments.
         let origin = self.frame.contactor;
         let (mut whole, mut moment, mut square) = (zero, S::Vector::default(), zero);
         let mut stiffness = zero;
@@ -205,7 +205,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// The normal force of a spring, with the stop that it may have.
+    /// Returns the normal force of a spring, with its stop if any.
     #[inline(always)]
     pub(super) fn law(&self, depth: S::Real, rate: S::Real) -> NormalForce<S::Real> {
         let normal = (self.laws)().normal.force_of_step(depth, rate, self.step);
@@ -215,7 +215,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// A share of the friction of a patch, `aside` (m) of its center of pressure.
+    /// Adds a share of the friction of a patch, `aside` (m) of its center of pressure.
     #[inline(always)]
     fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
         let meeting = self.meeting;
@@ -261,7 +261,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Whether more than the deepest point bears, at its distance (m).
+    /// Returns the lanes in which more than the deepest point bears, at its distance (m).
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);
@@ -273,14 +273,14 @@ impl<S: Space> Spread<S> {
     }
 }
 
-/// How a patch presses as a whole.
+/// Resultant pressure of a patch.
 struct Pressure<S: Space> {
     touching: <S::Real as Real>::Mask,
     /// The center of pressure (m).
     center: S::Vector,
     normal: S::Vector,
     normal_force: S::Real,
-    /// What the constants of its sticks are multiplied by.
+    /// Factor of the constants of its sticks.
     stiffness: S::Real,
     depth: S::Real,
     rate: S::Real,

@@ -8,29 +8,29 @@ use crate::real::{Mask, Real};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
-/// How much longer (m) a side is for a corner of the first of two bodies than for one of the second:
-/// where two corners lie one above the other, one contact is counted and not two or none.
+/// Extra length (m) of a side for a corner of the first of two bodies, relative to one of the second: where two
+/// corners coincide, exactly one contact is counted.
 const SLACK: f64 = 1e-9;
 
-/// How far (m) from the end of a side a corner is a contact in full, whatever else is inside there.
+/// Distance (m) from the end of a side beyond which a corner counts in full, whatever else is inside there.
 const COMPANION: f64 = 0.01;
 
 /// Sine of the angle past the limits of a round piece up to which it faces a side: 45°.
 const FACES: f64 = 0.7;
 
-/// How far (m) outside of a core the center of a round piece may lie for the sides that it faces to count:
-/// where two bodies are flush, that of one of two corners does that nearly coincide.
+/// Distance (m) outside of a core within which the center of a round piece still counts on the sides that it faces:
+/// where two bodies are flush, one of two nearly coincident corners lies there.
 const NEARLY_INSIDE: f64 = 1e-5;
 
-/// How far past the limits of a round piece a normal may point, on the way to another round piece.
+/// Tolerance of the normal beyond the limits of a round piece, toward another round piece.
 const LIMIT: f64 = 2e-7;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// The round pieces of a convex boundary, each with its deepest point.
+    /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
     ///
-    /// A round piece against a straight side is a contact of this pair wherever it is deepest, or ends
-    /// straight; against a round piece it is one if each lies in the limits of the other, and then it
-    /// belongs to the pair whose contactor is the first of the two bodies.
+    /// A round piece against a straight side is a contact of this pair wherever it is deepest or ends straight;
+    /// against a round piece it is one if each lies in the limits of the other, and then it belongs to the pair whose
+    /// contactor is the first of the two bodies.
     #[inline(always)]
     pub(super) fn rounds(
         &mut self,
@@ -72,7 +72,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             }
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
-                // The round of the other, about its center, as near to the side as to the arc.
+                // Compare the other's round, about its center, with the side and with the arc.
                 let center = round.center + toward * nearest.core;
                 let rounding = nearest.core - nearest.gap.distance;
                 let nearer = gap.distance.lt(center.dot(*outward) - *distance - rounding);
@@ -82,7 +82,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             self.look_ahead(center - gap.normal * round.radius, gap);
             if gap.distance.lt(zero).any() {
                 let share = self.share(round, &nearest, slack);
-                // Both bodies feel the force midway between their boundaries, whichever of them tests.
+                // The force acts midway between the boundaries, whichever body is tested.
                 let inset = round.radius - gap.distance * S::Real::splat(0.5);
                 let energy = self.node(element, center - gap.normal * inset, gap, share.value);
                 if zero.lt(share.slope).any() {
@@ -94,7 +94,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// What of a surface is nearest to the center (m) of a round piece; of a core that the center is inside of,
+    /// Returns the piece of a surface nearest to the center (m) of a round piece; if the center is inside the core,
     /// the nearest piece that it can bear on.
     #[inline(always)]
     fn nearest(
@@ -116,15 +116,15 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         surface.bearing(center, &facing, nearest)
     }
 
-    /// The share with which a corner counts on a side, near whose end the corner of the other body may
-    /// itself bear on a side of this one.
+    /// Returns the share with which a corner counts on a side near whose end the corner of the other body may itself
+    /// bear on a side of this one.
     ///
-    /// Where two faces overlap by little, both corners at the ends of the overlap are inside the other
-    /// body. They are one contact, which becomes two as they part. The corner that is nearer to the end
-    /// of the side before it, and so is the shallower of the two, counts the less the shorter its way
-    /// to that end, the other in full; so none of them begins or ends with a jump, whatever the depth.
-    /// Where two faces end together, one beyond the other by less than rounding, their corners coincide, and
-    /// that which lies further inside of the other face is the contact; of none that does, the first body's.
+    /// Where two faces overlap slightly, both corners at the ends of the overlap are inside the other body. They are
+    /// one contact, which splits into two as they separate. The corner nearer to the end of the side before it, which
+    /// is the shallower of the two, has a share that decreases with its distance to that end, the other counts in
+    /// full; so neither begins or ends with a jump, at any depth.
+    /// Where two faces end together, one beyond the other by less than rounding, their corners coincide, and the one
+    /// further inside the other face is the contact; if neither is, the first body's.
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -137,7 +137,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             let apart = self.frame.to_contactor(apart);
             let toward = self.frame.to_contactor(-nearest.gap.normal);
             for (limit, arc) in round.limits.iter().zip(&round.arc_limits) {
-                // Of the sides of this body that which lies along the other.
+                // The side of this body that lies along the other.
                 if arc.is_none() {
                     let along = S::Real::splat(-FACES).lt(toward.dot(*limit));
                     partly = partly | (along & to_end.lt(apart.dot(*limit) - slack));
@@ -145,7 +145,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             }
             partly = partly & near_end;
         }
-        // 3 u² − 2 u³, so that the push begins and ends at zero.
+        // 3 u² − 2 u³, so that the force begins and ends at zero.
         let u = to_end.max(zero) * S::Real::splat(1.0 / COMPANION);
         let slope = S::Real::splat(6.0 / COMPANION) * u * (one - u);
         Share {
@@ -155,10 +155,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// With which share of its energy a contact counts.
+/// Share of a contact in its energy.
 struct Share<R> {
     value: R,
-    /// How the share grows with the way (1/m) to the end of the side: what the energy falls by on that
-    /// way pushes toward the end.
+    /// Derivative of the share with respect to the distance (1/m) to the end of the side: the corresponding decrease
+    /// of the energy is a force toward the end.
     slope: R,
 }

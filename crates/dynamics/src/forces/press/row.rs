@@ -1,8 +1,8 @@
 //! Rows of nodes that bear as one seat.
 //!
-//! The seat is as deep as its deepest node: its laws are asked at that depth, and what they answer is divided among the
-//! nodes that touch in proportion to their own depths. So the number of nodes says where the seat presses, and nothing
-//! of how stiff, how damped or how rough it is.
+//! The depth of the seat is that of its deepest node: the laws are evaluated there, and their forces are divided
+//! among the touching nodes in proportion to their depths. So the number of nodes affects the location of the
+//! pressure, but not stiffness, damping or friction.
 
 use crate::pair_frame::AtFace;
 use crate::real::Real;
@@ -11,7 +11,7 @@ use crate::space::Space;
 
 use super::{Laws, Press};
 
-/// A gap where it counts, and none where it does not.
+/// Returns the gap if it counts, and an open gap otherwise.
 #[inline(always)]
 pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) -> Gap<S> {
     if let Some(face) = counted {
@@ -25,7 +25,7 @@ pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) ->
 pub(super) struct Row<R> {
     /// The depth (m) of the deepest node.
     deepest: R,
-    /// The sum of the depths (m) of those that touch.
+    /// The sum of the depths (m) of the touching nodes.
     sum: R,
 }
 
@@ -40,7 +40,7 @@ impl<R: Real> Row<R> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// The forces of a node of a row that bears as one seat.
+    /// Adds the forces of a node of a row that bears as one seat.
     #[inline(always)]
     pub(super) fn of_row(
         &mut self,
