@@ -1,4 +1,4 @@
-//! A body in space as a file states it: its solid, its matter, where it is and how it moves at the start.
+//! A body in space as stated in a file: solid, mass properties, pose and initial motion.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -65,12 +65,12 @@ section! {
 }
 
 impl SpatialBody {
-    /// Label used by interfaces.
+    /// Returns the label used by interfaces.
     pub fn kind(&self) -> &str {
         self.kind.as_deref().unwrap_or(&self.name)
     }
 
-    /// Reads a body and checks what its fields mean together.
+    /// Reads a body and checks the consistency of its fields.
     ///
     /// # Errors
     /// The first problem found, at its place.
@@ -93,7 +93,7 @@ impl SpatialBody {
             let message = format!("what is fixed to the ground moves with it; leave `{field}` out");
             return wrong(field, message);
         }
-        // The inertia of homogeneous matter holds about its own center only.
+        // The inertia of homogeneous matter holds only about its own center.
         if body.center_of_mass.is_some() && body.inertia.is_none() {
             let message = format!(
                 "a center of mass of its own means that the body is not homogeneous; give `{}` too",

@@ -1,4 +1,4 @@
-//! From a body as a file states it to one that a model moves.
+//! Builds the body of a model from its specification.
 
 use barrelstack_dynamics::solid::{Ball, Barrel, Block, Bulk, Capsule, Hull, Rounded};
 use barrelstack_dynamics::{
@@ -8,7 +8,7 @@ use barrelstack_dynamics::{
 
 use crate::{Solid, SpatialBody};
 
-/// A solid at its place in a body, with its volume (m³) and its matter at a density of one.
+/// A solid at its position in a body, with its bulk at unit density.
 struct Piece {
     surface: Surface,
     offset: Vec3,
@@ -17,7 +17,7 @@ struct Piece {
 }
 
 impl SpatialBody {
-    /// The body at its start, in the frame of its principal axes about its center of mass.
+    /// Builds the body in its initial state, in the frame of its principal axes about its center of mass.
     pub fn build(&self) -> Body<Spatial> {
         let pieces = pieces(&self.solid);
         let turned = turn(self.orientation);
@@ -44,11 +44,12 @@ impl SpatialBody {
         }
     }
 
-    /// Mass and center of mass, principal moments of inertia (kg·m²), and how their axes are turned in the body.
+    /// Returns mass and center of mass, principal moments of inertia (kg·m²), and the orientation of their axes in the
+    /// body.
     fn matter(&self, pieces: &[Piece]) -> (Bulk, Vec3, Quaternion) {
         let ones: Vec<Bulk> = pieces.iter().filter_map(|piece| piece.bulk).collect();
         let unit = Bulk { mass: 1.0, center: Vec3::default(), second: [Vec3::default(); 3] };
-        // What is fixed to the ground needs no matter; a half-space has none.
+        // A body fixed to the ground needs no matter; a half-space has none.
         let solid = if ones.is_empty() { unit } else { Bulk::sum(ones) };
         let mass = self.mass.or_else(|| Some(self.density? * solid.mass)).unwrap_or(1.0);
         let share = mass / solid.mass;
@@ -74,7 +75,7 @@ fn vector([x, y, z]: [f64; 3]) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// The turn about `x`, then `y`, then `z` (rad), axes that stand still.
+/// Returns the rotation about `x`, then `y`, then `z` (rad), which are fixed axes.
 fn turn([x, y, z]: [f64; 3]) -> Quaternion {
     let about = |x, y, z| Quaternion::turn(Vec3::new(x, y, z));
     about(0.0, 0.0, z).after(about(0.0, y, 0.0)).after(about(x, 0.0, 0.0))
@@ -105,7 +106,7 @@ fn pieces(solid: &Solid) -> Vec<Piece> {
         .collect()
 }
 
-/// The surface of one solid and its matter at a density of one; none for a compound.
+/// Returns the surface of one solid and its bulk at unit density; `None` for a compound.
 fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     const ROUND: f64 = std::f64::consts::PI;
     let ball = |radius: f64| 4.0 / 3.0 * ROUND * radius * radius * radius;
@@ -136,7 +137,7 @@ fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     })
 }
 
-/// What of a solid touches others; a half-space is only touched.
+/// Returns the contactor of a surface; a half-space is only a target.
 fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
     let hull = match &placed.surface {
         Surface::HalfSpace | Surface::Dish(_) => return None,

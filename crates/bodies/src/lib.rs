@@ -1,10 +1,10 @@
-//! Bodies in space: the tables `[[body]]` of a free scene there, and the bodies that these tables describe.
+//! Bodies in space: the tables `[[body]]` of a spatial free scene, and the bodies that they describe.
 //!
 //! ```text
 //! [[body]] ─ body ─▶ SpatialBody { solid, … } ─ SpatialBody::build ─▶ Body<Spatial>, which a model moves
 //! ```
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod body;

@@ -1,4 +1,4 @@
-//! Solids of bodies in space as a file states them: ball, capsule, block, barrel, half-space, and several as one.
+//! Solids of bodies in space as stated in files: ball, capsule, block, barrel, half-space, and compounds.
 
 use barrelstack_dynamics::solid::Barrel;
 use barrelstack_input::choices::Chosen;
@@ -55,15 +55,15 @@ choices! {
     }
 }
 
-/// The solids that a part of a compound may be: those before the half-space.
+/// The solids allowed in a compound: those before the half-space.
 static OF_PARTS: &[Variant] = SOLIDS.split_at(4).0;
 
-/// Their names.
+/// Returns their names.
 fn part_names() -> Vec<&'static str> {
     OF_PARTS.iter().map(|variant| variant.name).collect()
 }
 
-/// Sizes of solids (m): far below a splinter and far above a building.
+/// Sizes of solids (m): from far below a splinter to far above a building.
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 

@@ -10,7 +10,7 @@ use barrelstack_dynamics::{Drive, Planar, Vec2};
 pub enum Shake {
     /// Constant velocity (m/s).
     Cruise(f64),
-    /// Acceleration (m/s²) that grows in proportion to time until `ramp` (s) and then stays.
+    /// Acceleration (m/s²) that grows linearly until `ramp` (s) and is then constant.
     Ramped {
         /// (m/s²).
         acceleration: f64,
@@ -33,21 +33,21 @@ pub enum Shake {
         /// 1 for a half-sine, 2 for one sine.
         half_waves: f64,
     },
-    /// `a cos ωt` for one wave, then rest.
+    /// `a cos ωt` for one period, then rest.
     Cosine {
         /// (m/s²).
         acceleration: f64,
         /// ω (rad/s).
         omega: f64,
     },
-    /// `a sin ωt` for ever, about a place that stays.
+    /// `a sin ωt` for all times, about a fixed position.
     Harmonic {
         /// (m/s²).
         acceleration: f64,
         /// ω (rad/s).
         omega: f64,
     },
-    /// Displacement `A sin ωt` for ever: the ground starts with a velocity.
+    /// Displacement `A sin ωt` for all times: the ground starts with a velocity.
     Swing {
         /// A (m).
         amplitude: f64,
@@ -57,17 +57,17 @@ pub enum Shake {
 }
 
 impl Shake {
-    /// Constant acceleration (m/s²) for ever.
+    /// Returns a constant acceleration (m/s²) for all times.
     pub fn constant(acceleration: f64) -> Self {
         Self::Rectangular { acceleration, duration: f64::INFINITY }
     }
 
-    /// One half-wave of a sine of acceleration (m/s²) that takes a duration (s), then constant velocity.
+    /// Returns one half-wave of a sine of acceleration (m/s²) of a duration (s), then constant velocity.
     pub fn half_sine(acceleration: f64, duration: f64) -> Self {
         Self::Sine { acceleration, omega: PI / duration, half_waves: 1.0 }
     }
 
-    /// When (s) the acceleration has ended for good; infinity for motions that go on.
+    /// Returns the time (s) at which the acceleration ends; infinity for motions that continue.
     pub fn end(&self) -> f64 {
         match *self {
             Self::Cruise(_) => 0.0,
@@ -78,7 +78,7 @@ impl Shake {
         }
     }
 
-    /// Acceleration (m/s²); at its end that from before.
+    /// Returns the acceleration (m/s²); at the end time that from before.
     pub fn acceleration(&self, t: f64) -> f64 {
         if t > self.end() {
             return 0.0;
@@ -95,7 +95,7 @@ impl Shake {
         }
     }
 
-    /// Displacement (m) and velocity (m/s).
+    /// Returns displacement (m) and velocity (m/s).
     pub fn place(&self, t: f64) -> (f64, f64) {
         let during = t.min(self.end());
         let (x, v) = match *self {
@@ -134,7 +134,7 @@ impl Drive<Planar> for Shake {
     }
 }
 
-/// A horizontal motion with a vertical one.
+/// A horizontal motion combined with a vertical one.
 pub struct Both {
     /// Along `x`.
     pub x: Shake,
@@ -149,7 +149,7 @@ impl Drive<Planar> for Both {
     }
 }
 
-/// A record: acceleration straight between samples, displacement and velocity its exact integrals.
+/// A record: acceleration linear between samples, displacement and velocity its exact integrals.
 #[derive(Clone, Debug)]
 pub struct Sampled {
     step: f64,
@@ -159,7 +159,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// From samples (m/s²) at a step (s), starting at rest.
+    /// Creates a record from samples (m/s²) at a step (s), starting at rest.
     pub fn new(step: f64, acceleration: Vec<f64>) -> Self {
         let (mut velocity, mut displacement) = (vec![0.0], vec![0.0]);
         for (i, pair) in acceleration.windows(2).enumerate() {
@@ -170,19 +170,19 @@ impl Sampled {
         Self { step, acceleration, velocity, displacement }
     }
 
-    /// Duration (s).
+    /// Returns the duration (s).
     pub fn duration(&self) -> f64 {
         (self.acceleration.len() - 1) as f64 * self.step
     }
 
-    /// The sample before a time and the time since (s).
+    /// Returns the index of the sample before a time, and the time since (s).
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times from 0 on")]
     fn cell(&self, t: f64) -> (usize, f64) {
         let i = ((t / self.step) as usize).min(self.acceleration.len() - 2);
         (i, t - i as f64 * self.step)
     }
 
-    /// Acceleration (m/s²), zero after the end.
+    /// Returns the acceleration (m/s²), zero after the end.
     pub fn acceleration(&self, t: f64) -> f64 {
         if t > self.duration() {
             return 0.0;
@@ -192,7 +192,7 @@ impl Sampled {
     }
 }
 
-/// Displacement and velocity after `s` of a cell in which the acceleration goes from `a` to `b`.
+/// Returns displacement and velocity after `s` of a step in which the acceleration changes linearly from `a` to `b`.
 fn advance(a: f64, b: f64, step: f64, s: f64, v: f64, x: f64) -> (f64, f64) {
     let slope = (b - a) / step;
     (x + v * s + 0.5 * a * s * s + slope * s * s * s / 6.0, v + a * s + 0.5 * slope * s * s)

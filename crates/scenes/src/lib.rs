@@ -1,4 +1,4 @@
-//! Scenes, ground motions and closed forms, each once: for the tests of the dynamics and for the
+//! Scenes, ground motions and closed forms, shared by the tests of the dynamics and the
 //! validation.
 
 pub mod drive;

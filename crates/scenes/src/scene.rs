@@ -1,4 +1,4 @@
-//! Scenes: floors, blocks and discs, run while a function looks at every step.
+//! Scenes: floors, blocks and discs, run with an observer of every step.
 
 use std::ops::ControlFlow;
 
@@ -13,36 +13,36 @@ use barrelstack_dynamics::{
 
 use crate::GRAVITY;
 
-/// Free fall straight down (m/s²).
+/// Gravity straight down (m/s²).
 pub const DOWN: Vec2 = Vec2::new(0.0, -GRAVITY);
 
-/// Free fall as felt on a plane that falls to the right at an angle (rad): a slope is a level floor
-/// under turned gravity.
+/// Returns gravity in the frame of a slope that descends to the right at an angle (rad): the slope is a level floor
+/// under rotated gravity.
 pub fn gravity_on_slope(angle: f64) -> Vec2 {
     Vec2::new(GRAVITY * math::sin(angle), -GRAVITY * math::cos(angle))
 }
 
-/// A shape at the origin of its body.
+/// Places a shape at the origin of its body.
 pub fn centered(shape: Shape) -> Placed<Planar> {
     Placed { surface: shape, offset: Vec2::default(), rotation: Rotation2::identity() }
 }
 
-/// The ground with what is fixed to it.
+/// Returns the ground with surfaces fixed to it.
 pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
     Body { surfaces, ..floor() }
 }
 
-/// A level floor at `z = 0`.
+/// Returns a level floor at `z = 0`.
 pub fn floor() -> Body<Planar> {
     Body::ground(0.0)
 }
 
-/// A pose from a position (m) and an angle (rad).
+/// Returns a pose from a position (m) and an angle (rad).
 pub fn pose(x: f64, z: f64, orientation: f64) -> Pose<Planar> {
     Pose { position: Vec2::new(x, z), orientation }
 }
 
-/// A free disc with one rolling node; `gyration_squared` is k² (m²), ½ r² for a solid one.
+/// Returns a free disc with one rolling node; `gyration_squared` is k² (m²), ½ r² for a solid one.
 pub fn disc(
     name: &str,
     radius: f64,
@@ -57,10 +57,10 @@ pub fn disc(
     }
 }
 
-/// A sharp rectangle about its middle, corners counterclockwise from the lower left.
+/// Returns a sharp rectangle about its center, corners counterclockwise from the lower left.
 ///
 /// # Panics
-/// When a side is not a positive number, which is a mistake in a problem.
+/// If a side is not a positive number, which is a mistake in a problem.
 pub fn rectangle(width: f64, height: f64) -> Polygon {
     match Polygon::rectangle(width, height, 0.0) {
         Ok(polygon) => polygon,
@@ -68,12 +68,12 @@ pub fn rectangle(width: f64, height: f64) -> Polygon {
     }
 }
 
-/// A free rectangular block with sharp corners; nodes are its corners.
+/// Returns a free rectangular block with sharp corners, which are its nodes.
 pub fn block(name: &str, size: (f64, f64), mass: f64, pose: Pose<Planar>) -> Body<Planar> {
     finely_noded_block(name, size, mass, f64::INFINITY, pose)
 }
 
-/// The same with nodes along its whole boundary, no further apart than `spacing` (m).
+/// Returns a block with nodes along its whole boundary, no further apart than `spacing` (m).
 pub fn finely_noded_block(
     name: &str,
     (width, height): (f64, f64),
@@ -90,7 +90,7 @@ pub fn finely_noded_block(
     }
 }
 
-/// Boundary nodes as the nodes of a body whose shape is centered.
+/// Returns boundary nodes as the nodes of a body whose shape is centered.
 pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
     let node = |n: &BoundaryNode| Node {
         position: n.position,
@@ -100,7 +100,7 @@ pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
     Nodes::Fixed(nodes.iter().map(node).collect())
 }
 
-/// Nodes at points (m) of a body.
+/// Returns nodes at points (m) of a body.
 pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     Nodes::Fixed(
         points
@@ -110,7 +110,7 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     )
 }
 
-/// An interface with constants per node.
+/// Returns an interface with constants per node.
 pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw) -> Interface<S> {
     Interface {
         name: "contact".into(),
@@ -122,7 +122,7 @@ pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw)
     }
 }
 
-/// Coulomb friction with one coefficient.
+/// Returns Coulomb friction with one coefficient.
 pub fn coulomb(
     coefficient: f64,
     tangential_stiffness: f64,
@@ -136,7 +136,7 @@ pub fn coulomb(
     }
 }
 
-/// The first node set of one body against the first surface of another, with interface 0.
+/// Pairs the first node set of one body with the first surface of another, with interface 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     ContactPair {
         contactor,
@@ -148,7 +148,7 @@ pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     }
 }
 
-/// Every body with nodes against every other body's first surface; two discs, and two solids, meet once.
+/// Pairs every body with nodes with every other body's first surface; two discs, or two solids, form one pair.
 pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     let round =
         |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. } | Nodes::Whole(_)));
@@ -168,23 +168,23 @@ pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     pairs
 }
 
-/// A model with its state and working memory.
+/// A model with its state and scratch memory.
 pub struct Scene<S: Space = Planar> {
-    /// What does not change.
+    /// The model, constant during a run.
     pub model: Model<S>,
-    /// Where everything is.
+    /// The current state.
     pub state: State<S>,
-    /// The forces there.
+    /// The forces in the current state.
     pub scratch: Scratch<S>,
-    /// How it is integrated; velocity Verlet unless changed.
+    /// Integration method; velocity Verlet by default.
     pub method: Method,
 }
 
 impl<S: Space<Real = f64>> Scene<S> {
-    /// Bodies that all may meet, with one interface.
+    /// Creates a scene of bodies that may all touch, with one interface.
     ///
     /// # Errors
-    /// When the bodies do not make a model.
+    /// If the bodies do not make a valid model.
     pub fn new(
         bodies: Vec<Body<S>>,
         interface: Interface<S>,
@@ -194,31 +194,31 @@ impl<S: Space<Real = f64>> Scene<S> {
         Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
     }
 
-    /// The initial state of a model.
+    /// Creates the initial state of a model.
     pub fn of(model: Model<S>) -> Self {
         let state = State::initial(&model);
         let scratch = Scratch::new(&model);
         Self { model, state, scratch, method: Method::VelocityVerlet }
     }
 
-    /// Settles the scene.
+    /// Settles the scene and returns it.
     ///
     /// # Errors
-    /// When it does not stand.
+    /// If it does not come to rest.
     pub fn settled(mut self, tolerance: f64) -> Result<Self, SettleError> {
         self.settle(tolerance)?;
         Ok(self)
     }
 
-    /// Settles, and says how.
+    /// Settles the scene and returns the result.
     ///
     /// # Errors
-    /// When it does not stand.
+    /// If it does not come to rest.
     pub fn settle(&mut self, tolerance: f64) -> Result<Settled, SettleError> {
         settle(&self.model, &mut self.state, &mut self.scratch, tolerance)
     }
 
-    /// The scene with another method.
+    /// Sets another method.
     pub fn by(&mut self, method: Method) -> &mut Self {
         self.method = method;
         self
@@ -227,7 +227,7 @@ impl<S: Space<Real = f64>> Scene<S> {
     /// Runs to a time (s).
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn run(
         &mut self,
         drive: &impl Drive<S>,
@@ -237,10 +237,10 @@ impl<S: Space<Real = f64>> Scene<S> {
         self.watch(drive, time_step, end_time, |_, _, _| ControlFlow::Continue(()))
     }
 
-    /// Runs to a time (s) while `seen` sees every accepted step.
+    /// Runs to a time (s), calling `seen` after every accepted step.
     ///
     /// # Errors
-    /// When the numbers break down.
+    /// If the run fails numerically.
     pub fn watch(
         &mut self,
         drive: &impl Drive<S>,
@@ -255,7 +255,7 @@ impl<S: Space<Real = f64>> Scene<S> {
 }
 
 impl Scene {
-    /// Place of a body along `x` (m) relative to body 0, the ground.
+    /// Returns the position of a body along `x` (m) relative to body 0, the ground.
     pub fn relative(&self, body: usize) -> f64 {
         self.state.poses[body].position.x - self.state.poses[0].position.x
     }

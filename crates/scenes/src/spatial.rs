@@ -1,45 +1,45 @@
-//! Bodies of scenes in space: floors, balls, blocks on feet, barrels.
+//! Bodies of spatial scenes: floors, balls, blocks on feet, barrels.
 
 use barrelstack_dynamics::solid::{Ball, Hull, Rounded};
 use barrelstack_dynamics::{
     Body, Motion, Node, Nodes, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Vec3, math,
 };
 
-/// Free fall (m/s²) as felt on a plane that falls at an angle (rad) in the direction `heading` (rad, from
+/// Returns gravity (m/s²) in the frame of a slope that descends at an angle (rad) in the direction `heading` (rad, from
 /// `x` toward `y`).
 pub fn gravity_on_slope(gravity: f64, angle: f64, heading: f64) -> Vec3 {
     let along = gravity * math::sin(angle);
     Vec3::new(along * math::cos(heading), along * math::sin(heading), -gravity * math::cos(angle))
 }
 
-/// A turn (rad) about the upright.
+/// Returns a rotation (rad) about the vertical.
 pub fn yaw(angle: f64) -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, 0.0, angle))
 }
 
-/// A solid at the center of mass of its body.
+/// Places a solid at the center of mass of its body.
 pub fn centered(surface: Solid) -> Placed<Spatial> {
     Placed { surface, offset: Vec3::default(), rotation: Rotation3::identity() }
 }
 
-/// A free body without boundaries, of a mass (kg) and principal moments of inertia (kg·m²).
+/// Returns a free body without boundaries, of a mass (kg) and principal moments of inertia (kg·m²).
 pub fn free(name: &str, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
     Body::free(name, mass, inertia, Pose { position, orientation: Quaternion::identity() })
 }
 
-/// The ground with what is fixed to it.
+/// Returns the ground with surfaces fixed to it.
 pub fn ground_of(surfaces: Vec<Placed<Spatial>>) -> Body<Spatial> {
-    // No force moves it, so its mass is of no account.
+    // Its motion is prescribed, so its mass is irrelevant.
     let body = free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::default());
     Body { motion: Motion::Prescribed, surfaces, ..body }
 }
 
-/// A level floor at `z = 0`.
+/// Returns a level floor at `z = 0`.
 pub fn floor() -> Body<Spatial> {
     ground_of(vec![centered(Solid::HalfSpace)])
 }
 
-/// A free homogeneous ball.
+/// Returns a free homogeneous ball.
 pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
     let inertia = 0.4 * mass * radius * radius;
     Body {
@@ -49,7 +49,7 @@ pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
     }
 }
 
-/// Points (m) of a body that touch: feet, legs, corners.
+/// Returns contact points (m) of a body: feet, legs, corners.
 pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
     Nodes::Fixed(
         points
@@ -59,12 +59,12 @@ pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
     )
 }
 
-/// The four corners (m) of a rectangle of half sides `x` and `y` at the height `z`.
+/// Returns the four corners (m) of a rectangle of half sides `x` and `y` at the height `z`.
 pub fn corners(x: f64, y: f64, z: f64) -> [Vec3; 4] {
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| Vec3::new(a * x, b * y, z))
 }
 
-/// A free capsule or barrel that touches, and can be touched, with its center of mass in its middle.
+/// Returns a free capsule or barrel, contactor and target, with its center of mass in the middle.
 pub fn solid(name: &str, hull: Hull, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
     Body {
         surfaces: vec![centered(hull.surface())],

@@ -1,4 +1,4 @@
-//! Closed forms, each with where it comes from.
+//! Closed forms, each with its source.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,21 +6,21 @@ use barrelstack_dynamics::math::{acos, acosh, atan, atan2, cos, exp, sin};
 
 use crate::GRAVITY;
 
-/// p = √(3g/4R) (rad/s) of a rectangle of half-diagonal R (m) (Housner 1963).
+/// Returns p = √(3g/4R) (rad/s) of a rectangle of half-diagonal R (m) (Housner 1963).
 pub fn rocking_rate(radius: f64) -> f64 {
     (0.75 * GRAVITY / radius).sqrt()
 }
 
-/// η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is kept
+/// Returns η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is conserved
 /// (Housner 1963).
 pub fn housner_restitution(alpha: f64) -> f64 {
     1.0 - 1.5 * sin(alpha) * sin(alpha)
 }
 
-/// p times the time from rest at a lean of `share · α` to upright, exact for any α.
+/// Returns p times the time from rest at a rotation of `share · α` to upright, exact for any α.
 ///
-/// From energy, θ'²/2p² = cos(α − θ₀) − cos(α − θ), with θ = θ₀ (1 − s²), which takes the root out
-/// of the integrand, by the midpoint rule.
+/// From energy, θ'²/2p² = cos(α − θ₀) − cos(α − θ), with θ = θ₀ (1 − s²), which removes the root from
+/// the integrand, by the midpoint rule.
 pub fn quarter_period(alpha: f64, share: f64) -> f64 {
     let start = share * alpha;
     let parts = 20_000;
@@ -28,21 +28,21 @@ pub fn quarter_period(alpha: f64, share: f64) -> f64 {
         .map(|i| {
             let s = (f64::from(i) + 0.5) / f64::from(parts);
             let theta = start * (1.0 - s * s);
-            // The difference of cosines, free of cancellation.
+            // The difference of cosines without cancellation.
             let fall = 2.0 * sin(alpha - 0.5 * (start + theta)) * sin(0.5 * (start - theta));
             2.0 * start * s / (2.0 * fall).sqrt() / f64::from(parts)
         })
         .sum()
 }
 
-/// The same for a slender block: arcosh[1/(1 − φ)] (Housner 1963).
+/// Returns the quarter period times p of a slender block: arcosh[1/(1 − φ)] (Housner 1963).
 pub fn slender_quarter_period(share: f64) -> f64 {
     acosh(1.0 / (1.0 - share))
 }
 
-/// Peak lean over α after an impact that keeps `ratio` = η² of the energy, exact for any α.
+/// Returns the peak rotation over α after an impact that keeps `ratio` = η² of the energy, exact for any α.
 pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
-    // cos(α − θ) − cos α shrinks by the ratio; written with half angles.
+    // cos(α − θ) − cos α is reduced by the ratio; written with half angles.
     let height = |theta: f64| 2.0 * sin(alpha - 0.5 * theta) * sin(0.5 * theta);
     let left = ratio * height(share * alpha);
     let (mut low, mut high) = (0.0, share * alpha);
@@ -53,23 +53,23 @@ pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
     0.5 * (low + high) / alpha
 }
 
-/// Strength over gα at which a rectangular push of `p t₁` overturns a slender block (Housner 1963).
+/// Returns the strength over gα at which a rectangular pulse of `p t₁` overturns a slender block (Housner 1963).
 pub fn rectangular_overturning(rate_times_duration: f64) -> f64 {
     1.0 / (1.0 - exp(-rate_times_duration))
 }
 
-/// Strength over gα at which a half-sine of ω/p = ρ overturns a slender block: the root of
+/// Returns the strength over gα at which a half-sine of ω/p = ρ overturns a slender block: the root of
 /// cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
 pub fn half_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) + exp(-(PI - psi) / ratio))
 }
 
-/// The same for one sine without impact: cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ.
+/// Returns that strength for one sine without impact: cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ.
 pub fn one_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) - exp(-(TAU - psi) / ratio))
 }
 
-/// 1/sin of the angle at which `side(ψ) = ρ sin ψ`, ψ below π/2.
+/// Returns 1/sin of the angle at which `side(ψ) = ρ sin ψ`, ψ below π/2.
 fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (1e-9, FRAC_PI_2);
     for _ in 0..100 {
@@ -79,24 +79,24 @@ fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
     1.0 / sin(0.5 * (low + high))
 }
 
-/// The same for one cosine without impact: (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
+/// Returns that strength for one cosine without impact: (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
 pub fn one_cosine_overturning(ratio: f64) -> f64 {
     (1.0 + ratio * ratio) / (1.0 - exp(-TAU / ratio))
 }
 
-/// The friction coefficient from which a block of slenderness `s` rocks without sliding on a base
+/// Returns the friction coefficient from which a block of slenderness `s` rocks without sliding on a base
 /// that accelerates at `β g`, β > s (Shao and Tung 1999, Taniguchi 2002).
 pub fn least_friction_for_rocking(beta: f64, s: f64) -> f64 {
     (beta * (1.0 + 4.0 * s * s) + 3.0 * s) / (4.0 + s * s + 3.0 * beta * s)
 }
 
-/// Way (m) of a block of yield acceleration `N g` in a rectangular pulse `A g` (Newmark 1965).
+/// Returns the slip (m) of a block of yield acceleration `N g` in a rectangular pulse `A g` (Newmark 1965).
 pub fn slide_in_rectangular_pulse(a: f64, n: f64, duration: f64) -> f64 {
     let speed = a * GRAVITY * duration;
     speed * speed / (2.0 * GRAVITY * n) * (1.0 - n / a)
 }
 
-/// The same in a half-sine pulse, by integration.
+/// Returns the slip (m) in a half-sine pulse, by integration.
 pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     let omega = PI / duration;
     let start = atan(n / (a * a - n * n).sqrt());
@@ -107,18 +107,18 @@ pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     way + speed * speed / (2.0 * n * GRAVITY)
 }
 
-/// Relative amplitude (m) of a block that slides all the while on ground that shakes with
+/// Returns the relative amplitude (m) of a block that slides continuously on ground that shakes with
 /// `A g sin ωt` (Den Hartog 1931).
 pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     let share = PI * n / (2.0 * a);
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
 }
 
-/// Restitution under gravity of a node with a damper on approach only, none when the mass stays; and
-/// its deepest penetration in units of v₀/ω.
+/// Returns the restitution under gravity of a node with a damper on approach only, `None` if the mass does not lift
+/// off, and its deepest penetration in units of v₀/ω.
 ///
 /// `gravity_number` is Γ = g/(ωv₀). Approach is damped motion about the sunken rest position Γ (in
-/// units of v₀/ω), the way out undamped: e = √(x² − 2Γx) with x the deepest penetration.
+/// units of v₀/ω), rebound is undamped: e = √(x² − 2Γx) with x the deepest penetration.
 pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option<f64>, f64) {
     let (zeta, gamma) = (damping_ratio, gravity_number);
     let omega = (1.0 - zeta * zeta).sqrt();
@@ -130,7 +130,7 @@ pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option
     ((square > 0.0).then(|| square.sqrt()), deepest)
 }
 
-/// Γ from which a mass stays down.
+/// Returns the Γ from which a mass does not lift off.
 pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
@@ -144,7 +144,7 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// ω t of a contact with a damper on approach only: a damped way in, an undamped quarter out.
+/// Returns ω t of a contact with a damper on approach only: a damped approach, an undamped quarter period of rebound.
 pub fn contact_phase(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let way_in = if (zeta - 1.0).abs() < 1e-9 {
@@ -157,17 +157,17 @@ pub fn contact_phase(damping_ratio: f64) -> f64 {
     way_in + FRAC_PI_2
 }
 
-/// Share of the base acceleration that a rolling body of `ratio` = k²/r² takes.
+/// Returns the fraction of the base acceleration that a rolling body of `ratio` = k²/r² attains.
 pub fn rolling_share(ratio: f64) -> f64 {
     ratio / (1.0 + ratio)
 }
 
-/// ω (rad/s) of small rolling swings of a cylinder in a round cradle, without slip.
+/// Returns ω (rad/s) of small rolling oscillations of a cylinder in a round cradle, without slip.
 pub fn swing_in_cradle(cradle_radius: f64, radius: f64, ratio: f64) -> f64 {
     (GRAVITY / ((cradle_radius - radius) * (1.0 + ratio))).sqrt()
 }
 
-/// Farthest overhang (m) of `n` equal bricks of a length (m): the harmonic stack.
+/// Returns the largest overhang (m) of `n` equal bricks of a length (m): the harmonic stack.
 pub fn overhang(n: u32, length: f64) -> f64 {
     0.5 * length * (1..=n).map(|i| 1.0 / f64::from(i)).sum::<f64>()
 }

@@ -1,4 +1,4 @@
-//! Discs and blocks thrown together at random: a scene for properties that hold everywhere.
+//! Random heaps of discs and blocks: a scene for properties that hold in general.
 
 use barrelstack_dynamics::{Body, Interface, NormalLaw, Planar, Twist, Vec2};
 
@@ -8,7 +8,7 @@ use crate::scene::{coulomb, disc, finely_noded_block, floor, interface, pose};
 pub struct Random(pub u64);
 
 impl Random {
-    /// A number in a range.
+    /// Returns a number in a range.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -18,8 +18,8 @@ impl Random {
     }
 }
 
-/// A floor, discs and blocks above it, in a loose heap that falls, turns and collides; blocks with nodes no
-/// further apart than `spacing` (m), at their corners alone where that is infinite.
+/// Returns a floor and a loose heap of discs and blocks above it, which fall, rotate and collide; blocks have nodes no
+/// further apart than `spacing` (m), or only at their corners if that is infinite.
 pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     let mut random = Random(seed);
     let mut bodies = vec![floor()];
@@ -45,7 +45,7 @@ pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// A speed-gap law and Coulomb friction that go with these bodies; `factor` multiplies stiffness, `damping`
+/// Returns a speed-gap law and Coulomb friction that suit these bodies; `factor` multiplies stiffness, `damping`
 /// the dampers.
 pub fn rough(factor: f64, damping: f64) -> Interface<Planar> {
     interface(

@@ -6,7 +6,7 @@ use barrelstack_scenes::theory::{
     slide_in_rectangular_pulse, steady_slide_amplitude,
 };
 
-/// The gravity (m/s²) for which the table of sliding blocks was made; all ways are in proportion to it.
+/// The gravity (m/s²) of the table of sliding blocks; all displacements are proportional to it.
 const TABLE_GRAVITY: f64 = 9.81;
 
 #[test]

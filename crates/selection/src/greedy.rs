@@ -8,7 +8,7 @@ use crate::target::SelectionTarget;
 const TRIALS: usize = 5;
 /// Weight of the error of the standard deviation relative to that of the mean.
 const SPREAD_WEIGHT: f64 = 2.0;
-/// The same weight for a target without spread, which selection by distance from the mean cannot reach.
+/// Weight of that error for a target without spread, which selection by distance from the mean cannot reach.
 const NO_SPREAD_WEIGHT: f64 = 0.1;
 /// Largest number of rounds of exchanges; they end when no exchange helps.
 const ROUNDS: usize = 20;

@@ -1,9 +1,9 @@
-//! Writes the page that holds the program: `page MODULE FOLDER TITLE FILE`.
+//! Writes the page that contains the program: `page MODULE FOLDER TITLE FILE`.
 //!
 //! The folder has the body (`page.html`), the style sheet (`page.css`), the scripts (`*.js`, of which `main.js` comes
-//! last), and what its workers run (`worker.js`).
-//! What the engine says of the stack that the page opens with is asked here and held by the page, so that it stands
-//! there before there is an engine.
+//! last), and the script of its workers (`worker.js`).
+//! The engine's answers for the first stack are computed here and embedded, so that the page shows it before the
+//! engine has started.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use barrelstack_report::Shell;
 use barrelstack_web::{Ask, Request, answered};
 use serde_json::{Value, json};
 
-/// The scenario that the page opens with.
+/// The first scenario of the page.
 const FIRST: &str = "demo-napa";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -50,14 +50,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Bytes in gzip, as small as that gets.
+/// Compresses bytes with gzip at the highest level.
 fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     let mut packed = Vec::new();
     zopfli::compress(zopfli::Options::default(), zopfli::Format::Gzip, bytes, &mut packed)?;
     Ok(packed)
 }
 
-/// What the engine says of the first stack, and what there is to choose from.
+/// Returns the engine's answers for the first stack, and the catalog.
 fn first() -> Result<Value, Box<dyn std::error::Error>> {
     let scenario = builtin::get(FIRST).ok_or("the first scenario is not there")?;
     let asked = |ask| -> Result<Value, Box<dyn std::error::Error>> {

@@ -1,34 +1,34 @@
-//! What became of a variant, as it goes from one engine to another: what a verdict reads, to the last bit.
+//! Results of variants in transfer between engines: what a verdict needs, bit-exact.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::outcome::{CollapseMode, Outcome};
 use serde::{Deserialize, Serialize};
 
-/// What became of a variant, as far as a verdict on all of them needs it.
+/// The result of a variant, as far as a verdict on all variants needs it.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// What happened.
+    /// Outcome.
     outcome: Ended,
-    /// When (s) the first barrel had fallen.
+    /// Time (s) at which the first barrel has fallen.
     first_fall: Option<f64>,
-    /// How many barrels there are.
+    /// Number of barrels.
     barrels: usize,
-    /// When (s) each barrel had fallen, by name.
+    /// Time (s) at which each barrel has fallen, by name.
     falls: Vec<(String, Option<f64>)>,
-    /// Largest displacement of the top against the ground, over the height of the stack.
+    /// Largest displacement of the top relative to the ground, over the height of the stack.
     drift: Option<f64>,
-    /// Largest load on a stave over its capacity, where one is stated.
+    /// Largest load on a stave over its capacity, if stated.
     stave_utilization: Option<f64>,
-    /// First sentence of what its reader should know.
+    /// The first warning.
     warning: Option<String>,
-    /// Time (s) of the motion that was left at the end.
+    /// Remaining time (s) of the motion at the end.
     cut: Option<f64>,
-    /// When (s) it ended.
+    /// End time (s).
     end_time: Option<f64>,
 }
 
-/// An outcome, or why there is none.
+/// An outcome, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 enum Ended {
@@ -41,7 +41,7 @@ enum Ended {
 }
 
 impl Case {
-    /// Of a result.
+    /// Converts a result.
     pub fn of(result: &CaseResult) -> Self {
         Self {
             outcome: match result.outcome.clone() {
@@ -66,7 +66,7 @@ impl Case {
         }
     }
 
-    /// The result again, with nothing in it that a verdict does not read; its trail goes by itself.
+    /// Converts back to a result with the data that a verdict needs; the trail is transferred separately.
     pub(crate) fn result(self) -> Result<CaseResult, String> {
         let outcome = match self.outcome {
             Ended::Stable => Ok(Outcome::Stable),

@@ -1,4 +1,4 @@
-//! What could be put on a stack, one device at a time.
+//! Devices for a stack, one at a time.
 
 use barrelstack::Scenario;
 use barrelstack::device::DEVICES;
@@ -7,12 +7,12 @@ use barrelstack::scenario::MotionSource;
 use barrelstack::variants::planes;
 use serde::Serialize;
 
-/// The devices of a stack, and those that it could have.
+/// The devices on a stack, and those that it could have.
 #[derive(Serialize)]
 pub(crate) struct Devices {
-    /// What those are called that it has, and their tables in `[stack]`.
+    /// Names of the devices present, and their tables in `[stack]`.
     present: Vec<Known>,
-    /// Settings that go on it as it is, of devices that it has not.
+    /// Applicable settings of devices that the stack does not have.
     candidates: Vec<Candidate>,
 }
 
@@ -26,14 +26,14 @@ struct Known {
 #[derive(Serialize)]
 struct Candidate {
     device: &'static str,
-    /// In words.
+    /// Description.
     name: String,
-    /// Such as `stack.lid.levels=1`.
+    /// Changes of the scenario, such as `stack.lid.levels=1`.
     changes: Vec<String>,
 }
 
 impl Devices {
-    /// Of a scenario, whose settings are tried without its motion.
+    /// Lists the devices of a scenario; candidate settings are checked at rest, without its motion.
     pub(crate) fn of(scenario: &Scenario) -> Self {
         let mut still = scenario.clone();
         still.motion.source = MotionSource::None;
@@ -63,7 +63,7 @@ impl Devices {
     }
 }
 
-/// The table of a change of the stack.
+/// Returns the table that a change of the stack refers to.
 fn table(change: &str) -> Option<String> {
     Some(change.strip_prefix("stack.")?.split_once('.')?.0.to_owned())
 }

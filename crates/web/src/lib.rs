@@ -1,33 +1,33 @@
-//! The engine for a page: a request in, a document out.
+//! The engine of a page: a request in, a document out.
 //!
-//! A request is four bytes (the length of what follows, least first), a JSON object, and the bytes of the
-//! records that it names, one after the other:
+//! A request is four bytes (the length of the following object, little-endian), a JSON object, and the bytes of its
+//! records, one after the other:
 //!
 //! ```text
 //! { "ask": "summary", "scenario": "schema = 1 …", "name": "mine.toml", "set": ["stack.levels=5"],
 //!   "records": [["site.at2", 81920]] }
 //! ```
 //!
-//! What comes back is what the command writes of the same scenario, byte for byte but for the time on the clock:
-//! nothing is opened, asked of the system, or sent.
-//! In a page the door is [four functions and one import](https://webassembly.github.io/spec/core/), written by
-//! hand, so that no glue is generated:
+//! The answer equals the output of the command for the same scenario, byte for byte except for times of computation:
+//! nothing is opened, requested from the system, or sent.
+//! The interface to a page is [four functions and one import](https://webassembly.github.io/spec/core/), written by
+//! hand, so that no glue code is generated:
 //!
-//! | export | what it does |
+//! | export | purpose |
 //! |---|---|
-//! | `room(length) -> address` | makes room for a request, which the page then writes there |
-//! | `run() -> status` | does what is asked: 0 done, 1 refused, which the answer tells in words |
-//! | `answer() -> address` | where the answer is, until the next call of `room` |
-//! | `answer_length() -> length` | how many bytes it has |
+//! | `room(length) -> address` | allocates a request, which the page then writes there |
+//! | `run() -> status` | handles the request: 0 done, 1 refused, with the reason in the answer |
+//! | `answer() -> address` | address of the answer, until the next call of `room` |
+//! | `answer_length() -> length` | its length in bytes |
 //!
-//! | import | what it does |
+//! | import | purpose |
 //! |---|---|
-//! | `page.told(done, of) -> stop` | hears how far the work is, and stops it where it gives anything but 0 |
+//! | `page.told(done, of) -> stop` | progress callback; any result but 0 stops the work |
 //!
-//! A panic is a trap, and `answer` then has its text.
+//! A panic is a trap, after which `answer` returns its text.
 //!
 //! The variants of a stack may be shared among several engines: each runs some of them ([`Ask::Variants`]), and one
-//! says what all results so far say together ([`Ask::Verdict`]), with the bits of one that runs them all.
+//! combines all results so far ([`Ask::Verdict`]), bit-identical to a single engine that runs them all.
 
 mod cases;
 mod devices;
@@ -52,43 +52,43 @@ pub use cases::Case;
 pub use records::Reading;
 use verdict::Verdict;
 
-/// What a page may ask for.
+/// The kind of a request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ask {
-    /// The scenarios that come with the program, but those in space: a JSON list of pairs of name and text.
+    /// The bundled scenarios, except those in space: a JSON list of pairs of name and text.
     #[default]
     Scenarios,
     /// The barrels and racks of the catalog, as JSON.
     Catalog,
-    /// The stack as it is put up, and all that the scenario says, before anything is run, as JSON.
+    /// The assembled stack and all settings of the scenario before a run, as JSON.
     Look,
-    /// The devices on the stack, and the settings of others that go on it, in words and as changes, as JSON.
+    /// The devices on the stack, and the applicable settings of others with their changes of the scenario, as JSON.
     Devices,
-    /// Which of the files that are given as records are components of one, and which hold none, as JSON; then the
-    /// bytes of what is of several files. Of a scenario nothing is asked.
+    /// The given record files, grouped into the components of one record, and files without a motion, as JSON; then the
+    /// bytes of motions from several files. Needs no scenario.
     Records,
-    /// A variant in motion, by the first of the numbers, as JSON: 0 is the stack as it is stated.
+    /// A variant in motion, by the first of the numbers, as JSON: 0 is the stack as stated.
     Show,
-    /// What became of the variants of some numbers in each plane, as JSON; then where their barrels were, as bytes
-    /// that a report of them needs.
+    /// The results of the numbered variants in each plane, as JSON; then the trails of their barrels, as bytes
+    /// for a report.
     Variants,
-    /// What results say together, as JSON: of numbers, the first of which is 0, with their results in each plane.
+    /// The verdict of given results, as JSON: of numbers, the first of which is 0, with their results in each plane.
     Verdict,
     /// The summary of a run and its variants, as JSON.
     Summary,
-    /// The report of the same, as a page.
+    /// The report of a run and its variants, as a page.
     Report,
-    /// All files that the command writes of the same, the report among them: in the form of a request, with
-    /// their names and lengths as its head. Where results of all variants are given, none is run again.
+    /// All files that the command writes for them, including the report: in the form of a request, whose head lists
+    /// their names and lengths. If the results of all variants are given, none is run again.
     Files,
 }
 
-/// What is asked.
+/// A request.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
-    /// What for.
+    /// Its kind.
     pub ask: Ask,
     /// The text of the scenario.
     #[serde(default)]
@@ -96,47 +96,47 @@ pub struct Request {
     /// Its name in errors.
     #[serde(default)]
     pub name: String,
-    /// What is set in it, such as `stack.levels=5`.
+    /// Overrides, such as `stack.levels=5`.
     #[serde(default)]
     pub set: Vec<String>,
-    /// The records that are at hand: the path by which the scenario names it, and how many bytes it has.
+    /// The records provided: the path by which the scenario refers to each, and its length in bytes.
     #[serde(default)]
     pub records: Vec<(String, usize)>,
     /// Numbers of variants.
     #[serde(default)]
     pub numbers: Vec<u32>,
-    /// What became of them in each plane.
+    /// Their results in each plane.
     #[serde(default)]
     pub cases: Vec<Vec<Case>>,
-    /// How many bytes follow the records that tell where their barrels were.
+    /// Length in bytes of the trails of the barrels, which follow the records.
     #[serde(default)]
     pub trails: usize,
-    /// What files do not say of themselves.
+    /// Information that record files lack.
     #[serde(default)]
     pub reading: Reading,
 }
 
 impl Request {
-    /// A request for a scenario by its text, and nothing else.
+    /// Creates a request for a scenario by its text.
     pub fn of(ask: Ask, scenario: &str) -> Self {
         Self { ask, scenario: scenario.to_owned(), ..Self::default() }
     }
 
-    /// The request in bytes, with those of its records in their order.
+    /// Encodes the request, followed by its records in their order.
     pub fn to_bytes(&self, records: &[&[u8]]) -> Vec<u8> {
-        // Only maps with keys that are not text could fail, and there is none.
+        // Serialization fails only for maps with keys that are not text, and there are none.
         enveloped(&serde_json::to_vec(self).unwrap_or_default(), records)
     }
 }
 
-/// A head after its length, and what follows it.
+/// Encodes a head after its length, then the rest.
 fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
     let length = u32::try_from(head.len()).unwrap_or(u32::MAX);
     [&length.to_le_bytes(), head, &rest.concat()].concat()
 }
 
-/// Does what is asked, before an observer, who hears how much of how much is done and may stop the work: what
-/// was seen until then is returned.
+/// Handles a request; `observer(done, of)` reports progress and may stop the work, whose results up to then are
+/// returned.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -150,7 +150,7 @@ fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
 /// ```
 ///
 /// # Errors
-/// In words, when the request cannot be read, the scenario is wrong, or it cannot be run.
+/// A message if the request cannot be read, the scenario is wrong, or it cannot be run.
 pub fn answered(
     request: &[u8],
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
@@ -158,7 +158,7 @@ pub fn answered(
     let Opened { request, records, trails } = read(request)?;
     if request.ask == Ask::Scenarios {
         let text = |name| Some((name, builtin::get(name)?));
-        // The page runs planes alone.
+        // The page supports only plane scenarios.
         let in_a_plane =
             |name: &&str| Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial());
         return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
@@ -216,7 +216,7 @@ pub fn answered(
     }
 }
 
-/// What became of some variants, in each plane, and where their barrels were.
+/// Runs some variants in each plane; returns their results and the trails of their barrels.
 fn some(
     planes: &[Plane],
     numbers: &[u32],
@@ -242,9 +242,9 @@ fn some(
 #[derive(Serialize)]
 struct Shown<'a> {
     variant: u32,
-    /// What happened, in sentences.
+    /// The result in sentences.
     sentences: Vec<String>,
-    /// The outcome of each plane, that of the worse first.
+    /// The outcome of each plane, the worse first.
     outcomes: Vec<&'a barrelstack::summary::OutcomeSummary>,
     warnings: &'a [String],
     stage: Fragment,
@@ -272,7 +272,7 @@ fn words_of(error: impl Display) -> String {
     error.to_string()
 }
 
-/// An error of a run with the place in the scenario that it is about.
+/// Formats an error of a run with the place in the scenario that it concerns.
 fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     match scenario.place_of(&error.fields()) {
         Some(place) => format!("{place}: {error}"),
@@ -280,10 +280,10 @@ fn placed(error: &RunFailure, scenario: &Scenario) -> String {
     }
 }
 
-/// A request with what follows it.
+/// A decoded request with its attached data.
 struct Opened<'a> {
     request: Request,
-    /// By their paths.
+    /// By path.
     records: BTreeMap<String, &'a [u8]>,
     trails: &'a [u8],
 }

@@ -1,4 +1,4 @@
-//! What can be said of a scenario before it is run, and what there is to choose from.
+//! A scenario before it is run, and the catalog.
 
 use barrelstack::check::{Checked, check};
 use barrelstack::motion::GroundMotion;
@@ -9,7 +9,7 @@ use barrelstack::{RunFailure, report};
 use barrelstack_report::{Fragment, fragment};
 use serde::Serialize;
 
-/// What there is to choose from.
+/// The catalog.
 #[derive(Serialize)]
 pub(crate) struct Catalog {
     barrels: Vec<Known>,
@@ -38,25 +38,25 @@ impl Catalog {
 #[derive(Serialize)]
 pub(crate) struct Looked {
     title: String,
-    /// How many variants there are in each plane.
+    /// Number of variants in each plane.
     variants: u32,
     /// The scenario with every default written out.
     resolved: String,
-    /// Every value of it.
+    /// All its values.
     settings: Vec<Stated>,
-    /// What was found of each plane.
+    /// Results of the check of each plane.
     checked: Vec<Checked>,
-    /// What the devices on it are called.
+    /// Names of the devices on the stack.
     devices: Vec<&'static str>,
-    /// Steps of one variant in all planes times the bodies that each moves, to tell how long it takes.
+    /// Steps of one variant in all planes times the number of moving bodies, to estimate its duration.
     work: f64,
-    /// When (s) a first picture may end that shows the stack under way, while the whole run is made; none where
-    /// nothing shakes it.
+    /// End (s) of a first picture that shows the stack in motion while the whole run is computed; `None` without
+    /// ground motion.
     opening: Option<f64>,
     stage: Fragment,
 }
 
-/// Adds the fields that the tables at hand may have and have not.
+/// Adds the absent fields of the tables present.
 fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'static Section) {
     for field in section.fields {
         let path =
@@ -68,7 +68,7 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
                     absent(list, present, &path, inner);
                 }
             }
-            // The title and the like are no part of what is run.
+            // The title and other top-level texts do not affect a run.
             None if path.contains('.') && !present.contains(&path) => list.push(Stated {
                 path,
                 value: String::new(),
@@ -80,11 +80,12 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
     }
 }
 
-/// Share of its peak at which the ground moves strongly, as for a player, and how long (s) an opening goes on then.
+/// Fraction of the peak from which ground motion counts as strong, as in a player, and duration (s) of an opening from
+/// then.
 const STRONG: f64 = 0.1;
 const UNDER_WAY: f64 = 3.0;
 
-/// When (s) the opening of a motion ends.
+/// Returns the time (s) at which the opening of a motion ends.
 fn opening(motion: &GroundMotion) -> f64 {
     let limit = STRONG * motion.pga();
     let mut time = 0.0;

@@ -1,4 +1,4 @@
-//! The door to a page: four functions and one import over linear memory.
+//! The interface to a page: four functions and one import over linear memory.
 #![expect(unsafe_code, reason = "names that the page knows, and a function that it has")]
 
 use std::cell::RefCell;
@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Hears how much of how much is done; anything but 0 stops the work.
+    /// Progress callback; any result but 0 stops the work.
     safe fn told(done: f64, of: f64) -> i32;
 }
 
@@ -19,7 +19,7 @@ fn say(answer: Vec<u8>) {
     ANSWER.with(|kept| *kept.borrow_mut() = answer);
 }
 
-/// Makes room for a request of so many bytes and gives its address; the last answer is gone.
+/// Allocates a request of `length` bytes and returns its address; discards the last answer.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     std::panic::set_hook(Box::new(|panic| say(panic.to_string().into_bytes())));
@@ -31,7 +31,7 @@ pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Does what is asked: 0 done, 1 refused.
+/// Handles the request: 0 done, 1 refused.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn run() -> u32 {
     let request = REQUEST.with(RefCell::take);
@@ -43,13 +43,13 @@ pub(crate) extern "C" fn run() -> u32 {
     status
 }
 
-/// Where the answer is.
+/// Returns the address of the answer.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn answer() -> *const u8 {
     ANSWER.with(|answer| answer.borrow().as_ptr())
 }
 
-/// How many bytes the answer has.
+/// Returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn answer_length() -> usize {
     ANSWER.with(|answer| answer.borrow().len())

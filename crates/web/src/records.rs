@@ -1,4 +1,4 @@
-//! Files that a reader gives at once: which of them are components of one record, and which hold none.
+//! Record files given together: grouped into motions, and files without a motion.
 
 use std::collections::BTreeMap;
 
@@ -8,35 +8,35 @@ use barrelstack::motion::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What the reader says of files that do not say it themselves.
+/// Information supplied by the user for files that lack it.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Reading {
     /// The unit of acceleration, such as "g".
     pub unit: Option<String>,
-    /// The step (s).
+    /// Time step (s).
     pub time_step: Option<f64>,
 }
 
-/// What files are.
+/// The contents of files.
 #[derive(Default, Serialize)]
 pub(crate) struct Files {
-    /// The motions that they hold; the bytes of those that are no file as it was given follow in this order.
+    /// The motions in them; the bytes of combined motions follow in this order.
     motions: Vec<Motion>,
-    /// Those that hold none.
+    /// Files without a motion.
     refused: Vec<Refused>,
 }
 
 /// A motion.
 #[derive(Serialize)]
 pub(crate) struct Motion {
-    /// A file for it.
+    /// Name of a file for it.
     name: String,
-    /// The files that it is of.
+    /// Its source files.
     files: Vec<String>,
-    /// What each of its channels is, in words.
+    /// Description of each channel.
     channels: Vec<String>,
-    /// How many bytes follow: one file for all; 0 where it is a file as it was given.
+    /// Number of bytes that follow: one file for all channels; 0 if it is a single file as given.
     length: usize,
 }
 
@@ -45,14 +45,14 @@ pub(crate) struct Motion {
 struct Refused {
     file: String,
     why: String,
-    /// What a reader of the page can say of it, so that it can be read: "unit", "step", "unit or sensitivity" or "sensitivity".
+    /// Information that would make it readable: "unit", "step", "unit or sensitivity" or "sensitivity".
     missing: Option<&'static str>,
 }
 
-/// Most channels of one record.
+/// Largest number of channels of one record.
 const COMPONENTS: usize = 3;
 
-/// Reads files and says what they are; and the bytes of the motions of several.
+/// Reads and groups files; returns the groups, and the bytes of motions combined from several files.
 pub(crate) fn of(
     files: &BTreeMap<String, &[u8]>,
     reading: &Reading,
@@ -81,14 +81,14 @@ pub(crate) fn of(
     Ok((found, gathered))
 }
 
-/// What a file says of the channels of its station, where it is about nothing else.
+/// Returns the instruments of a station file, if the file contains nothing else.
 fn station(bytes: &[u8]) -> Option<Vec<Instrument>> {
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.trim_start().starts_with('<'))?;
     station_xml(text).ok().filter(|found| !found.is_empty())
 }
 
-/// The records of files: one where nothing tells the files apart and together they have no more than the components
-/// of one; else by the names of the files, as in a folder; and alone what does not fit together.
+/// Groups records: into one if they are compatible and have together no more than the components of one record; else
+/// by file name, as in a folder; files that do not fit together stay alone.
 fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
     let whole = |records: &[Record]| {
         records.iter().map(|record| record.channels.len()).sum::<usize>() <= COMPONENTS
@@ -112,7 +112,8 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Of the files of one record; read with what other files say, one file is not enough by itself.
+    /// Combines the files of one record; with `told`, data of station files are included, so that even one file is
+    /// rewritten.
     fn of(records: &[Record], told: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {
@@ -133,7 +134,7 @@ impl Motion {
     }
 }
 
-/// A name for a file of several: what their names begin with, or the first of them.
+/// Returns a name for a combined file: the common prefix of the names, or the first name.
 fn name_of(files: &[String]) -> String {
     let first = files.first().map_or("", String::as_str);
     let same = |end: &usize| files.iter().all(|file| file.starts_with(&first[..*end]));
@@ -144,7 +145,7 @@ fn name_of(files: &[String]) -> String {
     format!("{}-set.txt", if files.len() == 1 || stem.len() < 3 { whole } else { stem })
 }
 
-/// What a channel is, in words.
+/// Describes a channel in words.
 fn role(channel: &Channel) -> String {
     let direction = match channel.direction.azimuth {
         _ if channel.is_vertical() => "is up and down".to_owned(),

@@ -1,17 +1,17 @@
-//! Where barrels were in variants, as bytes that go from one engine to another: what a report draws of them.
+//! Trails of barrels in variants, in transfer between engines for a report.
 
 use std::collections::BTreeMap;
 
 use barrelstack::ensemble::Trail;
 
-/// Trails by the number of the plane and that of the variant.
+/// Trails by the index of the plane and the number of the variant.
 pub(crate) type Trails = BTreeMap<(u32, u32), Trail>;
 
-/// Trails, one after the other: numbers and lengths of four bytes, places in single precision, least byte first.
+/// Encodes trails: numbers and lengths in four bytes, positions in single precision, little-endian.
 pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trail)>) -> Vec<u8> {
     let mut out = Vec::new();
     let number = |number: usize, out: &mut Vec<u8>| {
-        // No stack has so many bodies.
+        // Exact: no stack has so many bodies.
         out.extend(u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
     };
     for ((plane, variant), trail) in trails {
@@ -31,7 +31,7 @@ pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trai
     out
 }
 
-/// The same again; none where the bytes end too early.
+/// Decodes trails; `None` if the bytes end too early.
 pub(crate) fn read(mut bytes: &[u8]) -> Option<Trails> {
     let mut all = Trails::new();
     while !bytes.is_empty() {
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(read(&bytes).unwrap(), all);
         let ends: Vec<usize> =
             (0..bytes.len()).filter(|end| read(&bytes[..*end]).is_some()).collect();
-        // After none, one and two of them.
+        // After zero, one and two trails.
         assert_eq!(ends.len(), 3);
     }
 }

@@ -1,4 +1,4 @@
-//! What the results of engines say together.
+//! The verdict on the results of several engines.
 
 use barrelstack::ensemble::CaseResult;
 use barrelstack::scenario::View;
@@ -8,25 +8,25 @@ use serde::Serialize;
 
 use crate::{Case, Request, trails};
 
-/// What results say together.
+/// The verdict on results.
 #[derive(Serialize)]
 pub(crate) struct Verdict {
     /// In one sentence.
     headline: String,
-    /// Its sign and its word, as markup, and the class of its color.
+    /// Markup of its sign and word, and the class of its color.
     badge: String,
     tone: &'static str,
-    /// In each plane.
+    /// Verdict in each plane.
     planes: Vec<Judged>,
 }
 
-/// What they say in one plane.
+/// The verdict in one plane.
 #[derive(Serialize)]
 struct Judged {
     view: &'static str,
-    /// Such as "across the barrels".
+    /// Name of the plane, such as "across the barrels".
     words: &'static str,
-    /// Such as "falls in 97 % of variants".
+    /// Summary, such as "falls in 97 % of variants".
     fate: String,
     spread: Spread,
 }
@@ -53,7 +53,7 @@ impl Verdict {
     }
 }
 
-/// The results that a request gives, the stack as it is stated first.
+/// Returns the results in a request, the stack as stated first.
 fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, String> {
     let Request { numbers, cases, .. } = request;
     let whole = cases.iter().all(|plane| plane.len() == numbers.len());
@@ -66,7 +66,7 @@ fn given(planes: &[Plane], request: Request) -> Result<Vec<Vec<CaseResult>>, Str
     cases.into_iter().map(|plane| plane.into_iter().map(Case::result).collect()).collect()
 }
 
-/// The same of all variants, with where their barrels were.
+/// Returns the results of all variants, with the trails of their barrels.
 pub(crate) fn results(
     planes: &[Plane],
     request: Request,

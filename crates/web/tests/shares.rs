@@ -1,4 +1,4 @@
-//! Variants that are shared among engines say together what one engine says of all, to the last bit.
+//! Variants shared among engines give the same combined result as one engine, to the last bit.
 
 use std::ops::ControlFlow;
 
@@ -17,14 +17,14 @@ fn asked(request: &Request) -> Result<Value, String> {
     serde_json::from_slice(&bytes_of(request, &[])?).map_err(|error| error.to_string())
 }
 
-/// The head of an answer, and the bytes that follow it.
+/// Splits an answer into its head and the bytes that follow.
 fn parts(answer: &[u8]) -> (Value, &[u8]) {
     let (length, rest) = answer.split_first_chunk::<4>().expect("an answer with a length");
     let (head, rest) = rest.split_at(u32::from_le_bytes(*length) as usize);
     (serde_json::from_slice(head).expect("a head of JSON"), rest)
 }
 
-/// What became of variants in each plane, and their trails.
+/// Returns the results of variants in each plane, and their trails.
 fn run(numbers: &[u32]) -> (Value, Vec<u8>) {
     let answer = bytes_of(&request(Ask::Variants, numbers), &[]).expect("a sound request");
     let (cases, trails) = parts(&answer);
@@ -58,7 +58,7 @@ fn shares_in_any_order_have_the_spread_of_all() {
     let files = Request { ask: Ask::Files, trails: trails.len(), ..verdict.clone() };
     let of_shares = bytes_of(&files, &[&trails]).unwrap();
     let of_one = bytes_of(&request(Ask::Files, &[]), &[]).unwrap();
-    // The report among them, with the ways of all variants.
+    // Including the report, with the paths of all variants.
     assert!(of_shares == of_one, "files of shares differ from those of one engine");
     let cut = bytes_of(&Request { trails: 40, ..files.clone() }, &[&trails[..40]]).unwrap_err();
     assert!(cut.contains("ends within its trails"), "{cut}");
@@ -87,13 +87,13 @@ fn a_look_tells_every_field_and_stands_still() {
     let settings = look["settings"].as_array().unwrap();
     let field = |path: &str| settings.iter().find(|one| one["path"] == path).unwrap();
     assert_eq!(field("stack.levels")["value"], "3");
-    // Not given, and there to be given.
+    // Absent, and available to set.
     assert_eq!(field("motion.time_step")["value"], "");
     assert!(settings.iter().all(|one| one["help"].as_str().is_some_and(|help| help.len() > 4)));
     let data: Value = serde_json::from_str(look["stage"]["data"].as_str().unwrap()).unwrap();
     assert_eq!(data["players"][0]["panes"].as_array().map(Vec::len), Some(2));
     assert_eq!(data["players"][0]["panes"][0]["poses"]["n"], 1);
-    // The South Napa record is strong from 5.0 s on, and an opening goes on for 3 s.
+    // The South Napa record is strong from 5.0 s on, and an opening lasts 3 s from there.
     assert!(
         look["opening"].as_f64().is_some_and(|end| (8.0..=9.0).contains(&end)),
         "{}",
@@ -131,7 +131,7 @@ fn devices_are_offered_as_they_go_on_the_stack_and_those_on_it_are_told() {
     let strapped = offered(&["stack.strap.levels=1"]);
     assert_eq!(strapped["present"], serde_json::json!([{ "name": "straps", "table": "strap" }]));
     assert_eq!(of(&strapped, "strap"), 0);
-    // Each of them goes on.
+    // Each of them is applicable.
     for candidate in three["candidates"].as_array().unwrap() {
         let set = serde_json::from_value(candidate["changes"].clone()).unwrap();
         asked(&Request { set, ..request(Ask::Look, &[]) }).unwrap();
@@ -167,16 +167,16 @@ fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
     assert_eq!(one["motions"][0]["channels"][2], "site-up.txt (UP) is up and down");
     let again = read(&bytes, "site-set.txt", &ReadOptions::default()).unwrap();
     assert_eq!(again.channels.len(), 3);
-    // A horizontal and a vertical.
+    // A horizontal and a vertical component.
     let (pair, _) = given(&[("h.txt", e.clone()), ("v.txt", up)]);
     assert_eq!(pair["motions"].as_array().unwrap().len(), 1);
-    // Two stations are two motions, each the file that it was.
+    // Two stations are two motions, each the file as given.
     let (two, bytes) = given(&[("a.txt", e.clone()), ("b.txt", text("Napa", "Other", "E az=90"))]);
     let names: Vec<&Value> =
         two["motions"].as_array().unwrap().iter().map(|one| &one["name"]).collect();
     assert_eq!(names, ["a.txt", "b.txt"]);
     assert!(bytes.is_empty());
-    // A picture is no record, and takes nothing away from one beside it; a column of numbers lacks its unit.
+    // A picture is no record, and does not affect files beside it; a column of numbers lacks its unit.
     let numbers: Vec<String> = (0..600).map(|at| f64::from(at).sin().to_string()).collect();
     let column = numbers.join("\n");
     let (some, _) =
