@@ -8,7 +8,8 @@ use barrelstack::variants::planes;
 use barrelstack_campaign::Study;
 use barrelstack_campaign::study::Tally;
 
-/// Levels along the barrels, hardly shaken, with one rack a little beside its place: four stand, six and eight do not.
+/// Levels along the barrels on seats as soft as one contact node of the paper, hardly shaken, with one rack a little
+/// beside its place: four stand, six and eight do not.
 const STUDY: &str = r#"
 schema = 1
 title = "levels along the barrels"
@@ -19,6 +20,16 @@ stack.columns = 1
 stack.levels = 6
 motion.scale.factor = 0.02
 run.duration = "0.5 s"
+[base.interface.rack-ground]
+basis = "node"
+stiffness = "980 kN/m"
+damping = "2200 N*s/m"
+friction.coefficient = 0.5
+[base.interface.barrel-rack]
+basis = "node"
+stiffness = "980 kN/m"
+damping = "2200 N*s/m"
+friction = { coefficient = 0.22, tangential_stiffness_ratio = 1 }
 [[base.stack.override]]
 kind = "rack"
 level = 2

@@ -32,6 +32,8 @@ fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {
         text("mode", Role::Outcome, say(&|f| f.then_some("rocking"))),
         integer("barrels", Role::Outcome, vec![Some(6); count]),
         text("fall_heights", Role::Outcome, say(&|f| f.then_some("1.8;0.9"))),
+        text("fall_wine", Role::Outcome, say(&|f| f.then_some("0.225;0.225"))),
+        number("stack_wine", "m3", Role::Outcome, vec![Some(6.0 * 0.225); count]),
         number("top_drift_ratio", "", Role::Demand, seen(0.05)),
     ];
     let mut collected = made(columns, "sobol", &[], "m", 24);

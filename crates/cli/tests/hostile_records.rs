@@ -132,7 +132,7 @@ fn columns_that_leave_something_out() {
         "a.csv",
         b"0.00 0.1\n0.01 0.2\n0.00 -0.3\n0.01 0.1\n",
         unit,
-        &["without time"],
+        &["names above the columns"],
     );
     refuse_with("ragged", "a.csv", b"0.00 0.1\n0.01\n0.02 -0.3\n", unit, &["line 2"]);
     refuse_with("text", "a.csv", b"0.00 0.1\n0.01 high\n0.02 -0.3\n", unit, &["line 2", "high"]);

@@ -207,7 +207,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     let strapped = ["run", "candia-8-barrels", "--set", strap, "--set=run.duration=1 s"];
     assert!(!seen.run(&strapped, 0)["straps"].as_array().unwrap().is_empty());
     let in_space = ["run", "demo-napa", "--set=stack.view=spatial", "--set=stack.levels=2"];
-    let counted = ["--set=run.duration=9 s", "--variants=2"];
+    let counted = ["--set=run.duration=9 s", "--variants=2", "--set=motion.scale.factor=2"];
     let solid = seen.run(&[&in_space, &short[..], &counted].concat(), 0);
     assert_eq!(outcome(&solid), "collapse");
     assert!(solid["directions"]["first_away"].is_u64());

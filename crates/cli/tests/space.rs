@@ -9,11 +9,12 @@ use std::fs;
 use common::{barrelstack, stderr, stdout};
 use serde_json::Value;
 
-const SOLID: [&str; 5] = [
+const SOLID: [&str; 6] = [
     "run",
     "demo-napa",
     "--set=stack.view=spatial",
     "--set=stack.levels=2",
+    "--set=motion.scale.factor=2",
     "--set=run.duration=10 s",
 ];
 
