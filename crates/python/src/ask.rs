@@ -1,4 +1,4 @@
-//! What is asked of many at once: comparisons, heights, protections, scores, the paper's cases, sets of records.
+//! Analyses of several runs or records: comparisons, heights, protections, scores, the paper's cases, sets of records.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ use crate::listen::listening;
 use crate::page::Page;
 use crate::scenario::{Scenario, told, with_variants};
 
-/// Runs scenarios and sets them side by side; without names they are called by what differs.
+/// Runs scenarios and compares them; unnamed ones are named by their differences.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,
@@ -63,7 +63,7 @@ pub(crate) fn compare(
     py.detach(|| Page::of(&Comparison::of(&compared, Vec::new()), document(&compared)))
 }
 
-/// How high is safe.
+/// Runs the study of safe heights.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn heights(
@@ -93,7 +93,7 @@ pub(crate) fn heights(
     Page::of(&found.to_document(), document)
 }
 
-/// What protects a stack best for what it costs; at a site where there is a hazard, else at velocities (m/s).
+/// Ranks protections of a stack by benefit and cost; by the hazard of a site, or at velocities (m/s).
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn protect(
@@ -143,7 +143,7 @@ pub(crate) fn protect(
     Page::of(&found.to_document(), found.document)
 }
 
-/// The RockScore of a rack and its devices.
+/// Computes the RockScore of a rack and its devices.
 #[pyfunction]
 pub(crate) fn score(
     py: Python<'_>,
@@ -167,11 +167,11 @@ pub(crate) fn score(
     Page::of(&sheet.to_document(), sheet.document)
 }
 
-/// A set: places and factors of the chosen ones; mean and standard deviation of ln Sa of the target, then of the set;
-/// how many could be chosen.
+/// A set: indices and factors of the chosen records; mean and standard deviation of ln Sa of the target, then of the
+/// set; number of candidates.
 type SetFacts = (Vec<(usize, f64)>, [Vec<f64>; 4], usize);
 
-/// Of spectra (m/s²) at the periods (s) of a target those that together have its mean and spread.
+/// Selects the spectra (m/s²), at the periods (s) of a target, that together match its mean and standard deviation.
 ///
 /// A target is a code's name, or medians (m/s²) and standard deviations of ln Sa; `given` is a period (s) with the
 /// pseudo-acceleration (m/s²) there.
@@ -206,7 +206,7 @@ pub(crate) fn select(
     Ok((chosen, [mean, deviation, set.mean, set.deviation], set.eligible))
 }
 
-/// The numbers and figures of the paper beside ours.
+/// Reproduces the numbers and figures of the paper.
 #[pyfunction]
 pub(crate) fn reproduce(
     py: Python<'_>,

@@ -29,7 +29,7 @@ fn table(name: &str, text: &str) -> PyResult<Table> {
     Table::parse(name, text).map_err(errors::general)
 }
 
-/// A positive quantity (SI).
+/// Parses a positive quantity (SI).
 fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
     let value = Quantity::parse_as(text, &[dimension]).map(|quantity| quantity.value);
     let example = dimension.example();
@@ -41,7 +41,7 @@ fn positive(name: &str, text: &str, dimension: Dimension) -> PyResult<f64> {
     }
 }
 
-/// Parameters by their words, each once.
+/// Parses parameters by their words, each once.
 fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
     let known = Parameter::NAMES.map(|(word, _)| word).join(", ");
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ fn parameters(fit: &[String]) -> PyResult<Vec<Parameter>> {
     Ok(found)
 }
 
-/// Stiffness from a press test.
+/// Fits the stiffness of a press test.
 #[pyfunction]
 pub(crate) fn calibrate_stiffness(
     name: &str,
@@ -68,7 +68,7 @@ pub(crate) fn calibrate_stiffness(
     page(stiffness::stiffness(&table(name, text)?, nodes, interface), None)
 }
 
-/// Restitution and damping from drops.
+/// Fits restitution and damping of drops.
 #[pyfunction]
 pub(crate) fn calibrate_drop(
     name: &str,
@@ -89,13 +89,13 @@ pub(crate) fn calibrate_drop(
     page(drop::drop(&table(name, text)?, striker, interface), None)
 }
 
-/// Friction from pulls or tilts.
+/// Fits friction of pulls or tilts.
 #[pyfunction]
 pub(crate) fn calibrate_friction(name: &str, text: &str, interface: &str) -> PyResult<Page> {
     page(friction::friction(&table(name, text)?, interface), None)
 }
 
-/// Parameters from the recorded response of a shaken stack.
+/// Fits parameters to the recorded response of a shaken stack.
 #[pyfunction]
 pub(crate) fn calibrate_response(
     py: Python<'_>,
@@ -117,7 +117,7 @@ pub(crate) fn calibrate_response(
     page(found, Some(scenario))
 }
 
-/// Parameters from collapses that were seen.
+/// Fits parameters to observed collapses.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
 pub(crate) fn calibrate_collapse(

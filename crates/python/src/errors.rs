@@ -1,4 +1,4 @@
-//! Errors of the library as the exceptions of the package, with the place where they are about.
+//! Converts errors of the library to exceptions of the package, with their places.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use barrelstack_motion::{MotionError, ReadError};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Where an error is about, as far as that is known.
+/// Place of an error, as far as known.
 #[derive(Default)]
 struct Spot {
     path: Option<String>,
     line: Option<usize>,
     column: Option<usize>,
-    /// The value that was given, as `field=value`, where it stands in no file.
+    /// The given value, as `field=value`, if it is not in a file.
     value: Option<String>,
 }
 
@@ -40,7 +40,7 @@ impl Spot {
     }
 }
 
-/// An exception of the package, by the name of its class in `barrelstack._errors`.
+/// Creates an exception of the package, by the name of its class in `barrelstack._errors`.
 fn raise(class: &str, message: String, spot: Spot) -> PyErr {
     Python::attach(|py| {
         let made = py.import("barrelstack._errors").and_then(|errors| {
@@ -51,29 +51,29 @@ fn raise(class: &str, message: String, spot: Spot) -> PyErr {
     })
 }
 
-/// A scenario that cannot be read.
+/// Converts the error of a scenario that cannot be read.
 pub(crate) fn scenario(error: &ScenarioError) -> PyErr {
     raise("ScenarioError", error.to_string(), Spot::of(error.place()))
 }
 
-/// A field that says something else than what is asked for.
+/// Creates the error of a field that contradicts the request.
 pub(crate) fn inconsistent(message: String) -> PyErr {
     raise("ScenarioError", message, Spot::default())
 }
 
-/// A record that cannot be read.
+/// Converts the error of a record that cannot be read.
 pub(crate) fn read(error: &ReadError) -> PyErr {
     let path = Some(error.file.clone());
     let (line, column) = (error.line, error.column);
     raise("RecordError", error.to_string(), Spot { path, line, column, value: None })
 }
 
-/// A request about a record that cannot be met.
+/// Converts the error of a request that a record cannot satisfy.
 pub(crate) fn motion(error: MotionError) -> PyErr {
     raise("RecordError", error.to_string(), Spot::default())
 }
 
-/// A motion that cannot be had.
+/// Converts the error of a motion that cannot be read or generated.
 pub(crate) fn ground(error: &GroundError) -> PyErr {
     match error {
         GroundError::Read(error) => read(error),
@@ -87,7 +87,7 @@ pub(crate) fn ground(error: &GroundError) -> PyErr {
     }
 }
 
-/// Why there is no run, with the place in the scenario that it is about.
+/// Converts the error of a run, with its place in the scenario.
 pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
     if let RunFailure::Ground(error) = failure {
         return ground(error);
@@ -98,7 +98,7 @@ pub(crate) fn run(failure: &RunFailure, scenario: &Scenario) -> PyErr {
     }
 }
 
-/// Why a study cannot be planned, run or collected.
+/// Converts the error of planning, running or collecting a study.
 pub(crate) fn study(error: StudyError) -> PyErr {
     match &error {
         StudyError::File(error) => scenario(error),
@@ -118,7 +118,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
         | StudyError::Folder { folder: path, .. } => {
             raise("StudyError", error.to_string(), Spot::at(path))
         }
-        // Only a signal stops it; the one that was heard is raised where it was.
+        // Only a signal stops it; the caught signal is raised by `listening`.
         StudyError::Stopped => PyKeyboardInterrupt::new_err(()),
         StudyError::BuiltIn(_) | StudyError::Table(_) | StudyError::Chunk(_) => {
             raise("StudyError", error.to_string(), Spot::default())
@@ -126,12 +126,12 @@ pub(crate) fn study(error: StudyError) -> PyErr {
     }
 }
 
-/// What a study cannot decide or write, in the library's words.
+/// Converts the error of a study that supports no decision or cannot be written.
 pub(crate) fn told<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }
 
-/// A table that cannot be read, or a file that cannot be written.
+/// Converts the error of a table that cannot be read, or of a file that cannot be written.
 pub(crate) fn general<E: ToString>(error: E) -> PyErr {
     raise("Error", error.to_string(), Spot::default())
 }

@@ -1,8 +1,8 @@
-//! The Python package: what `barrelstack._native` holds.
+//! The native module of the Python package, `barrelstack._native`.
 //!
-//! Here is what needs Rust: the library's types behind handles, arrays and tables without a copy, work without the
-//! interpreter's lock.
-//! How a person meets it, in Python's words and with its documentation, is in `python/barrelstack`.
+//! It holds the parts that need Rust: handles of the library's types, arrays and tables without copies, and work
+//! without the interpreter's lock.
+//! The public interface, with its documentation, is in `python/barrelstack`.
 
 #![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
 
@@ -20,7 +20,7 @@ mod table;
 mod value;
 mod view;
 
-/// The library for `barrelstack`, the package.
+/// The library for the package `barrelstack`.
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]

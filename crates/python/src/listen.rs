@@ -1,4 +1,4 @@
-//! Work without the interpreter's lock, while the thread that asked for it listens for Ctrl-C and tells of progress.
+//! Runs work without the interpreter's lock, while the calling thread watches for Ctrl-C and reports progress.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,17 +8,17 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 
-/// Time between two looks for a signal; far below the second that is promised.
+/// Polling interval for signals; far below the promised second.
 const LISTEN: Duration = Duration::from_millis(50);
 
-/// What work tells, and whether it is to stop.
+/// Progress and cancellation of work.
 #[derive(Default)]
 pub(crate) struct Hear {
     stop: AtomicBool,
     told: Mutex<Option<Latest>>,
 }
 
-/// How far work is: so much of so much, of what.
+/// Latest progress: amount done, total, and unit.
 #[derive(Clone, Copy, PartialEq)]
 struct Latest {
     done: f64,
@@ -27,13 +27,13 @@ struct Latest {
 }
 
 impl Hear {
-    /// Tells how far the work is.
+    /// Reports the progress of the work.
     pub(crate) fn tell(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
         *self.told.lock().unwrap_or_else(PoisonError::into_inner) = Some(Latest { done, of, what });
         if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Whether the work is to stop.
+    /// `true` if the work is to stop.
     pub(crate) fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -48,7 +48,8 @@ impl Hear {
     }
 }
 
-/// Does work on another thread without the lock; raises what a signal or `progress` raised, when the work has stopped.
+/// Runs work on another thread without the lock; once it has stopped, raises the exception of a signal or of
+/// `progress`.
 pub(crate) fn listening<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -61,7 +62,7 @@ pub(crate) fn listening<T: Send>(
         let (give, take) = sync_channel(1);
         let hear = &hear;
         let worker = scope.spawn(move || {
-            // The taker goes only after it has taken.
+            // The receiver is dropped only after it has received.
             let _ = give.send(work(hear));
         });
         let take = Mutex::new(take);

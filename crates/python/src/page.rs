@@ -1,4 +1,4 @@
-//! What is told as numbers and as a page: comparisons, rankings, calibrations, what a study decides.
+//! Results as numbers and as a page: comparisons, rankings, calibrations, decisions of a study.
 
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// Numbers that the command prints as JSON, and their page.
+    /// Creates a page with the numbers that the command prints as JSON.
     pub(crate) fn of<N: serde::Serialize>(numbers: &N, document: Document) -> PyResult<Self> {
         let numbers = serde_json::to_string(numbers).map_err(errors::general)?;
         Ok(Self { numbers, document })
@@ -62,7 +62,7 @@ impl Page {
     }
 }
 
-/// The paper of a name.
+/// Returns the paper of a name.
 pub(crate) fn paper_of(name: &str) -> PyResult<Paper> {
     match name {
         "a4" => Ok(Paper::A4),

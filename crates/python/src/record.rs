@@ -1,4 +1,4 @@
-//! Records: read, made of arrays, processed, scaled, matched, measured.
+//! Records: read, made from arrays, processed, scaled, matched, measured.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ impl From<barrelstack_motion::Record> for Record {
     }
 }
 
-/// Name, azimuth (degrees), whether it is vertical, step (s), start.
+/// Name, azimuth (degrees), `true` if vertical, step (s), start.
 type ChannelFacts = (String, Option<f64>, bool, f64, Option<String>);
 
 #[pymethods]
@@ -141,7 +141,7 @@ impl Record {
         view(slf.as_any(), &record.channel(channel)?.acceleration)
     }
 
-    /// Velocities (m/s) and displacements (m) at the samples.
+    /// Returns velocities (m/s) and displacements (m) at the samples.
     fn integrated<'py>(
         &self,
         py: Python<'py>,
@@ -152,7 +152,7 @@ impl Record {
         Ok((array(motion.velocity()), array(motion.displacement())))
     }
 
-    /// The place of a channel among the others, by what people call it.
+    /// Returns the index of a channel by its customary name.
     fn find(&self, name: &str) -> PyResult<usize> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let found = self.inner.component(&wanted).map_err(errors::motion)?;
@@ -162,7 +162,7 @@ impl Record {
         })
     }
 
-    /// The record with a component of it alone, which may be turned to an azimuth.
+    /// Returns the record with one component alone, which may be turned to an azimuth.
     fn component(&self, name: &str) -> PyResult<Self> {
         let wanted: Component = name.parse().map_err(errors::motion)?;
         let channel = self.inner.component(&wanted).map_err(errors::motion)?;
@@ -223,7 +223,7 @@ impl Record {
         py.detach(|| self.inner.processed(&steps)).map(Self::from).map_err(errors::motion)
     }
 
-    /// All components times one factor.
+    /// Multiplies all components by one factor.
     fn multiplied(&self, factor: f64) -> PyResult<Self> {
         if !(factor.is_finite() && factor != 0.0) {
             return Err(PyValueError::new_err(format!(
@@ -235,7 +235,8 @@ impl Record {
         Ok(record.into())
     }
 
-    /// All components times the factor that brings a measure of one component, or of both horizontals, to a value (SI).
+    /// Multiplies all components by the factor that brings a measure of one component, or of both horizontals, to a
+    /// value (SI).
     fn scaled_to(&self, measure: &str, value: f64, of: &str) -> PyResult<Self> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let factor = self.factor(measure, value, of).map_err(errors::motion)?;
@@ -247,7 +248,8 @@ impl Record {
         Ok(record.into())
     }
 
-    /// The record with one component matched to a target, the misfit, and in words what it misses.
+    /// Returns the record with one component matched to a target, the misfit, and a description of the remaining
+    /// misfits.
     #[expect(
         clippy::too_many_arguments,
         reason = "the settings of a match, each with its name in Python"
@@ -281,7 +283,7 @@ impl Record {
         Ok((record.into(), found.misfit, found.missed_in_words()))
     }
 
-    /// A measure of every component (SI), with its unit; NaN where the component is too short for it.
+    /// Returns a measure of every component (SI), with its unit; NaN where the component is too short for it.
     fn intensity(&self, py: Python<'_>, measure: &str) -> PyResult<(Vec<f64>, &'static str)> {
         let measure: IntensityMeasure = measure.parse().map_err(errors::motion)?;
         let of = |channel: &Channel| measure.of(&channel.sampled()?);
@@ -290,7 +292,7 @@ impl Record {
         Ok((values.map_err(errors::motion)?, measure.unit()))
     }
 
-    /// Pseudo-accelerations (m/s²) of a component at some periods (s).
+    /// Returns the pseudo-accelerations (m/s²) of a component at some periods (s).
     fn spectrum<'py>(
         &self,
         py: Python<'py>,
@@ -303,7 +305,7 @@ impl Record {
         Ok(values.map_err(errors::motion)?.into_pyarray(py))
     }
 
-    /// The record as the bytes of a file.
+    /// Returns the record as the bytes of a file.
     fn written<'py>(&self, py: Python<'py>, form: &str) -> PyResult<Bound<'py, PyBytes>> {
         let text = |text: Result<String, MotionError>| text.map(String::into_bytes);
         let written = match form {
@@ -370,23 +372,23 @@ impl Record {
     }
 }
 
-/// A motion as a record, at the step of its own samples or the natural one of its formula.
+/// Samples a motion as a record, at the step of its own samples or the natural one of its formula.
 pub(crate) fn of_motion(motion: &GroundMotion) -> PyResult<Record> {
     let step = match &motion.vertical {
-        // A motion that is vertical alone has a horizontal component of no length.
+        // A purely vertical motion has a horizontal component of length zero.
         Some(vertical) if motion.horizontal.duration() == 0.0 => vertical.natural_step(),
         Some(_) | None => motion.horizontal.natural_step(),
     };
     barrelstack_motion::Record::of_motion(motion, step).map(Record::from).map_err(errors::motion)
 }
 
-/// Periods (s) from 0.01 to 10 s, so many to a decade.
+/// Returns periods (s) from 0.01 to 10 s, with a number per decade.
 #[pyfunction]
 pub(crate) fn standard_periods(py: Python<'_>, per_decade: usize) -> Numbers<'_> {
     barrelstack_motion::standard_periods(per_decade).into_pyarray(py)
 }
 
-/// A value of a measure with its unit, in SI.
+/// Converts a value of a measure with its unit to SI.
 #[pyfunction]
 pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
     let of: IntensityMeasure = measure.parse().map_err(errors::motion)?;
@@ -407,7 +409,7 @@ pub(crate) fn measured(measure: &str, text: &str) -> PyResult<f64> {
         .map_err(|error| PyValueError::new_err(format!("{measure}: {error}")))
 }
 
-/// Names and files of the records that paths, relative to a folder, are of.
+/// Groups paths, relative to a folder, by record; returns names and files.
 #[pyfunction]
 pub(crate) fn group_files(paths: Vec<String>) -> Vec<(String, Vec<String>)> {
     barrelstack_motion::group_files(&paths)
@@ -416,7 +418,7 @@ pub(crate) fn group_files(paths: Vec<String>) -> Vec<(String, Vec<String>)> {
         .collect()
 }
 
-/// Names and titles of the formats that are read.
+/// Returns names and titles of the supported formats.
 #[pyfunction]
 pub(crate) fn formats() -> Vec<(&'static str, &'static str)> {
     FORMATS.iter().map(|format| (format.name, format.title)).collect()

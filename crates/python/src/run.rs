@@ -1,4 +1,4 @@
-//! A run: its outcome, its histories without a copy, its page.
+//! A run: its outcome, its histories without copies, its page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,16 +23,16 @@ use crate::scenario::bytes;
 use crate::table::Table;
 use crate::view::{Numbers, Rows, rows, view};
 
-/// What became of a scenario, in the plane that decides or in the other one.
+/// Results of a scenario, in the governing plane or in the other one.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Run {
     answer: Arc<Answer>,
     repeated: Option<Arc<Verification>>,
-    /// Whether this is the plane that does not decide.
+    /// `true` for the plane that does not govern.
     beside: bool,
 }
 
-/// The largest forces between two bodies: vertical (N) and when (s), horizontal and when.
+/// The largest forces between two bodies: vertical (N) and its time (s), horizontal and its time.
 type Peaks = ((f64, f64), (f64, f64));
 
 /// Two bodies and their forces: name, at rest (N), largest until the first loss of seat, and over the whole run.
@@ -63,7 +63,7 @@ impl Run {
     }
 }
 
-/// Those of all that are named, in their own order; all of them where none is.
+/// Returns the named members, in their own order; all of them if none is named.
 fn chosen<T: Copy, const N: usize>(
     what: &str,
     names: &[String],
@@ -86,7 +86,7 @@ fn missing(what: &str) -> PyErr {
 
 #[pymethods]
 impl Run {
-    /// The other plane, where the scenario looks at its stack in both.
+    /// Returns the other plane, where the scenario has both.
     fn other(&self) -> Option<Self> {
         let (answer, repeated) = (Arc::clone(&self.answer), self.repeated.clone());
         self.answer.other.as_ref().map(|_| Self { answer, repeated, beside: !self.beside })
@@ -116,12 +116,12 @@ impl Run {
         self.run().scenario.to_resolved_toml()
     }
 
-    /// Times (s) of the samples of all histories.
+    /// Returns the times (s) of the samples of all histories.
     fn times<'py>(slf: &Bound<'py, Self>) -> PyResult<Numbers<'py>> {
         view(slf.as_any(), &slf.get().run().recording.times)
     }
 
-    /// Name and unit of every history.
+    /// Returns name and unit of every history.
     fn channels(&self) -> Vec<(String, &'static str)> {
         let channels = self.run().recording.channels.iter();
         channels.map(|channel| (channel.name.clone(), channel.unit)).collect()
@@ -142,13 +142,13 @@ impl Run {
         joints.map(facts).collect()
     }
 
-    /// Vertical and horizontal forces (N) on the upper body.
+    /// Returns the vertical and horizontal forces (N) on the upper body.
     fn joint<'py>(slf: &Bound<'py, Self>, at: usize) -> PyResult<(Numbers<'py>, Numbers<'py>)> {
         let joint = slf.get().run().recording.joints.get(at).ok_or_else(|| missing("joint"))?;
         Ok((view(slf.as_any(), &joint.vertical)?, view(slf.as_any(), &joint.horizontal)?))
     }
 
-    /// Name and kind of every body, in the order of the poses.
+    /// Returns name and kind of every body, in the order of the poses.
     fn bodies(&self) -> Vec<(String, &'static str)> {
         let parts = self.run().assembly.parts.iter();
         parts.map(|part| (part.name.clone(), part.kind.name())).collect()
@@ -158,7 +158,7 @@ impl Run {
         view(slf.as_any(), &slf.get().run().recording.frames.times)
     }
 
-    /// For every frame and body `x` (m), `z` (m), angle (rad).
+    /// Returns `x` (m), `z` (m) and angle (rad) for every frame and body.
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let poses = &self.run().recording.frames.poses;
         let bodies = self.run().assembly.parts.len();
@@ -166,7 +166,7 @@ impl Run {
         flat.reshape([poses.len(), bodies, 3])
     }
 
-    /// For every frame and body the largest stress (N/m) at a node that presses on it.
+    /// Returns the largest contact stress (N/m) for every frame and body.
     fn frame_stresses<'py>(&self, py: Python<'py>) -> PyResult<Rows<'py>> {
         let stresses = &self.run().recording.frames.stresses;
         let bodies = self.run().assembly.parts.len();
@@ -174,27 +174,27 @@ impl Run {
             .reshape([stresses.len(), bodies])
     }
 
-    /// The contact forces of a frame: `x` (m), `z` (m), and the force (N) on the contactor.
+    /// Returns the contact forces of a frame: `x` (m), `z` (m), and the force (N) on the contactor.
     fn frame_forces<'py>(&self, py: Python<'py>, frame: usize) -> PyResult<Rows<'py>> {
         let forces =
             self.run().recording.frames.forces.get(frame).ok_or_else(|| missing("frame"))?;
         rows(py, forces.iter().copied())
     }
 
-    /// The bodies that have an envelope, each with whether it closes on itself.
+    /// Returns the bodies that have an envelope, each with `true` if its boundary is closed.
     fn envelopes(&self) -> Vec<(String, bool)> {
         let name = |body: usize| self.run().assembly.parts[body].name.clone();
         self.run().stresses.envelopes.iter().map(|one| (name(one.body), one.closed)).collect()
     }
 
-    /// Points of an envelope: `x` (m), `z` (m), coordinate (rad or m), length (m).
+    /// Returns the points of an envelope: `x` (m), `z` (m), coordinate (rad or m), length (m).
     fn envelope_points<'py>(&self, py: Python<'py>, at: usize) -> PyResult<Rows<'py>> {
         let envelope = self.envelope(at)?;
         let points = envelope.points.iter().zip(&envelope.lengths);
         rows(py, points.map(|(p, length)| [p.position.x, p.position.z, p.coordinate, *length]))
     }
 
-    /// Stresses (N/m) at rest, largest until the first loss of seat, and largest over the whole run.
+    /// Returns stresses (N/m) at rest, largest until the first loss of seat, and largest over the whole run.
     fn envelope_stresses<'py>(
         slf: &Bound<'py, Self>,
         at: usize,
@@ -205,7 +205,7 @@ impl Run {
         Ok((numbers(&envelope.at_rest)?, peaks.0, peaks.1))
     }
 
-    /// The case as it is stated and its variants, a row each; none where none were run.
+    /// Returns the nominal case and its variants, a row each; `None` if none were run.
     fn variants(&self) -> Option<Table> {
         let results = &self.shown().variants.as_ref()?.results;
         let numbers = Values::Integer((0..results.len()).map(|n| i64::try_from(n).ok()).collect());
@@ -227,7 +227,7 @@ impl Run {
         Ok(bytes(py, &made))
     }
 
-    /// Writes parts as pictures, films and series: the place and the count of files of each.
+    /// Writes parts as pictures, films and series; returns the place and the number of files of each.
     #[expect(clippy::too_many_arguments, reason = "as Python gives them, one by one")]
     fn render(
         &self,
@@ -264,7 +264,7 @@ impl Run {
     }
 }
 
-/// What an observer sees of a run.
+/// State of a run for an observer.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct Glance {
     #[pyo3(get)]

@@ -81,19 +81,19 @@ impl Scenario {
         self.inner.to_resolved_toml()
     }
 
-    /// Path, value and meaning of every field.
+    /// Returns path, value and meaning of every field.
     fn settings(&self) -> Vec<(String, String, &'static str)> {
         let settings = self.inner.settings().into_iter();
         settings.map(|setting| (setting.path, setting.value, setting.help)).collect()
     }
 
-    /// What moves its ground, if anything does.
+    /// Returns the ground motion, if any.
     fn ground(&self, py: Python<'_>) -> PyResult<Option<Record>> {
         let ground = py.detach(|| self.inner.ground()).map_err(|error| errors::ground(&error))?;
         ground.motion.as_ref().map(of_motion).transpose()
     }
 
-    /// What a check of every plane finds, each as JSON.
+    /// Checks every plane and returns the findings, each as JSON.
     fn check(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let found = py.detach(|| {
             let planes = variants::planes(&self.inner)?;
@@ -162,8 +162,8 @@ impl Scenario {
         answer.map(SpatialRun::of).map_err(|error| errors::run(&error, &scenario))
     }
 
-    /// Runs it as it is stated in one plane, before a function that sees every so many steps and stops the run by
-    /// anything true that it returns.
+    /// Runs it as stated in one plane, with an observer function that is called every few steps and stops the run by
+    /// returning anything true.
     fn run_before(
         &self,
         py: Python<'_>,
@@ -207,7 +207,7 @@ impl Scenario {
     }
 }
 
-/// The variant that is shown, of so many.
+/// Returns the selection of the variant to show, among a number of variants.
 fn asked(variant: Option<u32>, count: u32) -> PyResult<Asked> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
@@ -218,7 +218,7 @@ fn asked(variant: Option<u32>, count: u32) -> PyResult<Asked> {
     }
 }
 
-/// A scenario with so many variants, and how many it has.
+/// Returns a scenario with a number of variants, and that number.
 pub(crate) fn with_variants(
     of: &barrelstack::Scenario,
     variants: Option<u32>,
@@ -239,7 +239,7 @@ pub(crate) fn with_variants(
     Ok((scenario, count))
 }
 
-/// A run and its variants have come this far.
+/// Reports the progress of a run and its variants.
 pub(crate) fn told(hear: &Hear, now: Advance) -> ControlFlow<()> {
     match now {
         Advance::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
@@ -247,13 +247,13 @@ pub(crate) fn told(hear: &Hear, now: Advance) -> ControlFlow<()> {
     }
 }
 
-/// Names and texts of the scenarios that come with the library.
+/// Returns names and texts of the bundled scenarios.
 #[pyfunction]
 pub(crate) fn scenarios() -> Vec<(&'static str, &'static str)> {
     builtin::names().filter_map(|name| Some((name, builtin::get(name)?))).collect()
 }
 
-/// The JSON Schema of scenario files, of study files, or of the summary.
+/// Returns the JSON Schema of scenario files, of study files, or of the summary.
 #[pyfunction]
 pub(crate) fn schema(of: &str) -> PyResult<String> {
     let schema = match of {
@@ -269,7 +269,7 @@ pub(crate) fn schema(of: &str) -> PyResult<String> {
     serde_json::to_string(&schema).map_err(errors::general)
 }
 
-/// The reference of scenario files or study files in Markdown.
+/// Returns the reference of scenario files or study files in Markdown.
 #[pyfunction]
 pub(crate) fn reference(of: &str) -> PyResult<String> {
     match of {
@@ -281,7 +281,7 @@ pub(crate) fn reference(of: &str) -> PyResult<String> {
     }
 }
 
-/// The keys of the summary: path, unit and meaning.
+/// Returns the keys of the summary: path, unit and meaning.
 #[pyfunction]
 pub(crate) fn fields() -> Vec<(String, String, String)> {
     let schema = barrelstack_report::described::document::<Summary>("summary");
@@ -289,7 +289,7 @@ pub(crate) fn fields() -> Vec<(String, String, String)> {
     rows.into_iter().map(|[path, unit, meaning]| (path, unit, meaning)).collect()
 }
 
-/// Bytes for Python.
+/// Converts bytes for Python.
 pub(crate) fn bytes<'py>(py: Python<'py>, of: &[u8]) -> Bound<'py, PyBytes> {
     PyBytes::new(py, of)
 }

@@ -1,4 +1,4 @@
-//! A run in space: its document, where its bodies were, its page.
+//! A run in space: its document, the trajectories of its bodies, its page.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::errors;
 use crate::table::Table;
 use crate::view::{Numbers, view};
 
-/// What became of a scenario in space.
+/// Results of a scenario in space.
 #[pyclass(frozen, module = "barrelstack._native")]
 pub(crate) struct SpatialRun {
     answer: Arc<Answer>,
@@ -32,7 +32,7 @@ impl SpatialRun {
         &self.answer.run.frames
     }
 
-    /// Numbers of every frame and body as one array.
+    /// Returns numbers of every frame and body as one array.
     fn stacked<'py, const N: usize>(
         &self,
         py: Python<'py>,
@@ -64,7 +64,7 @@ impl SpatialRun {
         self.answer.run.scenario.to_resolved_toml()
     }
 
-    /// Name and kind of every body, in the order of the poses.
+    /// Returns name and kind of every body, in the order of the poses.
     fn bodies(&self) -> Vec<(String, &'static str)> {
         let parts = self.answer.run.stack.parts.iter();
         parts.map(|part| (part.name.clone(), part.kind.name())).collect()
@@ -74,17 +74,17 @@ impl SpatialRun {
         view(slf.as_any(), &slf.get().frames().times)
     }
 
-    /// For every frame and body place (m) and quaternion `w`, `x`, `y`, `z`.
+    /// Returns position (m) and quaternion `w`, `x`, `y`, `z` for every frame and body.
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         self.stacked(py, &self.frames().poses)
     }
 
-    /// For every frame and body velocity (m/s) and spin (rad/s).
+    /// Returns velocity (m/s) and angular velocity (rad/s) for every frame and body.
     fn twists<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         self.stacked(py, &self.frames().twists)
     }
 
-    /// The case as it is stated and its variants, a row each; none where none were run.
+    /// Returns the nominal case and its variants, a row each; `None` if none were run.
     fn variants(&self) -> Option<Table> {
         let cases = &self.answer.cases;
         if cases.is_empty() {
@@ -103,7 +103,7 @@ impl SpatialRun {
         py.detach(|| html(&document(&self.answer)))
     }
 
-    /// Writes the files that the command writes, beside a scenario as it is stated.
+    /// Writes the files that the command writes, with the scenario as stated.
     fn write(
         &self,
         py: Python<'_>,

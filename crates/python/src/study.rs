@@ -86,7 +86,7 @@ impl Study {
             .collect()
     }
 
-    /// Runs what is missing of a folder.
+    /// Runs the missing chunks of a folder.
     fn run(
         &self,
         py: Python<'_>,
@@ -102,7 +102,7 @@ impl Study {
         done.map_err(errors::study)
     }
 
-    /// Runs one chunk, unless its shard is there; whether it was run.
+    /// Runs one chunk, unless its shard exists; returns `true` if it was run.
     fn run_chunk(&self, py: Python<'_>, folder: PathBuf, chunk: usize) -> PyResult<bool> {
         let done = listening(py, None, |hear| {
             self.inner.run_chunk(&folder, chunk, Width::widest(), &|| hear.stopped())
@@ -110,7 +110,7 @@ impl Study {
         Ok(done.map_err(errors::study)? != ChunkRun::Before)
     }
 
-    /// Its motions by their names, as their sources have them.
+    /// Returns its motions by their names, unscaled.
     fn records(&self, py: Python<'_>) -> PyResult<Vec<(String, Record)>> {
         let grounds = py.detach(|| self.inner.grounds()).map_err(errors::study)?;
         let record = |(name, ground): (String, Arc<Ground>)| {
@@ -120,7 +120,7 @@ impl Study {
         grounds.into_iter().filter_map(record).collect()
     }
 
-    /// Its table, without a folder.
+    /// Returns its table, without a folder.
     fn table(&self, py: Python<'_>) -> PyResult<Table> {
         let table = py.detach(|| self.inner.table()).map_err(errors::study)?;
         Ok(Table { columns: table.columns().to_vec() })
@@ -131,13 +131,13 @@ fn told(hear: &Hear, now: &Progress) -> ControlFlow<()> {
     hear.tell((now.before + now.now) as f64, now.cases as f64, "cases")
 }
 
-/// Names and texts of the studies that come with the library.
+/// Returns names and texts of the bundled studies.
 #[pyfunction]
 pub(crate) fn studies() -> Vec<(&'static str, &'static str)> {
     study::builtin_names().filter_map(|name| Some((name, study::builtin(name)?))).collect()
 }
 
-/// The rows that are done in the folder of a study; `write` writes its tables, too.
+/// Returns the finished rows in the folder of a study; `write` also writes its tables.
 #[pyfunction]
 pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResult<Table> {
     let read = py.detach(|| {
@@ -149,7 +149,7 @@ pub(crate) fn read_table(py: Python<'_>, folder: PathBuf, write: bool) -> PyResu
     Ok(Table { columns: read.map_err(errors::study)?.table.columns().to_vec() })
 }
 
-/// What the rows of a folder come from, as JSON, and the chunks that are missing.
+/// Returns the provenance of the rows of a folder, as JSON, and the missing chunks.
 #[pyfunction]
 pub(crate) fn provenance(py: Python<'_>, folder: PathBuf) -> PyResult<(String, Vec<usize>)> {
     let status = py.detach(|| Collected::status(&folder)).map_err(errors::study)?;
@@ -162,7 +162,7 @@ fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
     Ok(Request { hazard, years })
 }
 
-/// What the study of a folder says.
+/// Computes the decision of the study in a folder.
 #[pyfunction]
 pub(crate) fn decision(
     py: Python<'_>,
@@ -175,7 +175,7 @@ pub(crate) fn decision(
     Page::of(&decision.to_document(), decision.document)
 }
 
-/// The curves of the study of a folder for other programs: name and text of each file, and what is missing.
+/// Exports the curves of the study in a folder for other programs: name and text of each file, and missing parts.
 #[pyfunction]
 pub(crate) fn export(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Tables: of cases in, of results out, through Arrow's capsules.
+//! Tables: input of cases and output of results, through Arrow's capsules.
 
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -45,7 +45,7 @@ type Facts = (String, String, String, String, &'static str);
 
 #[pymethods]
 impl Table {
-    /// A table of cases from columns with their headings.
+    /// Creates a table of cases from columns with their headings.
     #[staticmethod]
     fn from_columns(columns: Vec<(String, Vec<Bound<'_, PyAny>>)>) -> PyResult<Self> {
         let column = |(heading, values): &(String, Vec<Bound<'_, PyAny>>)| {
@@ -54,7 +54,7 @@ impl Table {
         Ok(Self { columns: columns.iter().map(column).collect::<PyResult<_>>()? })
     }
 
-    /// A table of numbers: name, unit, values.
+    /// Creates a table of numbers: name, unit, values.
     #[staticmethod]
     fn of_numbers(columns: Vec<(String, String, PyReadonlyArray1<'_, f64>)>) -> Self {
         let column = |(name, unit, values): &(String, String, PyReadonlyArray1<'_, f64>)| Column {
@@ -64,7 +64,7 @@ impl Table {
         Self { columns: columns.iter().map(column).collect() }
     }
 
-    /// A table of cases from whatever gives an Arrow stream.
+    /// Creates a table of cases from any object with an Arrow stream.
     #[staticmethod]
     fn from_arrow(table: &Bound<'_, PyAny>) -> PyResult<Self> {
         let batches = stream(table)?;
@@ -95,7 +95,7 @@ impl Table {
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // A wish that may be ignored: whoever asks casts what comes.
+        // The requested schema may be ignored: consumers cast.
         drop(requested_schema);
         let batch = self.batch().map_err(errors::general)?;
         let schema = batch.schema();
@@ -118,7 +118,7 @@ impl Table {
         self.columns.iter().map(facts).collect()
     }
 
-    /// The values of a column, with None where there is none.
+    /// Returns the values of a column, with None where missing.
     fn values<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         match &self.column(name)?.values {
             Values::Integer(values) => values.clone().into_pyobject(py).map(Bound::into_any),
@@ -127,7 +127,7 @@ impl Table {
         }
     }
 
-    /// The numbers of a column, with NaN where there is none.
+    /// Returns the numbers of a column, with NaN where missing.
     fn numbers<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Numbers<'py>> {
         let column = self.column(name)?;
         let number = |row| match column.values.get(row) {
@@ -185,19 +185,19 @@ impl Table {
     }
 }
 
-/// The batches that a table of another library gives.
+/// Reads the batches of a table of another library.
 fn stream(table: &Bound<'_, PyAny>) -> PyResult<RecordBatchStreamReader> {
     let capsule = table.call_method0("__arrow_c_stream__")?;
     let capsule = capsule.cast_into::<PyCapsule>()?;
     let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?;
     #[expect(unsafe_code, reason = "the door of Arrow's C interface")]
     // SAFETY: by the protocol of Arrow's capsules one of this name holds a stream that lives as long as the capsule
-    // does, and whoever takes the stream out leaves an emptied one behind, as this call does.
+    // does, and a consumer that takes the stream out leaves an emptied one behind, as this call does.
     let reader = unsafe { RecordBatchStreamReader::from_raw(pointer.cast().as_ptr()) };
     reader.map_err(errors::general)
 }
 
-/// A column of a table of cases: its heading may state a unit, such as `motion.scale.pgv (cm/s)`.
+/// Creates a column of a table of cases: its heading may state a unit, such as `motion.scale.pgv (cm/s)`.
 fn given(heading: &str, values: Values) -> Column {
     let stated = heading.trim().strip_suffix(')').and_then(|text| text.rsplit_once(" ("));
     let (name, unit) = stated.unwrap_or((heading.trim(), ""));
@@ -299,7 +299,7 @@ fn of_array(heading: &str, array: &ArrayRef) -> PyResult<Values> {
     })
 }
 
-/// The cases of a table: a base, what each row sets in it, and the records that rows name.
+/// The cases of a table: a base, the changes of each row, and the records that rows name.
 struct Cases<'a> {
     base: &'a barrelstack::Scenario,
     columns: &'a [Column],
@@ -311,7 +311,7 @@ struct Cases<'a> {
 const RECORD: &str = "record";
 
 impl Cases<'_> {
-    /// The scenario of a row.
+    /// Returns the scenario of a row.
     fn scenario(&self, row: usize) -> Result<barrelstack::Scenario, CaseError> {
         let mut changes = Vec::with_capacity(self.columns.len());
         let mut record = None;
@@ -345,14 +345,14 @@ impl Cases<'_> {
         Ok(Prepared { scenario: Arc::new(scenario), ground })
     }
 
-    /// What tells the cases of one topology from others.
+    /// Returns a hash that separates cases of different topologies.
     fn kind(scenario: &barrelstack::Scenario) -> u64 {
         let Some(stack) = scenario.stack() else { return 0 };
         fnv1a(format!("{:?} {} {}", stack.view, stack.levels, stack.columns).as_bytes())
     }
 }
 
-/// A unit as files of scenarios write it: `m/s^2` where headings of tables have `m/s2`.
+/// Converts a unit to the form of scenario files: `m/s^2` where headings of tables have `m/s2`.
 fn with_powers(unit: &str) -> String {
     let mut text = String::new();
     for sign in unit.chars() {
@@ -364,7 +364,7 @@ fn with_powers(unit: &str) -> String {
     text
 }
 
-/// Why there is no case.
+/// Error of a case.
 enum CaseError {
     Scenario(ScenarioError),
     Planes,
@@ -391,7 +391,7 @@ impl CaseError {
             Self::Scenario(error) => {
                 let raised = errors::scenario(error);
                 Python::attach(|py| {
-                    // Which of the rows it is, where the exception can hold it.
+                    // The number of the row, where the exception can hold it.
                     let _ = raised.value(py).setattr("row", row);
                 });
                 raised
@@ -420,7 +420,7 @@ pub(crate) fn ensemble(
     let all =
         Cases { base: &base.inner, columns: &cases.columns, records, grounds: Grounds::default() };
     let found = listening(py, progress, |hear| {
-        // What is wrong with a row is told before the work.
+        // Fail early: check every row before the work.
         let numbers: Vec<usize> = (0..count).collect();
         let kinds =
             pool::map(&numbers, |row| all.scenario(*row).map(|one| Cases::kind(&one)), &|_| ());
@@ -429,7 +429,7 @@ pub(crate) fn ensemble(
             known.push(kind.map_err(|error| (error, row))?);
         }
         if count > 0 {
-            // What all cases lack is told as such, and not in every row.
+            // Report once what all cases lack, and not in every row.
             let first = all.scenario(0).map_err(|error| (error, 0))?;
             all.grounds.of(&first).map_err(|error| (CaseError::Ground(error), 0))?;
         }

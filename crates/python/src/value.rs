@@ -1,4 +1,4 @@
-//! Values of Python as the values of a scenario.
+//! Converts values of Python to values of a scenario.
 
 use barrelstack::scenario::tree::{Entry, Node, Origin, Table, Value};
 use pyo3::exceptions::PyTypeError;
@@ -9,7 +9,7 @@ fn node(value: Value) -> Node {
     Node { origin: Origin::Default, value }
 }
 
-/// A dict as a table of a scenario.
+/// Converts a dict to a table of a scenario.
 pub(crate) fn table(dict: &Bound<'_, PyDict>) -> PyResult<Table> {
     let mut entries = Vec::new();
     for (key, value) in dict {
@@ -29,7 +29,7 @@ fn of(value: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
         let items = value.try_iter()?.map(|item| Ok(node(of(&item?, key)?)));
         return items.collect::<PyResult<_>>().map(Value::Array);
     }
-    // A truth is a whole number in Python, and none here.
+    // Test for bool first: it is a subclass of int in Python.
     if value.is_instance_of::<PyBool>() {
         return value.extract().map(Value::Flag);
     }

@@ -2,17 +2,17 @@
 
 ::
 
-    Scenario ── run ──▶ Run          what stands and what shakes it ─▶ outcome, histories, report
-    Record   ──────────┘             strong ground motion: read, made of arrays, processed, scaled, measured
-    Scenario ── run_in_space ─▶ SpatialRun   the same as it stands, under all three components
+    Scenario ── run ──▶ Run          a stack and its ground motion ─▶ outcome, histories, report
+    Record   ──────────┘             strong ground motion: read, made from arrays, processed, scaled, measured
+    Scenario ── run_in_space ─▶ SpatialRun   the same in space, under all three components
     ensemble ──────────▶ Table       many cases at once
     Study    ── run ──▶ Fragility    hundreds of cases in a folder, on one machine or on many
     Scene    ── run ──▶ Run          any planar bodies
     read_folder ── select ─▶ Selection       many records; a set of them for a target
-    compare, heights, protect, score ─▶ Page runs side by side; how high is safe; what helps most; one number for a rack
+    compare, heights, protect, score ─▶ Page runs side by side; safe heights; best protections; a score
     Calibration.friction, …  ──▶ Page        contact parameters from one's own tests
 
-All numbers are SI: m, s, kg, N, rad; z is up. Quantities that are given carry their unit as text (``"60 cm/s"``).
+All numbers are SI: m, s, kg, N, rad; z is up. Quantities as input carry their unit as text (``"60 cm/s"``).
 """
 
 from __future__ import annotations
@@ -108,18 +108,18 @@ __all__ = [
 
 
 def scenarios() -> dict[str, str]:
-    """The scenarios that come with the library.
+    """Returns the scenarios that come with the library.
 
     Returns
     -------
     dict
-        Names, and their texts with all comments: places to start from.
+        Names, with their texts including all comments, as starting points.
     """
     return dict(_native.scenarios())
 
 
 def schema(of: str = "scenario") -> dict[str, Any]:
-    """A JSON Schema (2020-12).
+    """Returns a JSON Schema (2020-12).
 
     Parameters
     ----------
@@ -135,22 +135,22 @@ def schema(of: str = "scenario") -> dict[str, Any]:
 
 
 def studies() -> dict[str, str]:
-    """The studies that come with the library.
+    """Returns the studies that come with the library.
 
     Returns
     -------
     dict
-        Names, and their texts with all comments.
+        Names, with their texts including all comments.
     """
     return dict(_native.studies())
 
 
 def formats() -> dict[str, str]:
-    """The formats of strong-motion files that are read.
+    """Returns the supported formats of strong-motion files.
 
     Returns
     -------
     dict
-        Names, and their publishers.
+        Names, with their publishers.
     """
     return dict(_native.formats())

@@ -14,7 +14,7 @@ from ._scenario import Scenario
 
 __all__ = ["Calibration", "Estimate"]
 
-#: What all parameters are called that a response or a collapse may tell.
+#: Names of all parameters that a response or a collapse may determine.
 _ALL = ("k", "c", "mu-br", "mu-rg")
 
 
@@ -33,7 +33,7 @@ class Estimate(NamedTuple):
 
 
 def _text(measured: Any) -> tuple[str, str]:
-    """What errors call a test, and its measurements as CSV."""
+    """Returns the name of a test in errors, and its measurements as CSV."""
     if isinstance(measured, (str, os.PathLike)):
         name = os.fspath(cast("str | os.PathLike[str]", measured))
         with open(name, encoding="utf-8-sig") as file:
@@ -48,9 +48,9 @@ def _text(measured: Any) -> tuple[str, str]:
 class Calibration(Page):
     """Contact parameters from tests.
 
-    Measurements are a CSV file, a mapping of columns to values, or any table that speaks Arrow; headings carry the
-    unit, such as ``"angle (deg)"``. Intervals are of 95 % and hold what scatters in the measurements; a mass or a
-    stiffness that is given, and the model itself, are taken as exact.
+    Measurements are a CSV file, a mapping of columns to values, or any table that supports Arrow; headings carry the
+    unit, such as ``"angle (deg)"``. Intervals are of 95 % and include the scatter of the measurements; a given mass or
+    stiffness, and the model itself, are taken as exact.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Calibration(Page):
 
     @property
     def correlation(self) -> list[list[float]]:
-        """Correlations between the estimates (1), in their order; empty where they are not fitted together."""
+        """Correlations between the estimates (1), in their order; empty where they are not fitted jointly."""
         found: list[list[float]] = self.document["correlation"]
         return found
 
@@ -117,9 +117,9 @@ class Calibration(Page):
         measured
             Columns ``drop height`` and ``rebound height``, or ``time`` of the impacts of one bounce sequence.
         mass, stiffness
-            Of what falls, and of one contact node, with their units; both give the damping, too.
+            Of the falling body, and of one contact node, with their units; both also give the damping.
         nodes
-            Contact nodes that it falls on at once.
+            Number of contact nodes that it falls on at once.
         interface
             The pair that was tested.
 
@@ -130,7 +130,7 @@ class Calibration(Page):
         Raises
         ------
         Error
-            When a column or a row is missing, or what rebounds does not fit a drop.
+            When a column or a row is missing, or a rebound does not fit its drop.
         ValueError
             When one of mass and stiffness is given alone.
         """
@@ -172,19 +172,19 @@ class Calibration(Page):
         until: Any = None,
         progress: Progress = None,
     ) -> Calibration:
-        """Stiffness, damping and friction together from the recorded response of a shaken stack.
+        """Stiffness, damping and friction jointly from the recorded response of a shaken stack.
 
         Parameters
         ----------
         scenario
-            That of the test; fits start from its values.
+            The scenario of the test; fits start from its values.
         measured
             A column ``time`` from the start of the motion, and columns named as histories,
             ``"B1.1 displacement x (mm)"``.
         fit
             Among ``"k"`` and ``"c"`` of barrel-rack, ``"mu-br"`` and ``"mu-rg"``.
         until
-            Time with its unit after which rows are left out: take short windows of mild shaking, and no collapse.
+            Time with its unit after which rows are left out: use short windows of mild shaking, without collapse.
         progress
             As for :meth:`Scenario.run`.
 
@@ -195,7 +195,7 @@ class Calibration(Page):
         Raises
         ------
         Error
-            When the measurements do not go with the scenario.
+            When the measurements do not match the scenario.
         RunError
             When it cannot be simulated.
         KeyboardInterrupt
@@ -220,14 +220,14 @@ class Calibration(Page):
         seed: int = 1,
         progress: Progress = None,
     ) -> Calibration:
-        """Stiffness, damping and friction together from collapses that were seen, on video or by eye.
+        """Stiffness, damping and friction jointly from observed collapses, on video or by eye.
 
         Parameters
         ----------
         scenario
-            That of the tests that name none.
+            The scenario of the tests that name none.
         measured
-            A row a test: ``mode``, ``first fall (s)``, ``first barrel``, ``B4.1 fell (s)``, ``loss of seat (s)``,
+            One row per test: ``mode``, ``first fall (s)``, ``first barrel``, ``B4.1 fell (s)``, ``loss of seat (s)``,
             ``until (s)``, ``scenario``.
         others
             Scenarios that the tests name.
@@ -236,11 +236,11 @@ class Calibration(Page):
         within
             Parameters lie within this factor of those of the scenario.
         timing, placement
-            How well times were read off, and bodies put in their places: standard deviations with their units.
+            Accuracy of observed times, and of the placement of bodies: standard deviations with their units.
         simulations
-            Sets of parameters that are simulated, each once for every test.
+            Number of simulated parameter sets, each simulated once for every test.
         seed
-            Of all random numbers.
+            Seed of all random numbers.
         progress
             As for :meth:`Scenario.run`.
 
@@ -251,7 +251,7 @@ class Calibration(Page):
         Raises
         ------
         Error
-            When a cell cannot be what it stands for, or nothing within the range is like what was seen.
+            When a cell is invalid, or no simulation within the range resembles the observations.
         KeyboardInterrupt
             Within a second of Ctrl-C.
         """

@@ -1,4 +1,4 @@
-"""What many runs say: comparisons, heights, protections, scores, the cases of the paper."""
+"""Analyses of many runs: comparisons, heights, protections, scores, the cases of the paper."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Difference(NamedTuple):
 
 
 class Comparison(Page):
-    """Two or more runs side by side, made by :func:`compare`."""
+    """Comparison of two or more runs, made by :func:`compare`."""
 
     @property
     def runs(self) -> dict[str, dict[str, Any]]:
@@ -49,12 +49,12 @@ def compare(
     variants: int | None = None,
     progress: Progress = None,
 ) -> Comparison:
-    """Runs scenarios with their variants and sets them side by side, on one clock.
+    """Runs scenarios with their variants and compares them, on one clock.
 
     Parameters
     ----------
     runs
-        Two to six scenarios; of a mapping, the keys are what they are called, else words for what differs.
+        Two to six scenarios; the keys of a mapping are their names, by default words for their differences.
     variants
         As for :meth:`Scenario.run`.
     progress
@@ -67,7 +67,7 @@ def compare(
     Raises
     ------
     Error
-        When there are too few or too many, or two of them ask for the same run.
+        When there are too few or too many, or two of them are the same run.
     RunError
         When one cannot be built or does not stand.
     KeyboardInterrupt
@@ -86,12 +86,12 @@ def compare(
 
 
 class Heights(Page):
-    """How high is safe, made by :func:`heights`."""
+    """Safe heights, made by :func:`heights`."""
 
     @property
     def table(self) -> Table:
-        """A row for every height, direction and level of shaking: cases, collapses, Wilson's 95 % interval (1) of the
-        chance of collapse, mean share of the barrels that fall (1)."""
+        """One row for every height, direction and level of shaking: cases, collapses, Wilson's 95 % interval (1) of the
+        probability of collapse, mean share of the barrels that fall (1)."""
         rows = [
             {**one, "levels": height["levels"], "direction": height["direction"], "low": low, "high": high}
             for height in self.document["heights"]
@@ -112,20 +112,20 @@ def heights(
     seed: int = 1,
     progress: Progress = None,
 ) -> Heights:
-    """How high is safe: stacks of two to six levels in both directions under the same motions.
+    """Computes safe heights: stacks of two to six levels in both directions under the same motions.
 
     Parameters
     ----------
     folder
-        Where the studies behind it are kept; what is there of the same question is not run again.
+        Folder of the underlying studies; finished cases of the same request are not run again.
     rack, barrel
-        Names of the catalog.
+        Names from the catalog.
     records
         Files of further motions, such as that of one's own site.
     synthetic
         Synthetic motions beside the bundled record.
     seed
-        Of motions and friction.
+        Seed of motions and friction.
     progress
         As for :meth:`Scenario.run`.
 
@@ -140,7 +140,7 @@ def heights(
     RecordError
         When a record cannot be read.
     KeyboardInterrupt
-        Within a second of Ctrl-C; what was run is kept.
+        Within a second of Ctrl-C; finished runs are kept.
 
     Notes
     -----
@@ -152,18 +152,18 @@ def heights(
 
 
 class Protections(Page):
-    """What protects a stack best for what it costs, made by :func:`protect`."""
+    """Ranking of protections of a stack by benefit and cost, made by :func:`protect`."""
 
     @property
     def best(self) -> str | None:
-        """The one that saves most barrels for its cost; None where nothing helps beyond doubt."""
+        """The one that saves most barrels for its cost; None where no benefit is significant."""
         best: str | None = self.document["best"]
         return best
 
     @property
     def table(self) -> Table:
-        """A row for every protection that was tried, in the order of the page: cost for a stack (US$, from and to),
-        chance of collapse (1, or 1/year at a site), barrels that fall and that are saved, each with its 95 % interval.
+        """One row for every tried protection, in the order of the page: cost for a stack (US$, lower and upper),
+        probability of collapse (1, or 1/year at a site), barrels fallen and saved, each with its 95 % interval.
         """
         rows: list[dict[str, Any]] = []
         for one in self.document["protections"]:
@@ -177,7 +177,7 @@ class Protections(Page):
         return table_of(rows, {name: units.get(name, name) for name in rows[0]})
 
     def changes(self, name: str) -> list[str]:
-        """What a protection changes.
+        """Returns the changes of a protection.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class Protections(Page):
         Returns
         -------
         list of str
-            Overrides, ``path=value``, as the command takes them.
+            Overrides, ``path=value``, as for the command.
 
         Raises
         ------
@@ -215,31 +215,31 @@ def protect(
     seed: int = 1,
     progress: Progress = None,
 ) -> Protections:
-    """What protects a stack best for what it costs: fewer levels, other racks, devices, single and in pairs.
+    """Ranks protections of a stack by benefit and cost: fewer levels, other racks, devices, single and in pairs.
 
     Parameters
     ----------
     scenario
         The stack, or the name of one.
     folder
-        Where the studies behind it are kept; what is there of the same question is not run again.
+        Folder of the underlying studies; finished cases of the same request are not run again.
     site
-        How often the site is shaken how hard: a CSV of ``pgv (cm/s)`` and ``rate (1/year)``.
+        Hazard curve of the site: a CSV of ``pgv (cm/s)`` and ``rate (1/year)``.
     pgv
-        Peak ground velocities to which motions are scaled, texts or quantities such as ``"50 cm/s"``; 25, 50 and
-        75 cm/s without. Not beside ``site``.
+        Peak ground velocities to which motions are scaled, texts or quantities such as ``"50 cm/s"``; by default 25, 50
+        and 75 cm/s. Excludes ``site``.
     records
         Files of the motions, in place of the bundled and synthetic ones.
     motions
         A folder of such files.
     count
-        Motions of a round, where none are named.
+        Number of motions of a round, where none are named.
     rounds
-        Everything is tried in the first, half of it in each that follows.
+        Number of rounds: everything is tried in the first, half of it in each later one.
     budget
-        Most that a protection may cost for a stack (US$).
+        Upper limit of the cost of a protection for a stack (US$).
     seed
-        Of motions and friction.
+        Seed of motions and friction.
     progress
         As for :meth:`Scenario.run`.
 
@@ -254,7 +254,7 @@ def protect(
     RunError
         When the stack does not stand.
     KeyboardInterrupt
-        Within a second of Ctrl-C; what was run is kept.
+        Within a second of Ctrl-C; finished runs are kept.
 
     Notes
     -----
@@ -294,7 +294,7 @@ class RockScore(Page):
 
     @property
     def table(self) -> Table:
-        """A row for every state in every direction: the velocity (m/s) that counts, how it was found, its 95 %
+        """One row for every state in every direction: the velocity (m/s) that counts, its derivation, its 95 %
         interval, and the share (1) that collapsed at each level of shaking."""
         rows: list[dict[str, Any]] = []
         for one in self.document["states"]:
@@ -308,15 +308,14 @@ class RockScore(Page):
 
 
 def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) -> RockScore:
-    """The RockScore of a rack and its devices: one number by which they compare, by a protocol that never changes.
+    """Computes the RockScore of a rack and its devices: one number for comparisons, by a protocol that never changes.
 
     Parameters
     ----------
     scenario
-        A stack on the rack and with the devices that are scored, or the name of one; its height and its motion are
-        those of the protocol.
+        A stack with the scored rack and devices, or the name of one; height and motion are those of the protocol.
     folder
-        Where the studies behind it are kept; what is there of the same question is not run again.
+        Folder of the underlying studies; finished cases of the same request are not run again.
     progress
         As for :meth:`Scenario.run`.
 
@@ -331,7 +330,7 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
     RunError
         When the stack does not stand.
     KeyboardInterrupt
-        Within a second of Ctrl-C; what was run is kept.
+        Within a second of Ctrl-C; finished runs are kept.
 
     Notes
     -----
@@ -347,22 +346,22 @@ class Reproduction(Page):
 
     @property
     def table(self) -> Table:
-        """A row for every number and every finding that the paper states: where, what, published and ours with their
-        units, the relative difference (1), the verdict and why."""
+        """One row for every number and every finding that the paper states: place, quantity, published and ours
+        with units, the relative difference (1), the verdict and its reason."""
         names = ("place", "quantity", "published", "ours", "difference", "band", "verdict", "why")
         return table_of(self.document, {name: name for name in names})
 
 
 def reproduce(record: Path | None = None, *, studies: bool = True, progress: Progress = None) -> Reproduction:
-    """Runs every case of the paper behind the model and sets its numbers beside ours.
+    """Runs every case of the paper behind the model and compares its numbers with ours.
 
     Parameters
     ----------
     record
         The file of the Hollywood Storage record of Northridge, north-south, which cannot come with the package;
-        without it the six barrels are shaken by South Napa, and what hangs on the motion is not compared.
+        without it the six barrels are shaken by South Napa, and results that depend on the motion are not compared.
     studies
-        Whether to run the studies around each case, too: most of the work.
+        Whether to run also the studies around each case, which are most of the work.
     progress
         As for :meth:`Scenario.run`.
 

@@ -22,15 +22,15 @@ def ensemble(
     records: Mapping[str, Record] | None = None,
     progress: Progress = None,
 ) -> Table:
-    """Runs many cases, each with the bits of a single run, and tells what became of each.
+    """Runs many cases, each with the bits of a single run, and returns their results.
 
     Parameters
     ----------
     cases
-        What each case sets in the base: a list of dicts, or any table that speaks Arrow (polars, pandas, pyarrow,
+        Changes of the base in each case: a list of dicts, or any table that supports Arrow (polars, pandas, pyarrow,
         DuckDB). Columns are paths of fields, such as ``"stack.levels"``; a column of numbers may state their unit,
         ``"motion.scale.pgv (cm/s)"``; texts are values as on the command line, ``"60 cm/s"``. Empty cells set nothing.
-        A column ``"record"`` says what shakes the case: a name among ``records``, or, in a list of dicts, a record.
+        A column ``"record"`` sets the motion of the case: a name among ``records``, or, in a list of dicts, a record.
     base
         A scenario, or the name of one.
     records
@@ -41,12 +41,12 @@ def ensemble(
     Returns
     -------
     Table
-        A row a case, in their order: what it set, then outcome, demands and how it was computed.
+        One row per case, in their order: its changes, then outcome, demands and data of the computation.
 
     Raises
     ------
     ScenarioError
-        At the first case that cannot be, before anything is run; ``row`` tells which.
+        At the first invalid case, before anything is run; ``row`` is its number.
     RecordError
         When a record cannot be used, or the motion of the first case cannot be read. One of a later case is a row with
         the reason in ``error``.
@@ -56,7 +56,7 @@ def ensemble(
     Notes
     -----
     All cores are used, the interpreter's lock is free, and memory holds the motions of one batch a core.
-    A case looks at one plane.
+    A case runs in one plane.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-"""Exceptions of the package, with the library's own words.
+"""Exceptions of the package, with the messages of the library.
 
 ::
 
     Error
     ├── ScenarioError   a scenario or study file, an override, a value
-    ├── RecordError     a strong-motion file, or what was asked of one
+    ├── RecordError     a strong-motion file, or a request about one
     ├── RunError        a stack that does not stand, a step that is too long
     └── StudyError      a folder, a shard, a study without a verdict
 """
@@ -15,19 +15,19 @@ __all__ = ["BarrelstackWarning", "Error", "RecordError", "RunError", "ScenarioEr
 
 
 class Error(Exception):
-    """Anything that the library refuses.
+    """Any error of the library.
 
     Parameters
     ----------
     message
-        The library's words: where, what was expected, what was found, the next move.
+        The library's message: place, expectation, finding, remedy.
     path, line, column
         The place, where it is in a file; lines and columns count from 1.
     value
-        The value that was given, as ``field=value``, where it stands in no file.
+        The given value, as ``field=value``, if it is not in a file.
     """
 
-    #: The row of a table of cases that it is about, from 0.
+    #: The row of a table of cases that caused it, from 0.
     row: int | None = None
 
     def __init__(
@@ -45,20 +45,20 @@ class Error(Exception):
         self.value = value
 
     def __reduce__(self) -> tuple[type[Error], tuple[object, ...]]:
-        """So that it crosses from a worker to its caller with its place."""
+        """Keeps its place when it is pickled between processes."""
         return type(self), (str(self), self.path, self.line, self.column, self.value)
 
 
 class ScenarioError(Error, ValueError):
-    """A scenario or a study says something that cannot be, at a place."""
+    """A scenario or a study is invalid, at a place."""
 
 
 class RecordError(Error, ValueError):
-    """A strong-motion file cannot be read, or what was asked of one cannot be met."""
+    """A strong-motion file cannot be read, or a request about one cannot be satisfied."""
 
 
 class RunError(Error):
-    """There is no run: the stack does not stand, or cannot be followed."""
+    """The run is impossible: the stack does not stand, or cannot be simulated."""
 
 
 class StudyError(Error):
@@ -66,4 +66,4 @@ class StudyError(Error):
 
 
 class BarrelstackWarning(UserWarning):
-    """What the reader of a result should know."""
+    """A caveat for the reader of a result."""

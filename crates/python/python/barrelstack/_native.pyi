@@ -1,4 +1,4 @@
-"""The library for the package: what needs Rust."""
+"""The native part of the package."""
 
 import os
 from collections.abc import Callable
@@ -232,7 +232,7 @@ class Page:
 
 @final
 class Glance:
-    """What an observer sees of a run."""
+    """State of a run for an observer."""
 
     @property
     def time(self) -> float:

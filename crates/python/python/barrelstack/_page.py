@@ -1,4 +1,4 @@
-"""Results that are numbers for programs and a page for people."""
+"""Results with numbers for programs and a page for people."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["Page", "frame", "table_of"]
 
 
 def frame(page: str) -> str:
-    """A page as it is shown in a notebook.
+    """Wraps a page for display in a notebook.
 
     Parameters
     ----------
@@ -26,14 +26,14 @@ def frame(page: str) -> str:
     Returns
     -------
     str
-        An element that holds it.
+        An element that contains it.
     """
     quoted = html.escape(page, quote=True)
     return f'<iframe srcdoc="{quoted}" style="width: 100%; height: 720px; border: 0"></iframe>'
 
 
 def table_of(rows: Iterable[Mapping[str, Any]], names: Mapping[str, str]) -> Table:
-    """Rows of a document as a table.
+    """Converts rows of a document to a table.
 
     Parameters
     ----------
@@ -68,11 +68,11 @@ class Page:
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader should know, one sentence each."""
+        """Caveats for the reader, one sentence each."""
         return self._native.warnings
 
     def html(self) -> str:
-        """The page as one file that asks the network for nothing.
+        """Returns the page as one file that needs no network.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""How far work is: a bar in terminals and notebooks, or a function of one's own."""
+"""Progress of work: a bar in terminals and notebooks, or a user's function."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["Progress", "told"]
 
 logger = logging.getLogger("barrelstack")
 
-#: What hears how far work is: so much of so much (not a number where that is not known), of what.
+#: Progress callback: amount done, total (not a number where unknown), and unit.
 Told = Callable[[float, float, str], object]
 
-#: True for a bar, False or None for silence, or a function that hears of it.
+#: True for a bar, False or None for silence, or a progress callback.
 Progress = bool | Told | None
 
 
@@ -52,7 +52,7 @@ class _Tqdm:
             self.close()
             self.bar = self.make(total=of if math.isfinite(of) else None, unit=f" {what}")
             self.what = what
-        # A run may end before its time, so what is left is not done.
+        # A run may end before its time: do not complete the bar.
         self.bar.n = round(done, 2)
         self.bar.refresh()
 
@@ -71,14 +71,14 @@ def _bar() -> _Plain | _Tqdm:
 
 
 class told:
-    """Work of a name whose progress is shown, passed on or kept silent; also told to :mod:`logging`.
+    """Runs named work whose progress is shown, passed on or ignored; also logs it to :mod:`logging`.
 
     Parameters
     ----------
     progress
-        True for a bar, a function for one's own, False or None for silence.
+        True for a bar, a function of the user, False or None for silence.
     name
-        What the log calls the work.
+        Name of the work in the log.
     """
 
     def __init__(self, progress: Progress, name: str) -> None:

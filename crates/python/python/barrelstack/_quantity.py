@@ -1,4 +1,4 @@
-"""Quantities of Pint and astropy as the texts with units that the library reads."""
+"""Converts quantities of Pint and astropy to texts with units, as the library reads them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Astropy(Protocol):
     si: Any
 
 
-#: Base units by the names that Pint and astropy have for them.
+#: Base units by their names in Pint and astropy.
 _BASE = {
     "meter": "m",
     "m": "m",
@@ -47,7 +47,7 @@ def _written(value: float, powers: dict[str, Fraction | float]) -> str:
 
 
 def _of_pint(quantity: Any) -> str:
-    # Pint has no fixed system: grams or kilograms may be its base.
+    # Pint has no fixed system: its base unit of mass may be the gram or the kilogram.
     base = quantity.to_base_units()
     return _written(base.magnitude, dict(base.unit_items()))
 
@@ -59,17 +59,17 @@ def _of_astropy(quantity: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """A value as the library takes it: quantities as texts with units, containers with such values.
+    """Converts a value for the library: quantities to texts with units, also inside of containers.
 
     Parameters
     ----------
     value
-        A text, number, truth, list or dict, or a quantity of Pint or astropy in any of them.
+        A text, number, bool, list or dict, or a quantity of Pint or astropy in any of them.
 
     Returns
     -------
     object
-        The same without any type of another package.
+        The value without any type of another package.
 
     Raises
     ------
@@ -89,13 +89,13 @@ def plain(value: Any) -> Any:
             return _of_astropy(value)
     except KeyError as unit:
         raise TypeError(f"no field of a scenario has the unit {unit}") from None
-    # Numbers and truths of NumPy.
+    # Numbers and bools of NumPy.
     item = getattr(value, "item", None)
     return plain(item()) if callable(item) and getattr(value, "ndim", 0) == 0 else value
 
 
 def literal(value: Any) -> str:
-    """A value as TOML, for an override.
+    """Formats a value as TOML, for an override.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Channel", "Intensity", "Record"]
 
-#: The measures that are shown where none are named.
+#: The default measures.
 USUAL = ("pga", "pgv", "pgd", "pgv/pga", "arias", "cav", "d5-75", "d5-95", "bracketed", "tm")
 
 
@@ -31,9 +31,9 @@ class Channel(NamedTuple):
     vertical: bool
     #: Time between samples (s).
     time_step: float
-    #: Instant of the first sample (UTC, ISO 8601); None where the file does not tell.
+    #: Instant of the first sample (UTC, ISO 8601); None where the file does not state it.
     start: str | None
-    #: Acceleration (m/s²), shape (samples,): a view that cannot be written; vertical ones are positive upward.
+    #: Acceleration (m/s²), shape (samples,): a read-only view; vertical ones are positive upward.
     acceleration: NDArray[np.float64]
 
 
@@ -42,12 +42,12 @@ class Intensity(NamedTuple):
 
     measure: str
     unit: str
-    #: By the name of the component.
+    #: Values by component.
     values: dict[str, float]
 
 
 class Record:
-    """Accelerations of one instrument in one event; never changed, only made anew.
+    """Accelerations of one instrument in one event; immutable.
 
     Made by :meth:`read`, :meth:`bundled`, :meth:`made`, :meth:`from_arrays` or :meth:`from_obspy`.
 
@@ -82,9 +82,9 @@ class Record:
         time_step
             Time between samples (s) for files that state none.
         sensitivity
-            Counts to one m/s² for files that hold counts.
+            Counts per m/s² for files that hold counts.
         name
-            What errors call bytes.
+            Name of bytes in errors.
 
         Returns
         -------
@@ -93,7 +93,7 @@ class Record:
         Raises
         ------
         RecordError
-            With path, line and column, what was expected and what was found.
+            With path, line and column, expectation and finding.
 
         Notes
         -----
@@ -111,7 +111,7 @@ class Record:
 
     @classmethod
     def bundled(cls, name: str = "napa-college-2014") -> Record:
-        """A record that comes with the library.
+        """Returns a record that comes with the library.
 
         Parameters
         ----------
@@ -129,25 +129,25 @@ class Record:
 
     @classmethod
     def made(cls, **motion: Any) -> Record:
-        """A motion from a formula, or from random numbers of a seed.
+        """Makes a motion from a formula, or from random numbers of a seed.
 
         Parameters
         ----------
         **motion
-            One of ``sine``, ``pulse`` and ``synthetic``, as a ``[[motion]]`` of a study has it, and ``scale`` where it
-            is scaled: ``pulse={"kind": "ricker", "amplitude": "0.4 g", "period": "0.8 s"}``,
+            One of ``sine``, ``pulse`` and ``synthetic``, as in a ``[[motion]]`` of a study, and ``scale`` to scale it:
+            ``pulse={"kind": "ricker", "amplitude": "0.4 g", "period": "0.8 s"}``,
             ``synthetic={"kind": "boore", "magnitude": 6, "distance": "8 km", "seed": 4}``. Quantities of Pint and
-            astropy are taken as well.
+            astropy are accepted as well.
 
         Returns
         -------
         Record
-            At the step of its samples, or a 400th of the period of a formula; its notes say how it was made.
+            At the step of its samples, or a 400th of the period of a formula; its notes state its origin.
 
         Raises
         ------
         ScenarioError
-            At the first field that cannot be.
+            At the first invalid field.
         TypeError
             When it is not exactly one of these kinds.
         ValueError
@@ -185,13 +185,13 @@ class Record:
         start: str | None = None,
         station: str = "",
     ) -> Record:
-        """A record from accelerations at hand.
+        """Makes a record from accelerations in memory.
 
         Parameters
         ----------
         acceleration
-            The horizontal component, shape (samples,); or all components by name, where names tell directions as
-            those of files do: ``"360"``, ``"N28W"``, ``"H1"``, ``"UP"``.
+            The horizontal component, shape (samples,); or all components by name, where names state directions as in
+            files: ``"360"``, ``"N28W"``, ``"H1"``, ``"UP"``.
         dt
             Time between samples (s).
         unit
@@ -201,9 +201,9 @@ class Record:
         second
             The other horizontal component.
         name
-            What results call it.
+            Name of the record in results.
         raw
-            Whether it is as recorded, so that it is processed before it shakes anything.
+            Whether it is as recorded, so that it is processed before use.
         start
             Instant of the first sample (UTC, ISO 8601).
         station
@@ -229,18 +229,18 @@ class Record:
 
     @classmethod
     def from_obspy(cls, stream: Any, *, unit: str, name: str = "", raw: bool = False) -> Record:
-        """A record from a trace or a stream of ObsPy.
+        """Makes a record from a trace or a stream of ObsPy.
 
         Parameters
         ----------
         stream
-            A ``Trace``, or a ``Stream`` whose traces are the components of one instrument, all of one step.
+            A ``Trace``, or a ``Stream`` whose traces are the components of one instrument, all with one step.
         unit
             Unit of the numbers. Traces are often counts: remove the response or the sensitivity first.
         name
-            What results call it; the identity of the first trace without.
+            Name of the record in results; by default the identity of the first trace.
         raw
-            Whether it is as recorded, so that it is processed before it shakes anything.
+            Whether it is as recorded, so that it is processed before use.
 
         Returns
         -------
@@ -270,7 +270,7 @@ class Record:
                 raise ValueError(f"{trace.id} has gaps; fill or cut them first")
         components = {trace.stats.channel or trace.id: trace.data for trace in traces}
         station = f"{first.network}.{first.station}".strip(".")
-        # A trace without a start has that of 1970.
+        # ObsPy sets 1970 as the start of a trace without one.
         start = first.starttime.datetime.isoformat() + "Z" if first.starttime.timestamp != 0 else None
         return cls.from_arrays(
             components,
@@ -283,19 +283,19 @@ class Record:
         )
 
     def to_obspy(self) -> Any:
-        """The record as a stream of ObsPy, accelerations in m/s².
+        """Returns the record as a stream of ObsPy, accelerations in m/s².
 
         Returns
         -------
         obspy.Stream
-            One trace a component; names of components are cut to the three letters that a trace takes, and of a long
-            station its number is left.
+            One trace per component; names of components are cut to the three letters of a trace, and a long
+            station name to its number.
         """
         from obspy import Stream, Trace, UTCDateTime
 
         network, _, station = self.station.rpartition(".")
         if len(station) > 5:
-            # A trace has five letters: the number of the station is among the words of its name.
+            # A station code has five letters: use the number among the words of its name.
             codes = [word for word in re.findall(r"\w+", station) if len(word) <= 5 and any(map(str.isdigit, word))]
             network, station = "", codes[0] if codes else ""
         traces = []
@@ -313,12 +313,12 @@ class Record:
 
     @property
     def name(self) -> str:
-        """The name of the file, or what was given."""
+        """Name of the file, or the given name."""
         return self._native.name
 
     @property
     def format(self) -> str:
-        """The name of the format that it was read in; ``samples`` where it was made of arrays."""
+        """Name of the file format; ``samples`` if made from arrays."""
         return self._native.format
 
     @property
@@ -333,33 +333,33 @@ class Record:
 
     @property
     def stage(self) -> str:
-        """How far it was processed: ``raw``, ``corrected`` or ``unknown``."""
+        """Stage of processing: ``raw``, ``corrected`` or ``unknown``."""
         return self._native.stage
 
     @property
     def notes(self) -> list[str]:
-        """What was done to its numbers, one sentence a step."""
+        """Steps of processing, one sentence each."""
         return self._native.notes
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader noticed."""
+        """Warnings of the file reader."""
         return self._native.warnings
 
     @property
     def channels(self) -> list[Channel]:
-        """The components, in the order of the file; accelerations are views without a copy."""
+        """The components, in the order of the file; accelerations are views without copies."""
         facts = self._native.channels()
         return [
             Channel(*told, self._native.acceleration(at)) for at, told in enumerate(facts)
         ]
 
     def __getitem__(self, component: str) -> Channel:
-        """A component by name, ``"h1"``, ``"h2"``, ``"vertical"`` or ``"#3"``."""
+        """Returns a component by name, ``"h1"``, ``"h2"``, ``"vertical"`` or ``"#3"``."""
         return self.channels[self._native.find(component)]
 
     def velocity(self, component: str = "h1") -> NDArray[np.float64]:
-        """Velocity (m/s) at the samples: the integral of accelerations that are linear between.
+        """Returns the velocity (m/s) at the samples: the integral of accelerations that are linear between.
 
         Parameters
         ----------
@@ -378,7 +378,7 @@ class Record:
         return self._native.integrated(self._native.find(component))[0]
 
     def displacement(self, component: str = "h1") -> NDArray[np.float64]:
-        """Displacement (m) at the samples, as it moves the ground of a model.
+        """Returns the displacement (m) at the samples, as applied to the ground of a model.
 
         Parameters
         ----------
@@ -392,7 +392,7 @@ class Record:
         return self._native.integrated(self._native.find(component))[1]
 
     def component(self, name: str) -> Record:
-        """The record with one component alone, turned where need be.
+        """Returns the record with one component alone, turned if necessary.
 
         Parameters
         ----------
@@ -406,7 +406,7 @@ class Record:
         Raises
         ------
         RecordError
-            When the record has no such component, or an azimuth is asked for and two horizontals do not say theirs.
+            When the record has no such component, or an azimuth is requested and two horizontals do not state theirs.
         """
         return Record(self._native.component(name))
 
@@ -423,14 +423,13 @@ class Record:
         keep_pads: bool | None = None,
         close: bool | None = None,
     ) -> Record:
-        """All components after a chain of processing, every step in :attr:`notes`.
+        """Processes all components by a chain, every step in :attr:`notes`.
 
         Parameters
         ----------
         chain
-            Where to start: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at 0.1 Hz,
-            ends closed), ``"compact"`` (the same without pads), or ``"none"``. What is given beside it replaces its
-            step.
+            Base of the settings: ``"default"`` for the stage of the record, ``"raw"`` (mean, taper, high-pass at
+            0.1 Hz, ends closed), ``"compact"`` (the same without pads), or ``"none"``. Other arguments replace its steps.
         mean
             ``"keep"``, ``"pre-event"`` or ``"whole"``.
         detrend
@@ -459,15 +458,14 @@ class Record:
         return Record(self._native.process(chain, *steps))
 
     def scale(self, factor: float | None = None, *, of: str = "h1", **target: float | str) -> Record:
-        """All components times one factor.
+        """Multiplies all components by one factor.
 
         Parameters
         ----------
         factor
-            The factor; or leave it out and name a measure.
+            The factor; or omit it and name a measure.
         of
-            The component that the measure is about, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"`` of both
-            horizontals.
+            The component of the measure, or ``"rotd50"``, ``"rotd100"`` or ``"geomean"`` of both horizontals.
         **target
             One measure and its value: ``pgv=0.6`` (SI), ``pgv="60 cm/s"``, ``pga="0.4 g"``, ``arias=2.0``. Measures
             with a period are written ``**{"sa(1.0)": "0.5 g"}``.
@@ -500,7 +498,7 @@ class Record:
         tolerance: float = 0.05,
         nearly: bool = False,
     ) -> Record:
-        """The record with one component matched to a target spectrum; all others take its first scaling.
+        """Matches one component to a target spectrum; all others are multiplied by its first scaling.
 
         Parameters
         ----------
@@ -511,7 +509,7 @@ class Record:
         of
             The component that is matched.
         damping
-            Damping ratio of a target that is given by numbers.
+            Damping ratio of a numerical target.
         method
             ``"time"``: wavelets at the peak responses; ``"frequency"``: Fourier amplitudes, phases kept.
         periods
@@ -519,7 +517,7 @@ class Record:
         tolerance
             Largest relative misfit accepted at any of them.
         nearly
-            Whether to take the best motion where the tolerance is not reached; :attr:`notes` say what it misses.
+            Whether to accept the best motion where the tolerance is not reached; :attr:`notes` state the misfits.
 
         Returns
         -------
@@ -544,18 +542,18 @@ class Record:
         return Record(record)
 
     def intensity(self, *measures: str) -> list[Intensity]:
-        """Intensity measures of every component.
+        """Returns intensity measures of every component.
 
         Parameters
         ----------
         *measures
-            Names such as ``"pgv"``, ``"sa(1.0)"``, ``"sa(1.0,0.02)"``, ``"d5-95"``, ``"housner"``; the usual ones
-            without.
+            Names such as ``"pgv"``, ``"sa(1.0)"``, ``"sa(1.0,0.02)"``, ``"d5-95"``, ``"housner"``; by default the usual
+            ones.
 
         Returns
         -------
         list of Intensity
-            Each with its unit and a value (SI) by component. ``pandas.DataFrame`` takes the list as it is.
+            Each with its unit and a value (SI) by component. ``pandas.DataFrame`` accepts the list.
 
         Raises
         ------
@@ -576,12 +574,12 @@ class Record:
         damping: float = 0.05,
         of: str = "h1",
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Response spectrum of a component, or of both horizontals.
+        """Returns the response spectrum of a component, or of both horizontals.
 
         Parameters
         ----------
         periods
-            Periods (s); thirty a decade from 0.01 to 10 s without.
+            Periods (s); by default thirty a decade from 0.01 to 10 s.
         damping
             Damping ratio.
         of
@@ -598,7 +596,7 @@ class Record:
         return at, self._native.spectrum(at, damping, of)
 
     def plot(self, component: str = "h1", *, damping: float = 0.05) -> Figure:
-        """Acceleration, velocity and displacement of a component, and its response spectrum.
+        """Plots acceleration, velocity and displacement of a component, and its response spectrum.
 
         Parameters
         ----------
@@ -640,7 +638,7 @@ class Record:
         return figure
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes it in the form of the ending: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
+        """Writes it in the format of the extension: ``.txt`` and ``.npz`` (exact), ``.csv``, ``.at2``.
 
         Parameters
         ----------
@@ -650,7 +648,7 @@ class Record:
         Raises
         ------
         RecordError
-            When the ending is of no form that is written, or the form cannot hold the record.
+            When the extension is unknown, or the format cannot hold the record.
         OSError
             When the file cannot be written.
         """

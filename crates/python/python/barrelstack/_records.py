@@ -18,7 +18,7 @@ from ._table import Table
 
 __all__ = ["Selection", "intensities", "read_folder", "select"]
 
-#: Periods (s) at which a code's spectrum is followed: those that the command counts unless told otherwise.
+#: Periods (s) at which a code's spectrum is matched: the command's default.
 PERIODS = tuple(period for period in _native.PERIODS if period <= 5.0)
 
 
@@ -29,29 +29,29 @@ def read_folder(
     time_step: float | None = None,
     sensitivity: float | None = None,
 ) -> dict[str, Record]:
-    """All records of a folder and of those below it.
+    """Reads all records of a folder and its subfolders.
 
     Parameters
     ----------
     folder
-        Where they lie; hidden files are left alone.
+        The folder; hidden files are skipped.
     unit, time_step, sensitivity
         As for :meth:`Record.read`.
 
     Returns
     -------
     dict
-        Records by name, sorted; files whose names say that they are components of one record are one.
+        Records by name, sorted; files whose names mark them as components of one record are combined.
 
     Raises
     ------
     OSError
-        When a folder is not there or cannot be read.
+        When a folder is missing or cannot be read.
 
     Warns
     -----
     BarrelstackWarning
-        For each file that is no record, with the reason.
+        For each file that is not a record, with the reason.
     """
 
     def unreadable(reason: OSError) -> None:
@@ -83,7 +83,7 @@ def read_folder(
 
 
 def intensities(records: Mapping[str, Record], *measures: str) -> Table:
-    """Intensity measures of many records.
+    """Computes intensity measures of many records.
 
     Parameters
     ----------
@@ -95,8 +95,8 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
     Returns
     -------
     Table
-        A row for every component of every record: ``record``, ``component``, and a column for every measure (SI), None
-        where the component is too short for it.
+        One row for every component of every record: ``record``, ``component``, and a column for every measure (SI),
+        None where the component is too short for it.
 
     Raises
     ------
@@ -119,18 +119,18 @@ def intensities(records: Mapping[str, Record], *measures: str) -> Table:
 class Selection(NamedTuple):
     """Records whose spectra have a target's mean and spread, made by :func:`select`."""
 
-    #: The chosen records by name, each times its factor.
+    #: The chosen records by name, each multiplied by its factor.
     records: dict[str, Record]
-    #: By what each was multiplied.
+    #: Factor of each record.
     factors: dict[str, float]
     #: Periods (s).
     periods: NDArray[np.float64]
-    #: Of the target: its medians (m/s², damping 5 %) in the first row, its standard deviations of ln Sa (1) in the
-    #: second; shape (2, periods).
+    #: Target: medians (m/s², damping 5 %) in the first row, standard deviations of ln Sa (1) in the second;
+    #: shape (2, periods).
     target: NDArray[np.float64]
-    #: The same of the set.
+    #: The same for the set.
     found: NDArray[np.float64]
-    #: How many records reach the target within the factors.
+    #: Number of records that reach the target within the factors.
     eligible: int
 
 
@@ -148,34 +148,34 @@ def select(
     most_of_event: int | None = None,
     seed: int = 1,
 ) -> Selection:
-    """Chooses records whose spectra together have the mean and the spread of a target.
+    """Selects records whose spectra jointly match the mean and the spread of a target.
 
     Parameters
     ----------
     records
-        What may be chosen, such as :func:`read_folder` gives them.
+        The candidates, such as those of :func:`read_folder`.
     target
-        A code's spectrum as for :meth:`Record.match`, which all shall follow from 0.05 to 5 s; or of a ground-motion
-        model the periods (s, ascending), medians of the pseudo-acceleration (m/s², damping 5 %) and standard
-        deviations of ln Sa (1); all periods that are given count.
+        A code's spectrum as for :meth:`Record.match`, which all records shall match from 0.05 to 5 s; or the periods
+        (s, ascending), medians of the pseudo-acceleration (m/s², damping 5 %) and standard deviations of ln Sa (1) of a
+        ground-motion model, all of which count.
     at
-        Period (s), one of the model's, at which Sa is given: then the conditional spectrum (Baker 2011).
+        Period (s), one of the model's, at which Sa is given: selects the conditional spectrum (Baker 2011).
     level
         Sa there, in m/s² or as a text or quantity such as ``"0.6 g"``.
     epsilon
         Or Sa there, as standard deviations of ln Sa above the median.
     count
-        How many are chosen.
+        Number of records to choose.
     spectrum
-        Which spectrum of a record counts: ``"rotd50"``, or a component such as ``"h1"``.
+        Spectrum of a record to match: ``"rotd50"``, or a component such as ``"h1"``.
     scale
         Smallest and largest factor.
     events
-        The earthquake of each record, where it is not that of its header.
+        The earthquake of each record, if not that of its header.
     most_of_event
-        Most records of one earthquake.
+        Maximum number of records of one earthquake.
     seed
-        Of the spectra that are simulated.
+        Seed of the simulated spectra.
 
     Returns
     -------
@@ -184,19 +184,19 @@ def select(
     Raises
     ------
     RecordError
-        When too few records reach the target, or it makes no sense.
+        When too few records reach the target, or it is inconsistent.
     ValueError
-        When a condition is none: a period without level or epsilon, one that is none of the target's, or of a code.
+        When a condition is invalid: a period without level or epsilon, one not in the target, or one for a code.
 
     Warns
     -----
     BarrelstackWarning
-        For each record that has no such spectrum, such as RotD50 of one component; it is left out.
+        For each record without such a spectrum, such as RotD50 of one component; it is left out.
 
     Notes
     -----
-    The choice is that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker (2011), Earthquake
-    Spectra 27:797-815.
+    The choice is that of ``barrelstack motion select`` for the same spectra and periods: Jayaram, Lin and Baker (2011),
+    Earthquake Spectra 27:797-815.
     """
     wanted: str | tuple[list[float], list[float]]
     given: tuple[float, float] | None = None
@@ -246,7 +246,7 @@ def _given(
     level: object,
     epsilon: float | None,
 ) -> float:
-    """Sa (m/s²) that is given at a period."""
+    """Returns the Sa (m/s²) given at a period."""
     if epsilon is None:
         said = plain(level)
         try:

@@ -1,4 +1,4 @@
-"""What became of a scenario."""
+"""Results of a scenario."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ Glance = _native.Glance
 
 
 def warn(sentences: list[str]) -> None:
-    """Tells what the reader of a result should know, as warnings of Python."""
+    """Issues the caveats of a result as Python warnings."""
     for sentence in sentences:
         warnings.warn(sentence, BarrelstackWarning, stacklevel=3)
 
 
 class Outcome(NamedTuple):
-    """What happened."""
+    """Outcome of a run."""
 
     #: ``stable``, ``collapse``, ``not-judged``, ``interrupted`` or ``invalid``.
     kind: str
     #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
     #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
     mode: str | None
-    #: When the first body left its seat (s).
+    #: Time at which the first body left its seat (s).
     time: float | None
     #: That body.
     first: str | None
-    #: When the first barrel had fallen (s).
+    #: Time at which the first barrel had fallen (s).
     first_fall: float | None
     barrels_fallen: int | None
     barrels: int
-    #: Why the run is invalid.
+    #: Reason why the run is invalid.
     reason: str | None
 
 
 class Demands(Mapping[str, "float | None"]):
-    """Demands on the stack in a part of its run, by name, in SI units; None where one does not apply."""
+    """Demands on the stack in a part of its run, by name, in SI units; None if not applicable."""
 
     def __init__(self, values: dict[str, float | None]) -> None:
         self._values = values
@@ -74,7 +74,7 @@ class Demands(Mapping[str, "float | None"]):
 
     @property
     def meanings(self) -> dict[str, str]:
-        """What each is, in a sentence."""
+        """Meaning of each, in a sentence."""
         return {path.removeprefix("demands."): meaning for path, _, meaning in _demands()}
 
     def __repr__(self) -> str:
@@ -90,11 +90,11 @@ def _demands() -> list[tuple[str, str, str]]:
 
 
 class Histories(Mapping[str, "NDArray[np.float64]"]):
-    """Histories of the ground, of every body and of the energies, by name: views without a copy.
+    """Histories of the ground, of every body and of the energies, by name: views without copies.
 
     Examples
     --------
-    >>> run.histories["B4.1 displacement x"]  # m, against the ground and the place at rest
+    >>> run.histories["B4.1 displacement x"]  # m, relative to the ground and the place at rest
     """
 
     def __init__(self, native: _native.Run) -> None:
@@ -129,7 +129,7 @@ class Histories(Mapping[str, "NDArray[np.float64]"]):
         return len(self._units)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """As a table of Arrow, ``time`` first."""
+        """Exports a table of Arrow, ``time`` first."""
         columns = [(name, unit, self[name]) for name, unit in self._units.items()]
         return _native.Table.of_numbers(columns).__arrow_c_stream__(requested_schema)
 
@@ -137,19 +137,19 @@ class Histories(Mapping[str, "NDArray[np.float64]"]):
 class Force(NamedTuple):
     """The force between two bodies of a stack, on the upper one.
 
-    Of two bodies of which none leans on the other by design, on the one that is named first. Largest forces are those of
-    any step that are largest in size, with their sign.
+    If neither body leans on the other by design, on the one named first. Largest forces are the extremes by absolute
+    value over all steps, with their sign.
     """
 
     #: Vertical force at rest (N).
     at_rest: float
-    #: Largest vertical force (N) until the first loss of seat, and when (s).
+    #: Largest vertical force (N) until the first loss of seat, and its time (s).
     peak_vertical: tuple[float, float]
-    #: Largest horizontal force (N) until the first loss of seat, and when (s).
+    #: Largest horizontal force (N) until the first loss of seat, and its time (s).
     peak_horizontal: tuple[float, float]
-    #: Largest vertical force (N) over the whole run, falls included, and when (s).
+    #: Largest vertical force (N) over the whole run, falls included, and its time (s).
     peak_vertical_whole_run: tuple[float, float]
-    #: Largest horizontal force (N) over the whole run, falls included, and when (s).
+    #: Largest horizontal force (N) over the whole run, falls included, and its time (s).
     peak_horizontal_whole_run: tuple[float, float]
     #: Vertical force (N) at the times of the histories: a view without a copy.
     vertical: NDArray[np.float64]
@@ -160,11 +160,11 @@ class Force(NamedTuple):
 class Envelope(NamedTuple):
     """Normal stress along the boundary of a body, force per length of boundary."""
 
-    #: Places (m) in the frame of the body, shape (points, 2): x and z.
+    #: Positions (m) in the frame of the body, shape (points, 2): x and z.
     points: NDArray[np.float64]
     #: Coordinate along the boundary: angle (rad) from x on a circle, x (m) elsewhere.
     coordinate: NDArray[np.float64]
-    #: Length of boundary (m) that each value holds for; stress at rest times it is the contact force there.
+    #: Tributary length of boundary (m) of each value; times the stress at rest it is the contact force there.
     length: NDArray[np.float64]
     #: Stress at rest (N/m): a view without a copy.
     at_rest: NDArray[np.float64]
@@ -177,7 +177,7 @@ class Envelope(NamedTuple):
 
 
 class Frames(NamedTuple):
-    """Where all bodies were, at the rate of frames."""
+    """Poses of all bodies, at the rate of frames."""
 
     #: Times (s), shape (frames,).
     time: NDArray[np.float64]
@@ -190,7 +190,7 @@ class Frames(NamedTuple):
 
 
 class Run:
-    """What became of a scenario, in one plane, with everything that was seen of the run that is shown.
+    """Results of a scenario in one plane, with all recordings of the shown run.
 
     Made by :meth:`Scenario.run`.
     """
@@ -211,18 +211,18 @@ class Run:
 
     @property
     def outcome(self) -> Outcome:
-        """What happened in the run that is shown."""
+        """Outcome of the shown run."""
         outcome = self.summary["outcome"]
         return Outcome(**{name: outcome.get(name) for name in Outcome._fields})
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
-        """What all variants say together: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property
     def variants(self) -> Table | None:
-        """The stack as it is stated (number 0) and its variants, a row each; None where none were run."""
+        """The nominal stack (number 0) and its variants, a row each; None if none were run."""
         table = self._native.variants()
         return None if table is None else Table(table)
 
@@ -245,7 +245,7 @@ class Run:
     def forces(self) -> dict[str, Force]:
         """Forces between bodies that lean on each other, by names such as ``"R1 on ground"``.
 
-        And of bodies that met before the first loss of seat, such as ``"R1.1 against R1.2"``.
+        Includes bodies that met before the first loss of seat, such as ``"R1.1 against R1.2"``.
         """
         facts = self._native.joints()
         return {
@@ -271,7 +271,7 @@ class Run:
         return Frames(native.frame_times(), bodies, native.poses(), native.frame_stresses())
 
     def contact_forces(self, frame: int) -> NDArray[np.float64]:
-        """The contact forces of a frame, one arrow a pair of bodies.
+        """Returns the contact forces of a frame, one arrow per pair of bodies.
 
         Parameters
         ----------
@@ -281,13 +281,13 @@ class Run:
         Returns
         -------
         ndarray, shape (arrows, 4)
-            Place x, z (m) and force x, z (N) on the body that carries the contact.
+            Position x, z (m) and force x, z (N) on the body that carries the contact.
         """
         return self._native.frame_forces(frame)
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader should know, one sentence each."""
+        """Caveats for the reader, one sentence each."""
         return self._native.warnings
 
     @property
@@ -297,17 +297,17 @@ class Run:
 
     @property
     def scenario(self) -> str:
-        """The scenario of the run that is shown, every default written out (TOML)."""
+        """The scenario of the shown run, every default written out (TOML)."""
         return self._native.toml
 
     @property
     def other(self) -> Run | None:
-        """The other plane, where the scenario looks at its stack in both; None where it looks at one."""
+        """The other plane, where the scenario has both; None where it has one."""
         other = self._native.other()
         return None if other is None else Run(other)
 
     def html(self) -> str:
-        """The report as one page that asks the network for nothing.
+        """Returns the report as one page that needs no network.
 
         Returns
         -------
@@ -339,7 +339,7 @@ class Run:
         folder
             A folder that is new or empty.
         overwrite
-            Whether to write into one that holds something.
+            Whether to write into one that is not empty.
         """
         self._native.write(os.fspath(folder), overwrite)
 
@@ -355,34 +355,34 @@ class Run:
         size: int = 480,
         overwrite: bool = False,
     ) -> dict[str, int]:
-        """Writes pictures and films of the run that is shown, as ``barrelstack render``.
+        """Writes pictures and films of the shown run, as ``barrelstack render``.
 
         Parameters
         ----------
         folder
-            Where to write.
+            The output folder.
         *parts
             Among ``"figures"`` (SVG and the formats, each with its numbers), ``"report"`` (PDF), ``"animation"`` (GIF
-            and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them without.
+            and animated PNG), ``"frames"`` (numbered pictures) and ``"paraview"``; all of them by default.
         formats
-            Of figures beside SVG: ``"png"``, ``"pdf"``; both without.
+            Formats of figures besides SVG: ``"png"``, ``"pdf"``; both by default.
         dpi
             Dots per inch of figures as PNG, 20 to 1200.
         paper
             ``"a4"`` or ``"letter"``.
         rate
-            Pictures for every second of the run (1/s); animations show at most 50.
+            Pictures per second of the run (1/s); animations show at most 50.
         between
-            What is filmed, from and to (s); all of the run without.
+            Time interval of the film (s); all of the run by default.
         size
             Longer side of animations (pixels), 64 to 4096.
         overwrite
-            Whether to remove what an earlier rendering wrote in the places of these parts.
+            Whether to remove the files of an earlier rendering of these parts.
 
         Returns
         -------
         dict
-            The place of each part, and the count of its files.
+            The place of each part, and the number of its files.
 
         Raises
         ------
@@ -398,14 +398,14 @@ class Run:
         return {os.fspath(place): files for place, files in written}
 
     def plot(self, *names: str, ax: Axes | None = None) -> Axes:
-        """Histories over time.
+        """Plots histories over time.
 
         Parameters
         ----------
         *names
-            Histories of one unit; displacements along x of the top barrels, or of all bodies of a free scene, without.
+            Histories of one unit; by default displacements along x of the top barrels, or of all free bodies.
         ax
-            Where to draw; new axes without.
+            Axes to draw into; new ones by default.
 
         Returns
         -------

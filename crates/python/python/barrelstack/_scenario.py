@@ -1,4 +1,4 @@
-"""Scenarios: what stands, what shakes it, how it is run."""
+"""Scenarios: a stack or bodies, their ground motion, and the settings of the run."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ def _schema(of: str) -> dict[str, Any]:
 
 
 def _is_file(name: str) -> bool:
-    """A name that is a file is a file; any other without a point or a separator is built in."""
+    """True for a path; any other name without a dot or a separator is a built-in scenario."""
     return os.path.isfile(name) or any(sign in name for sign in "./\\")
 
 
-#: What a field holds: quantities are texts in SI with their unit.
+#: Value of a field: quantities are texts in SI with their unit.
 Value = str | int | float | bool
 
 
 def _value(text: str) -> Value:
-    """A plain number or truth as such; anything else as text."""
+    """Returns a plain number or bool as such; anything else as text."""
     if text in ("true", "false"):
         return text == "true"
     for kind in (int, float):
@@ -91,7 +91,7 @@ class Section:
         return self._names()
 
     def help(self, name: str) -> str:
-        """What a field means.
+        """Returns the meaning of a field.
 
         Parameters
         ----------
@@ -107,12 +107,12 @@ class Section:
         return f"{name} = {value}: {meaning}"
 
     def to_dict(self) -> dict[str, Any]:
-        """The table as a nested dict, quantities as texts in SI with their unit.
+        """Returns the table as a nested dict, quantities as texts in SI with their unit.
 
         Returns
         -------
         dict
-            One entry a field; a table inside is a dict.
+            One entry per field; a table inside is a dict.
         """
         inner = {name: self[name] for name in self._names()}
         return {name: item.to_dict() if isinstance(item, Section) else item for name, item in inner.items()}
@@ -124,7 +124,7 @@ class Section:
 
 
 class Scenario:
-    """What stands, what shakes it, and how it is run; never changed, only made anew.
+    """A stack or bodies, their ground motion, and the settings of the run; immutable.
 
     Parameters
     ----------
@@ -132,12 +132,12 @@ class Scenario:
         The text of a scenario (TOML), or a nested dict of the same fields. Quantities are texts with a unit
         (``"32 kg"``), or quantities of Pint or astropy.
     name
-        What errors call it.
+        Name of the text in errors.
 
     Raises
     ------
     ScenarioError
-        At the first field that cannot be, with its place or its path.
+        At the first invalid field, with its place or its path.
 
     Examples
     --------
@@ -166,14 +166,14 @@ class Scenario:
 
     @classmethod
     def load(cls, name: str | os.PathLike[str], **changes: Any) -> Scenario:
-        """A scenario from a file, or one that comes with the library by its name.
+        """Loads a scenario from a file, or a built-in one by its name.
 
         Parameters
         ----------
         name
-            A path, or one of :func:`barrelstack.scenarios`. A name that is a file is a file.
+            A path, or one of :func:`barrelstack.scenarios`. An existing file takes precedence.
         **changes
-            Fields to set, with ``__`` for the point: ``stack__levels=6``.
+            Fields to set, with ``__`` for the dot: ``stack__levels=6``.
 
         Returns
         -------
@@ -182,7 +182,7 @@ class Scenario:
         Raises
         ------
         ScenarioError
-            When there is none, or at the first field that cannot be.
+            When there is none, or at the first invalid field.
         """
         sets = [f"{path.replace('__', '.')}={literal(value)}" for path, value in changes.items()]
         path = os.fspath(name)
@@ -190,7 +190,7 @@ class Scenario:
         return cls._of(read(path, sets))
 
     def set(self, path: str | Mapping[str, Any], value: Any = None) -> Scenario:
-        """A new scenario with fields set.
+        """Returns a new scenario with fields set.
 
         Parameters
         ----------
@@ -203,24 +203,24 @@ class Scenario:
         Returns
         -------
         Scenario
-            This one stays as it is.
+            The new scenario; this one stays as it is.
 
         Raises
         ------
         ScenarioError
-            When no field has the path, or the value cannot be; ``value`` names both.
+            When no field has the path, or the value is invalid; ``value`` names both.
         """
         changes = path if isinstance(path, Mapping) else {path: value}
         sets = [f"{path}={literal(value)}" for path, value in changes.items()]
         return self._of(self._native.changed(sets), self._record)
 
     def with_record(self, record: Record) -> Scenario:
-        """A new scenario shaken by a record in place of its own motion.
+        """Returns a new scenario with a record in place of its own motion.
 
         Parameters
         ----------
         record
-            What shakes it. Component, processing and scale are those that the scenario states under ``motion``.
+            The record. Component, processing and scale are those stated under ``motion``.
 
         Returns
         -------
@@ -239,7 +239,7 @@ class Scenario:
 
     @property
     def fingerprint(self) -> str:
-        """Sixteen hexadecimal digits that tell what is run from all else; titles do not count."""
+        """Sixteen hexadecimal digits that identify everything that is run; titles do not count."""
         return self._shaken.fingerprint
 
     @property
@@ -258,7 +258,7 @@ class Scenario:
         return [*super().__dir__(), *fields]
 
     def to_toml(self) -> str:
-        """The scenario as a file: every default written out, every quantity in SI.
+        """Returns the scenario as a file: every default written out, every quantity in SI.
 
         Returns
         -------
@@ -269,7 +269,7 @@ class Scenario:
 
     @staticmethod
     def schema() -> dict[str, Any]:
-        """The JSON Schema (2020-12) of scenario files.
+        """Returns the JSON Schema (2020-12) of scenario files.
 
         Returns
         -------
@@ -278,7 +278,7 @@ class Scenario:
         return _schema("scenario")
 
     def ground(self) -> Record | None:
-        """What moves its ground: the record or the formula after processing and scaling.
+        """Returns the ground motion: the record or the formula after processing and scaling.
 
         Returns
         -------
@@ -294,17 +294,17 @@ class Scenario:
         return None if found is None else Record(found)
 
     def check(self) -> list[dict[str, Any]]:
-        """Is it sound, and does the stack stand by itself?
+        """Checks that the scenario is valid, and that the stack stands by itself.
 
         Returns
         -------
         list of dict
-            For every plane how it came to rest, its time step and its warnings, as ``barrelstack check --json``.
+            Settlement, time step and warnings of every plane, as ``barrelstack check --json``.
 
         Raises
         ------
         RunError
-            When it does not stand, with the body that goes first and what it lacks.
+            When it does not stand, with the first body to fail and the cause.
         """
         return [json.loads(one) for one in self._shaken.check()]
 
@@ -323,22 +323,22 @@ class Scenario:
         Parameters
         ----------
         record
-            What shakes it in place of its own motion: a record, or a path.
+            A record, or a path, in place of its own motion.
         variants
-            How many variants are run beside the stack as it is stated; as the scenario says without (64). 0 for none.
+            Number of variants besides the nominal stack; by default that of the scenario (64). 0 for none.
         progress
             True for a bar, or a function that is called with (done, of, what) some twenty times a second.
         variant
-            The variant that is shown, 0 for the stack as it is stated; without, the most typical.
+            The variant to show, 0 for the nominal stack; by default the most typical one.
         remedy
-            Whether to look for what would have kept the stack up, as the command does.
+            Whether to search a remedy, as the command does.
         verify
-            Whether to repeat the run with half the step and with a nanometer of disturbance.
+            Whether to repeat the run with half the step and with a perturbation of a nanometer.
 
         Returns
         -------
         Run
-            What became of it: the plane that decides, with the other in :attr:`Run.other`.
+            Results of the governing plane, with the other in :attr:`Run.other`.
 
         Raises
         ------
@@ -354,11 +354,11 @@ class Scenario:
         Warns
         -----
         BarrelstackWarning
-            One warning for each thing that the reader of the result should know.
+            One warning for each caveat of the result.
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is free meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is released meanwhile.
         """
         if self._native.is_spatial:
             raise ValueError(f"{self.title!r} stands in space: run it with run_in_space()")
@@ -385,18 +385,18 @@ class Scenario:
         Parameters
         ----------
         record
-            What shakes it in place of its own motion: a record, or a path.
+            A record, or a path, in place of its own motion.
         variants
-            How many variants are run beside the stack as it is stated; as the scenario says without (64). 0 for none.
+            Number of variants besides the nominal stack; by default that of the scenario (64). 0 for none.
         progress
             True for a bar, or a function that is called with (done, of, what) some twenty times a second.
         variant
-            The variant that is shown, 0 for the stack as it is stated; without, the most typical.
+            The variant to show, 0 for the nominal stack; by default the most typical one.
 
         Returns
         -------
         SpatialRun
-            What became of it.
+            Its results.
 
         Raises
         ------
@@ -412,11 +412,11 @@ class Scenario:
         Warns
         -----
         BarrelstackWarning
-            One warning for each thing that the reader of the result should know.
+            One warning for each caveat of the result.
 
         Notes
         -----
-        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is free meanwhile.
+        The numbers are those of ``barrelstack run``, bit for bit. The interpreter's lock is released meanwhile.
         """
         if not self._native.is_spatial:
             raise ValueError(
@@ -431,31 +431,31 @@ class Scenario:
         return run
 
     def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
-        """Runs it as it is stated, in one plane, before an observer that may stop it.
+        """Runs it as stated, in one plane, with an observer that may stop it.
 
         Parameters
         ----------
         look
-            Called with a :class:`Glance` at the start and after every so many accepted steps; the run ends where it
-            returns anything true, and what was seen until then is returned.
+            Called with a :class:`Glance` at the start and after every few accepted steps; the run ends when it returns
+            anything true, with the results so far.
         every
             Accepted steps between two calls.
 
         Returns
         -------
         Run
-            ``run.interrupted`` tells whether the observer stopped it.
+            ``run.interrupted`` is True if the observer stopped it.
 
         Raises
         ------
         RunError
             When the stack cannot be built or does not stand.
         Exception
-            Whatever the observer raises.
+            Any exception of the observer.
 
         Notes
         -----
-        A call takes the interpreter's lock and some microseconds; laws for every step belong into the library.
+        A call takes the interpreter's lock and some microseconds; laws for every step belong in the library.
         """
         run = Run(self._shaken.run_before(every, look))
         warn(run.warnings)

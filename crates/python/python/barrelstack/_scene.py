@@ -14,7 +14,7 @@ __all__ = ["Scene"]
 
 
 class Scene:
-    """A free scene that is put together body by body.
+    """A free scene, built body by body.
 
     Parameters
     ----------
@@ -58,9 +58,9 @@ class Scene:
         shape
             The fields of its shape: ``{"type": "disc", "radius": "35 cm"}``, or of its ``parts``.
         mass
-            With its unit.
+            Mass with its unit.
         position
-            Place of the reference point of its shape at the start, x and z with their units; z is up and 0 on the
+            Position of the reference point of its shape at the start, x and z with their units; z is up and 0 on the
             ground.
         **fields
             Other fields of a body: ``angle``, ``velocity``, ``spin``, ``nodes``, ``group``.
@@ -75,7 +75,7 @@ class Scene:
         return self
 
     def interface(self, first: str, second: str, **fields: Any) -> Scene:
-        """Says by which laws two bodies, or kinds of bodies, meet.
+        """Sets the contact laws of two bodies, or kinds of bodies.
 
         Parameters
         ----------
@@ -105,10 +105,10 @@ class Scene:
         first, second
             Names of the bodies; ``"ground"`` is one.
         stiffness
-            With its unit.
+            Stiffness with its unit.
         **fields
-            ``at`` and ``to``, where it is made fast on each body, from the reference point of its shape; ``damping``; of
-            a strap ``length``, ``yields_at``, ``strength``; of a rod ``length``, ``sway_damping``; of a guide ``axis``,
+            ``at`` and ``to``, its attachment on each body, from the reference point of its shape; ``damping``; of a
+            strap ``length``, ``yields_at``, ``strength``; of a rod ``length``, ``sway_damping``; of a guide ``axis``,
             ``gap`` with ``stop_stiffness`` and ``stop_damping``, ``strength``, ``reach``.
 
         Returns
@@ -121,7 +121,7 @@ class Scene:
         return self
 
     def scenario(self) -> Scenario:
-        """The scene as a scenario.
+        """Returns the scene as a scenario.
 
         Returns
         -------
@@ -130,19 +130,19 @@ class Scene:
         Raises
         ------
         ScenarioError
-            At the first field that cannot be; its ``value`` has the path, items of lists counted from 1.
+            At the first invalid field; its ``value`` has the path, items of lists counted from 1.
         """
         tree = {"title": self.title, "kind": "free", **self.tables}
         tree |= {"body": self.bodies, "interface": self.interfaces, "element": self.elements}
         return Scenario({key: value for key, value in tree.items() if value != []}, name=self.title)
 
     def run(self, record: Record | None = None, progress: Progress = None) -> Run:
-        """Runs it; as :meth:`Scenario.run`.
+        """Runs it, as :meth:`Scenario.run`.
 
         Parameters
         ----------
         record
-            What shakes it.
+            A record, or a path, for the ground motion.
         progress
             As for :meth:`Scenario.run`.
 
@@ -153,12 +153,12 @@ class Scene:
         return self.scenario().run(record, progress=progress)
 
     def observe(self, look: Callable[[Glance], object], every: int = 100) -> Run:
-        """Runs it before an observer; as :meth:`Scenario.observe`.
+        """Runs it with an observer, as :meth:`Scenario.observe`.
 
         Parameters
         ----------
         look
-            Called every so many steps; anything true ends the run.
+            Called every few steps; anything true ends the run.
         every
             Accepted steps between two calls.
 

@@ -1,4 +1,4 @@
-"""What became of a scenario in space."""
+"""Results of a scenario in space."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ __all__ = ["OutcomeInSpace", "Poses", "SpatialRun"]
 
 
 class OutcomeInSpace(NamedTuple):
-    """What happened in space."""
+    """Outcome of a run in space."""
 
     #: ``stable``, ``collapse``, ``not-judged`` or ``invalid``.
     kind: str
     #: ``ejection``, ``rocking``, ``rack-sliding`` or ``overturning``; in a table of
     #: cases also ``gravity``, where the stack falls under its own weight, before it is shaken.
     mode: str | None
-    #: When the first body left its seat (s).
+    #: Time at which the first body left its seat (s).
     time: float | None
     #: That body.
     first: str | None
-    #: In which direction it left: ``right`` or ``left`` across the barrels, ``away`` or ``near`` along them.
+    #: Direction in which it left: ``right`` or ``left`` across the barrels, ``away`` or ``near`` along them.
     heading: str | None
-    #: When the first barrel had fallen (s).
+    #: Time at which the first barrel had fallen (s).
     first_fall: float | None
     barrels_fallen: int | None
     barrels: int
-    #: Why the run is invalid.
+    #: Reason why the run is invalid.
     reason: str | None
 
 
 class Poses(NamedTuple):
-    """Where all bodies were in space, at the rate of frames."""
+    """Poses of all bodies in space, at the rate of frames."""
 
     #: Times (s), shape (frames,): a view without a copy.
     time: NDArray[np.float64]
@@ -48,12 +48,12 @@ class Poses(NamedTuple):
     bodies: list[str]
     #: x, y, z (m) and quaternion w, x, y, z in the inertial frame, shape (frames, bodies, 7).
     poses: NDArray[np.float64]
-    #: Velocity x, y, z (m/s) and spin about x, y, z (rad/s), shape (frames, bodies, 6).
+    #: Velocity x, y, z (m/s) and angular velocity about x, y, z (rad/s), shape (frames, bodies, 6).
     twists: NDArray[np.float64]
 
 
 class SpatialRun:
-    """What became of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
+    """Results of a scenario in space: ``x`` across the barrels, ``y`` along them, ``z`` up.
 
     Made by :meth:`Scenario.run_in_space`.
     """
@@ -75,23 +75,23 @@ class SpatialRun:
 
     @property
     def outcome(self) -> OutcomeInSpace:
-        """What happened in the run that is shown."""
+        """Outcome of the shown run."""
         outcome = self.summary["outcome"]
         return OutcomeInSpace(**{name: outcome[name] for name in OutcomeInSpace._fields})
 
     @property
     def ensemble(self) -> dict[str, Any] | None:
-        """What all variants say together: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
+        """Statistics of all variants: ``share`` that collapses, its 95 % ``interval``, modes; None without any."""
         return self.summary["ensemble"]  # type: ignore[no-any-return]
 
     @property
     def directions(self) -> dict[str, int] | None:
-        """Into which directions variants fall: first bodies and debris; None without any."""
+        """Directions in which variants fall: first bodies and debris; None without any."""
         return self.summary["directions"]  # type: ignore[no-any-return]
 
     @property
     def variants(self) -> Table | None:
-        """The stack as it is stated (number 0) and its variants, a row each; None where none were run."""
+        """The nominal stack (number 0) and its variants, a row each; None if none were run."""
         table = self._native.variants()
         return None if table is None else Table(table)
 
@@ -103,16 +103,16 @@ class SpatialRun:
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader should know, one sentence each."""
+        """Caveats for the reader, one sentence each."""
         return self._native.warnings
 
     @property
     def scenario(self) -> str:
-        """The scenario of the run that is shown, every default written out (TOML)."""
+        """The scenario of the shown run, every default written out (TOML)."""
         return self._native.toml
 
     def html(self) -> str:
-        """The report as one page that asks the network for nothing, with the motion seen from three sides.
+        """Returns the report as one page that needs no network, with three views of the motion.
 
         Returns
         -------
@@ -128,7 +128,7 @@ class SpatialRun:
         folder
             A folder that is new or empty.
         overwrite
-            Whether to write into one that holds something.
+            Whether to write into one that is not empty.
         """
         self._native.write(os.fspath(folder), self._stated, overwrite)
 

@@ -40,15 +40,15 @@ class Curve(NamedTuple):
     dispersion: float | None
     #: 95 % interval of the median.
     median_interval: tuple[float | None, float | None] | None
-    #: What was counted, shape (levels, 5): intensity, cases, failures, and Wilson's 95 % interval.
+    #: Raw counts, shape (levels, 5): intensity, cases, failures, and Wilson's 95 % interval.
     raw: NDArray[np.float64]
     #: The 95 % band, shape (points, 3): intensity, lower, upper.
     band: NDArray[np.float64]
-    #: Why there is no curve.
+    #: Reason why there is no curve.
     no_curve: str | None
 
     def probability(self, intensity: Any) -> NDArray[np.float64]:
-        """Chance of failure at intensities (SI), by the lognormal curve.
+        """Returns the probability of failure at intensities (SI), by the lognormal curve.
 
         Parameters
         ----------
@@ -58,7 +58,7 @@ class Curve(NamedTuple):
         Returns
         -------
         ndarray
-            Of the shape of the intensities.
+            With the shape of the intensities.
         """
         if self.median is None or self.dispersion is None:
             raise ValueError(f"{self.limit_state} has no curve: {self.no_curve}")
@@ -70,7 +70,7 @@ class Curve(NamedTuple):
 
 
 class Fragility(Page):
-    """What a study says: curves, modes, losses, what matters; made by :meth:`Study.fragility`."""
+    """Results of a study: curves, modes, losses, sensitivities; made by :meth:`Study.fragility`."""
 
     @property
     def measure(self) -> tuple[str, str]:
@@ -98,14 +98,14 @@ class Fragility(Page):
         return found
 
     def plot(self, *limit_states: str, ax: Any = None) -> Any:
-        """Raw fractions, curves and bands.
+        """Plots raw fractions, curves and bands.
 
         Parameters
         ----------
         *limit_states
-            Names among :attr:`curves`; the first without.
+            Names among :attr:`curves`; by default the first.
         ax
-            Where to draw; new axes without.
+            Axes to draw into; new ones by default.
 
         Returns
         -------
@@ -135,25 +135,25 @@ class Fragility(Page):
 
 
 class Hunts(NamedTuple):
-    """An incremental dynamic analysis: what each motion did at each level that was tried."""
+    """An incremental dynamic analysis: the result of each motion at each level."""
 
     #: Names of the motions.
     motions: list[str]
     #: For each motion the levels (SI unit of the measure), ascending.
     levels: list[NDArray[np.float64]]
-    #: For each motion what was asked of the stack at those levels; not a number where it collapsed.
+    #: For each motion the demands on the stack at those levels; not a number where it collapsed.
     demands: list[NDArray[np.float64]]
-    #: For each motion the lowest level at which the stack collapsed; not a number where it stood throughout.
+    #: For each motion the lowest level at which the stack collapsed; not a number where it always stood.
     capacities: NDArray[np.float64]
 
 
 def tables(of: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a study, its schema stated."""
+    """Adds the version of the schema to the tables of a study."""
     return {"schema": 1, **of}
 
 
 class Study:
-    """A study: what is varied, what shakes it, and which cases are run.
+    """A study: its factors, its motions, and the design of its cases.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class Study:
         The text of a study file (TOML), or a nested dict of the same tables, with quantities of Pint or astropy, too;
         it may extend scenarios that come with the library.
     name
-        What errors call it.
+        Name of the text in errors.
 
     Examples
     --------
@@ -171,14 +171,14 @@ class Study:
     """
 
     def __init__(self, of: str | Mapping[str, Any], name: str = "study") -> None:
-        # What is kept in folders and crosses to workers is text: a line a table.
+        # Keep text, one line per table: it is stored in folders and sent to workers.
         text = of if isinstance(of, str) else "".join(f"{key} = {literal(item)}\n" for key, item in tables(of).items())
         self._source: tuple[str, str | None] = (text, name)
         self._native = _native.Study.parse(name, text)
 
     @classmethod
     def load(cls, name: str | os.PathLike[str]) -> Study:
-        """A study from a file, or one that comes with the library by its name.
+        """Loads a study from a file, or a built-in one by its name.
 
         Parameters
         ----------
@@ -192,7 +192,7 @@ class Study:
         Raises
         ------
         ScenarioError
-            At the first field that cannot be.
+            At the first invalid field.
         RecordError
             When a motion cannot be read.
         """
@@ -207,7 +207,7 @@ class Study:
         return made
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """So that it crosses to workers: by its text, or by its path, which they must see, too."""
+        """Pickles it for workers: as its text, or as its path, which they must also be able to read."""
         text, name = self._source
         return (Study.load, (text,)) if name is None else (Study, (text, name))
 
@@ -218,26 +218,26 @@ class Study:
 
     @property
     def design(self) -> str:
-        """Which cases are run: ``full-factorial``, ``stripes``, ``ida``, …"""
+        """Design of its cases: ``full-factorial``, ``stripes``, ``ida``, …"""
         return self._native.design
 
     @property
     def fingerprint(self) -> str:
-        """What tells it from all other studies, the bytes of its records included."""
+        """Identifies it among all studies, by the bytes of its records among others."""
         return self._native.fingerprint
 
     @property
     def cases(self) -> int:
-        """How many cases there are; of an adaptive design, at most."""
+        """Number of cases; of an adaptive design, the maximum."""
         return self._native.cases
 
     @property
     def motions(self) -> int:
-        """How many motions there are."""
+        """Number of motions."""
         return self._native.motions
 
     def records(self) -> dict[str, Record]:
-        """Its motions by their names, as their sources have them: levels of intensity scale them later.
+        """Returns its motions by their names, unscaled: levels of intensity scale them later.
 
         Returns
         -------
@@ -246,17 +246,17 @@ class Study:
         Raises
         ------
         RecordError
-            When a motion cannot be had.
+            When a motion cannot be read or generated.
         """
         return {name: Record(one) for name, one in self._native.records()}
 
     def plan(self, folder: str | os.PathLike[str] | None = None) -> list[Chunk]:
-        """The chunks of the study.
+        """Returns the chunks of the study.
 
         Parameters
         ----------
         folder
-            Only those that are missing from this folder.
+            A folder: only its missing chunks are returned.
 
         Returns
         -------
@@ -275,26 +275,26 @@ class Study:
         workers: int | None = None,
         progress: Progress = None,
     ) -> Table:
-        """Runs what is missing of a folder, on this machine; other processes may do so at the same time.
+        """Runs the missing chunks of a folder, on this machine; other processes may do so at the same time.
 
         Parameters
         ----------
         folder
-            Folder of the results: new, empty, or one of this study, which then goes on.
+            Folder of the results: new, empty, or one of this study, which is resumed.
         workers
-            Threads; all cores without. The table does not depend on it.
+            Number of threads; all cores by default. The table does not depend on it.
         progress
             As for :meth:`Scenario.run`.
 
         Returns
         -------
         Table
-            A row a case, as :meth:`collect`.
+            One row per case, as :meth:`collect`.
 
         Raises
         ------
         KeyboardInterrupt
-            Within a second of Ctrl-C; every chunk that was done is kept, and the next run goes on from there.
+            Within a second of Ctrl-C; finished chunks are kept, and the next run resumes from there.
         StudyError
             When the folder belongs to something else or cannot be written.
         """
@@ -303,19 +303,19 @@ class Study:
         return self.collect(folder)
 
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool:
-        """Runs one chunk and writes its shard, unless it is there: the same bytes wherever it is run.
+        """Runs one chunk and writes its shard, unless it exists: the same bytes on every machine.
 
         Parameters
         ----------
         folder
-            Folder of the results, seen by all who work on it.
+            Folder of the results, shared by all workers.
         chunk
             Its number.
 
         Returns
         -------
         bool
-            Whether it was run.
+            True if it was run.
         """
         return self._native.run_chunk(os.fspath(folder), chunk)
 
@@ -327,19 +327,19 @@ class Study:
         progress: Progress = None,
         retries: int = 10,
     ) -> Table:
-        """Runs what is missing of a folder on the workers of Dask: a task a chunk.
+        """Runs the missing chunks of a folder on the workers of Dask, one task per chunk.
 
         Parameters
         ----------
         client
             A ``distributed.Client``: of a ``LocalCluster``, of dask-jobqueue on Slurm, or of any other.
         folder
-            Folder of the results on a disk that all workers see.
+            Folder of the results on a disk that all workers can access.
         progress
             As for :meth:`Scenario.run`.
         retries
-            How often a chunk is tried again that failed. A worker that is killed is no failure of its own: its chunk
-            goes to another.
+            Number of retries of a failed chunk. A killed worker does not count as a failure: its chunk is given to
+            another one.
 
         Returns
         -------
@@ -349,7 +349,7 @@ class Study:
         Raises
         ------
         KeyboardInterrupt
-            Tasks that have not begun are taken back; what is done is kept.
+            Tasks that have not begun are cancelled; finished ones are kept.
 
         Notes
         -----
@@ -393,14 +393,14 @@ class Study:
 
     @staticmethod
     def collect(folder: str | os.PathLike[str], *, write: bool = False) -> Table:
-        """The rows that are done, a row a case in their order.
+        """Returns the finished rows, one per case in their order.
 
         Parameters
         ----------
         folder
             A folder of a study, finished or not.
         write
-            Whether to write ``table.csv``, ``table.parquet``, ``columns.csv`` and ``provenance.json``, too.
+            Whether to write also ``table.csv``, ``table.parquet``, ``columns.csv`` and ``provenance.json``.
 
         Returns
         -------
@@ -410,7 +410,7 @@ class Study:
 
     @staticmethod
     def provenance(folder: str | os.PathLike[str]) -> dict[str, Any]:
-        """What the rows of a folder come from.
+        """Returns the provenance of the rows of a folder.
 
         Parameters
         ----------
@@ -420,7 +420,7 @@ class Study:
         Returns
         -------
         dict
-            Version, hashes, seed, motions, columns, and how far it is.
+            Version, hashes, seed, motions, columns, and progress.
         """
         made: dict[str, Any] = json.loads(_native.provenance(os.fspath(folder))[0])
         return made
@@ -432,7 +432,7 @@ class Study:
         hazard: str | os.PathLike[str] | None = None,
         years: float | None = None,
     ) -> Fragility:
-        """What the study of a folder says, finished or not.
+        """Computes the fragility from the study in a folder, finished or not.
 
         Parameters
         ----------
@@ -441,7 +441,7 @@ class Study:
         hazard
             A table (CSV) of intensity and annual rate at the site: adds annual rates and expected losses.
         years
-            Years for which chances are given; 50 without.
+            Exposure time in years; 50 by default.
 
         Returns
         -------
@@ -457,7 +457,7 @@ class Study:
 
     @staticmethod
     def ida(folder: str | os.PathLike[str], demand: str = "top_drift_ratio") -> Hunts:
-        """The incremental dynamic analysis of a folder.
+        """Returns the incremental dynamic analysis of a folder.
 
         Parameters
         ----------
@@ -503,12 +503,12 @@ class Study:
         out
             Folder for the files.
         asset
-            What the other program calls one stack.
+            Name of one stack in the other program.
 
         Returns
         -------
         list of str
-            What could not go into the files, and why.
+            Missing parts, with reasons.
         """
         files, notes = _native.export(os.fspath(folder), asset)
         os.makedirs(out, exist_ok=True)
@@ -521,5 +521,5 @@ class Study:
 
 
 def _chunk_of(study: Study, folder: str, chunk: int) -> bool:
-    """What a worker does."""
+    """Runs a chunk on a worker."""
     return study.run_chunk(folder, chunk)

@@ -1,4 +1,4 @@
-"""Tables of results, for whatever reads Arrow."""
+"""Tables of results, for all libraries that read Arrow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Column", "Table"]
 
 
 class Column(NamedTuple):
-    """What a column holds."""
+    """Description of a column."""
 
     name: str
     #: SI unit; empty for pure numbers and for texts.
@@ -28,8 +28,8 @@ class Column(NamedTuple):
 
 
 class Table:
-    """Columns of one length: ``pandas.DataFrame.from_arrow``, ``polars.DataFrame``, ``pyarrow.table`` and DuckDB take
-    it as it is.
+    """Columns of one length: ``pandas.DataFrame.from_arrow``, ``polars.DataFrame``, ``pyarrow.table`` and DuckDB accept
+    it directly.
 
     Examples
     --------
@@ -41,7 +41,7 @@ class Table:
 
     @property
     def columns(self) -> list[Column]:
-        """What the columns hold, in order."""
+        """Descriptions of the columns, in order."""
         return [Column(*facts) for facts in self._native.specs()]
 
     def __len__(self) -> int:
@@ -51,16 +51,16 @@ class Table:
         return (column.name for column in self.columns)
 
     def __getitem__(self, name: str) -> list[Any]:
-        """The values of a column: int, float or str, and None where one does not apply or did not happen."""
+        """Returns the values of a column: int, float or str, and None if not applicable."""
         return self._native.values(name)
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        """The numbers of a column.
+        """Returns the numbers of a column.
 
         Parameters
         ----------
         name
-            A column of numbers or whole numbers.
+            A column of numbers or integers.
 
         Returns
         -------
@@ -70,16 +70,16 @@ class Table:
         return self._native.numbers(name)
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """As a stream of Arrow; units are in the metadata of the fields."""
+        """Exports a stream of Arrow; units are in the metadata of the fields."""
         return self._native.__arrow_c_stream__(requested_schema)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The table as CSV, with units in the heading and numbers that read back to the same bits.
+        """Returns the table as CSV, with units in the heading and numbers that read back to the same bits.
 
         Parameters
         ----------
         path
-            Where to write it as well.
+            File to write it to as well.
 
         Returns
         -------
