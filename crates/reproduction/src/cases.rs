@@ -7,13 +7,13 @@ use barrelstack_motion::STANDARD_GRAVITY;
 
 use super::ReproduceError;
 
-/// Peak acceleration (g) of the component PEL360 of RSN995 as PEER publishes it.
+/// Peak acceleration (g) of the component PEL360 of RSN995 as published by PEER.
 const PEL360_PGA: f64 = 0.358_34;
 
-/// How far (g) the peak of a file may be from it: two agencies differ in the sixth digit.
+/// Tolerance (g) for the peak of a file: two agencies differ in the sixth digit.
 const PGA_TOLERANCE: f64 = 1e-4;
 
-/// What shakes the six barrels.
+/// The ground motion of the six barrels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// The paper's record, from a file of this name.
@@ -21,24 +21,24 @@ pub enum Motion {
         /// Name of the file.
         file: String,
     },
-    /// A file with another peak than the paper's record.
+    /// A file with a peak that differs from the paper's record.
     Other {
         /// Name of the file.
         file: String,
         /// Its peak acceleration, unscaled (m/s²).
         pga: f64,
     },
-    /// The bundled record of South Napa, since no file was named.
+    /// The bundled record of South Napa, used if no file is given.
     Bundled,
 }
 
 impl Motion {
-    /// Whether results under it can stand beside the paper's.
+    /// `true` if results under it are comparable with the paper's.
     pub fn is_papers(&self) -> bool {
         matches!(self, Self::Paper { .. })
     }
 
-    /// The motion in a few words.
+    /// Returns a short name of the motion.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Paper { .. } => "Hollywood Storage N-S at 60 cm/s".into(),
@@ -47,7 +47,7 @@ impl Motion {
         }
     }
 
-    /// The motion for captions, which must not be mistaken.
+    /// Returns the name of the motion for captions, marked if it is not the paper's record.
     pub(super) fn words(&self) -> String {
         let name = self.name();
         if self.is_papers() { name } else { format!("{name}, not the paper's record") }
@@ -67,12 +67,12 @@ pub(super) struct Cases {
     pub(super) half: Scenario,
     /// Four levels along the barrels.
     pub(super) along: Scenario,
-    /// What shakes the six barrels.
+    /// The ground motion of the six barrels.
     pub(super) motion: Motion,
 }
 
 impl Cases {
-    /// The cases, the six barrels under `record`.
+    /// Creates the cases, with the six barrels under `record`.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {
             Some(path) => record_of(path),
@@ -96,16 +96,16 @@ impl Cases {
     }
 }
 
-/// The change of a scenario that names a record.
+/// Returns the override of a scenario that sets a record.
 fn record_of(path: &Path) -> String {
-    // Quoted as JSON, which is a quoted text in TOML too.
+    // A JSON string is a valid TOML string, too.
     format!("motion.record={}", serde_json::Value::from(path.display().to_string()))
 }
 
-/// Whether a file is the paper's record, told by its peak before any scaling.
+/// Identifies the paper's record by its peak before any scaling.
 ///
 /// # Errors
-/// When the file cannot be read.
+/// If the file cannot be read.
 pub fn recognize(path: &Path) -> Result<Motion, ReproduceError> {
     let mut unscaled = Scenario::builtin("candia-6-barrels", &[record_of(path)])?;
     unscaled.motion.scale = Scale::Factor(1.0);

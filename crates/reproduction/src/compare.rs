@@ -1,27 +1,27 @@
-//! One published result beside ours, and the verdict.
+//! Comparison of one published result with ours, and its verdict.
 
 use std::fmt::Write as _;
 
 use barrelstack_report::capital;
 
-/// Largest difference, as a share of the published number, that counts as agreement.
+/// Largest relative difference from the published number that counts as agreement.
 pub(super) const CLOSE: f64 = 0.20;
 
-/// What a comparison says.
+/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within ±20 % of the published number, or the same in kind.
+    /// Within ±20 % of the published number, or qualitatively equal.
     Agrees,
-    /// Farther than that, but within the wider band that the project states.
+    /// Farther than that, but within the wider band of the project.
     InBand,
-    /// Outside both, or another thing happens.
+    /// Outside both, or qualitatively different.
     Differs,
     /// Not compared: the paper's record was not given, or the paper states no result.
     NotCompared,
 }
 
 impl Verdict {
-    /// The words used in tables.
+    /// Returns the words used in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Agrees => "agrees",
@@ -32,35 +32,35 @@ impl Verdict {
     }
 }
 
-/// One published result beside ours.
+/// One published result compared with ours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Where the paper says it, such as "section 4" or "Fig. 6b".
+    /// Place in the paper, such as "section 4" or "Fig. 6b".
     pub place: &'static str,
-    /// What is compared.
+    /// The quantity compared.
     pub quantity: String,
-    /// What the paper says, with its unit.
+    /// The published result, with its unit.
     pub published: String,
-    /// What we find, with its unit.
+    /// Our result, with its unit.
     pub ours: String,
-    /// Ours over the published number, less one; none where no number is compared.
+    /// Ours over the published number, minus one; `None` if no number is compared.
     pub difference: Option<f64>,
-    /// The project's own band, in words; none where there is none.
+    /// The project's own band, in words; `None` without one.
     pub band: Option<&'static str>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why it is so, or how it is measured.
+    /// Explanation of the difference, or method of measurement.
     pub why: String,
 }
 
-/// A share as a signed percentage.
+/// Formats a fraction as a signed percentage.
 pub fn percent(share: f64) -> String {
     let rounded = (100.0 * share).round();
     let sign = if rounded < 0.0 { "−" } else { "+" };
     format!("{sign}{} %", rounded.abs())
 }
 
-/// All comparisons as one Markdown table, as `validation/README.md` holds it.
+/// Writes all comparisons as one Markdown table, as in `validation/README.md`.
 pub(super) fn table(rows: &[Comparison]) -> String {
     let mut text = String::from(
         "| quantity | published | ours | difference | band | verdict | why |\n\
@@ -84,16 +84,16 @@ pub(super) fn table(rows: &[Comparison]) -> String {
     text
 }
 
-/// Words as a sentence.
+/// Formats words as a sentence.
 fn sentence(words: &str) -> String {
     let end = if words.is_empty() || words.ends_with('.') { "" } else { "." };
     format!("{}{end}", capital(words))
 }
 
-/// The project's own band of a number: from, to, and in words.
+/// The project's own band of a number: from, to, and description.
 pub(super) type Band = (f64, f64, &'static str);
 
-/// A number against the published one, both in a unit; ours is none where it did not happen.
+/// Compares a number with the published one, both in a unit; ours is `None` if the event does not occur.
 pub(super) fn number(
     place: &'static str,
     quantity: &str,
@@ -116,7 +116,7 @@ pub(super) fn number(
     Comparison {
         place,
         quantity: quantity.to_owned(),
-        // Published numbers have two digits; a third would claim more than the paper says.
+        // Published numbers have two digits; a third would claim more than the paper states.
         published: text(published.to_string()),
         ours: ours.map_or_else(|| "does not happen".to_owned(), shown),
         difference,
@@ -126,7 +126,7 @@ pub(super) fn number(
     }
 }
 
-/// A finding in words: the same, or not.
+/// Compares a qualitative finding.
 pub(super) fn finding(
     place: &'static str,
     quantity: &str,

@@ -1,4 +1,4 @@
-//! The eight barrels with every contact parameter 10 % less and 10 % more: "robust against variations
+//! The eight barrels with every contact parameter 10 % lower and higher: "robust against variations
 //! of the contact element parameters within 10 %".
 
 use barrelstack::scenario::{Scenario, StackSpec};
@@ -8,15 +8,15 @@ use barrelstack_report::{Block, Cell, Table};
 use super::pool::Job;
 use super::vary;
 
-/// How far each parameter goes.
+/// Relative change of each parameter.
 const REACH: f64 = 0.10;
 
-/// How many members there are.
+/// Number of members.
 pub(super) const COUNT: usize = 24;
 
 type Change = fn(&mut StackSpec, f64);
 
-/// The parameters, each with what multiplies it.
+/// The parameters, each with the function that multiplies it.
 const PARAMETERS: [(&str, Change); 4] = [
     ("k", vary::stiffness),
     ("c", vary::damping),
@@ -24,7 +24,7 @@ const PARAMETERS: [(&str, Change); 4] = [
     ("μ rack–ground", vary::rack_ground_friction),
 ];
 
-/// The runs: one parameter at a time, then all corners.
+/// Returns the runs: one parameter at a time, then all corners.
 pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
     members()
         .into_iter()
@@ -41,7 +41,7 @@ pub(super) fn jobs(base: &Scenario) -> Vec<Job> {
         .collect()
 }
 
-/// Factors of the four parameters: eight members with one changed, sixteen with all.
+/// Returns the factors of the four parameters: eight members with one changed, sixteen with all.
 fn members() -> Vec<[f64; 4]> {
     let mut members = Vec::new();
     for parameter in 0..4 {
@@ -69,14 +69,14 @@ fn name(factors: [f64; 4]) -> String {
     if changed.is_empty() { "as stated".into() } else { changed.join(", ") }
 }
 
-/// Whether every barrel of the top level falls.
+/// `true` if every barrel of the top level falls.
 pub(super) fn top_falls(summary: &Summary) -> bool {
     let top = summary.bodies.iter().filter_map(|b| b.level).max();
     let mut barrels = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level == top);
     barrels.all(|b| b.fell_at.is_some())
 }
 
-/// Whether a barrel of the top level is the first to have fallen.
+/// `true` if a barrel of the top level is the first to fall.
 pub(super) fn top_falls_first(summary: &Summary) -> bool {
     let fallen = summary.bodies.iter().filter(|b| b.kind == "barrel");
     let first = fallen
@@ -86,7 +86,7 @@ pub(super) fn top_falls_first(summary: &Summary) -> bool {
     first.is_some_and(|(_, level)| level == top)
 }
 
-/// The outcomes as tables: one parameter at a time in sight, the corners folded away.
+/// Builds the tables of outcomes: one parameter at a time shown, the corners folded.
 pub(super) fn blocks(base: &Summary, members: &[Summary]) -> Vec<Block> {
     let names: Vec<String> = self::members().into_iter().map(name).collect();
     let all: Vec<_> = names.iter().map(String::as_str).zip(members).collect();

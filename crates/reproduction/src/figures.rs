@@ -13,7 +13,7 @@ use barrelstack_report::{
 
 use super::numbering;
 
-/// A run to watch.
+/// Builds a player of a run.
 pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
     Block::Player(Player {
         id: id.to_owned(),
@@ -23,7 +23,7 @@ pub(super) fn player(scene: &Arc<Scene>, id: &str, caption: &str) -> Block {
     })
 }
 
-/// A sequence at chosen instants.
+/// Builds a strip of selected instants.
 pub(super) fn strip(
     scene: &Arc<Scene>,
     id: &str,
@@ -34,7 +34,7 @@ pub(super) fn strip(
     Block::Figure(Figure::new(id, caption, Strip { scene: Arc::clone(scene), panels }))
 }
 
-/// The moments of a collapse: at rest, before, the loss of seat, and how it goes on.
+/// Selects the instants of a collapse: at rest, before, at and after the loss of seat.
 pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let end = run.end_time;
@@ -55,7 +55,7 @@ pub(super) fn moments(run: &Run) -> Vec<(f64, String)> {
     panels
 }
 
-/// The sequence of a collapse by what happens in it: the loss of seat, and each fall of the top level.
+/// Selects the instants of a collapse by its events: the loss of seat, and each fall of the top level.
 pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     let mut panels = vec![(0.0, "at rest".to_owned())];
     let Some(loss) = run.fates.collapse_time() else { return moments(run) };
@@ -79,12 +79,12 @@ pub(super) fn events(run: &Run) -> Vec<(f64, String)> {
     panels
 }
 
-/// Barrels on a level.
+/// Returns the number of barrels per level.
 fn columns(run: &Run) -> u32 {
     run.scenario.stack().map_or(2, |stack| stack.columns)
 }
 
-/// A body by the paper's number and our name: "3 = R1".
+/// Names a body by the paper's number and our name: "3 = R1".
 fn named(run: &Run, body: usize) -> String {
     let name = &run.assembly.parts[body].name;
     match numbering::number(name, columns(run)) {
@@ -93,14 +93,14 @@ fn named(run: &Run, body: usize) -> String {
     }
 }
 
-/// How far from its center an arrow ends in a barrel, as a share of the radius: within the round, clear
+/// Distance of an arrow's end from the center of a barrel, over the radius: within the circle, clear
 /// of the number.
 const ARROW_END: f64 = 0.5;
 
-/// Where an arrow to the ground starts and ends (m): the rack on it is too flat to hold one.
+/// Start and end (m) of an arrow to the ground, relative to the barrel above: the rack there is too flat for it.
 const GROUND_ARROW: [f64; 2] = [0.07, -0.05];
 
-/// The section at rest with the paper's numbers, and an arrow from every contact body to its target
+/// Draws the section at rest with the paper's numbers, and an arrow from every contact body to its target
 /// body, as in the paper.
 pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     let assembly = &run.assembly;
@@ -139,7 +139,7 @@ pub(super) fn contact_bodies(run: &Run, id: &str, caption: &str) -> Block {
     Block::Figure(Figure::new(id, caption, diagram))
 }
 
-/// From a rack upright into the barrel it meets, or the other way round.
+/// Returns an arrow from a rack vertically into the barrel that it touches, or the reverse.
 fn arrow(
     parts: &[barrelstack::assemble::Part],
     rest: &[Point],
@@ -157,7 +157,7 @@ fn arrow(
     [end(from, to), end(to, from)]
 }
 
-/// Histories of the horizontal displacement of the paper's bodies 1, 4 and 7, relative to the ground.
+/// Plots the horizontal displacement of the paper's bodies 1, 4 and 7, relative to the ground.
 pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
     let recording = &run.recording;
     let columns = columns(run);
@@ -182,14 +182,14 @@ pub(super) fn histories(run: &Run, id: &str, caption: &str) -> Block {
     Block::Figure(Figure::new(id, caption, plot))
 }
 
-/// When (s) the ground is fastest.
+/// Returns the time (s) of peak ground velocity.
 pub(super) fn peak_velocity_time(run: &Run) -> Option<f64> {
     let velocity = &run.recording.channel("ground velocity x")?.values;
     let fastest = velocity.iter().zip(&run.recording.times);
     fastest.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).map(|(_, time)| *time)
 }
 
-/// The stress around one of the paper's bodies.
+/// Draws the stress around one of the paper's bodies.
 pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Option<Block> {
     let name = numbering::name(number, run.scenario.stack()?.columns);
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -197,7 +197,7 @@ pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Optio
     Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
 }
 
-/// Length of boundary (m) under stress at rest and at any time while the stack stood, on the upper or
+/// Returns the lengths of boundary (m) under stress at rest and at any time while the stack stood, on the upper or
 /// the lower half of a barrel.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {
     let body = run.assembly.parts.iter().position(|part| part.name == name)?;
@@ -215,7 +215,7 @@ pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> 
     Some(lengths)
 }
 
-/// Which body carries nodes against which, for all bodies that lean on each other by design; folded away.
+/// Builds the table of contact and target bodies of all pairs in contact by design; folded.
 pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     let table = Table::of(
         caption,
@@ -236,7 +236,7 @@ pub(super) fn pairs(run: &Run, caption: &str) -> Block {
     Block::details("The pairs as a table, with the forces at rest", vec![Block::Table(table)])
 }
 
-/// Contactor, target and force at rest (N) of all bodies that lean on each other by design.
+/// Returns contactor, target and force at rest (N) of all pairs in contact by design.
 fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     let joints = run.recording.joints.iter().map(|history| &history.joint);
     joints.filter(|joint| joint.by_design).filter_map(|joint| {
@@ -248,7 +248,7 @@ fn designed_pairs(run: &Run) -> impl Iterator<Item = (usize, usize, f64)> {
     })
 }
 
-/// Whether one body lies on the other.
+/// `true` if one body rests on the other.
 fn is_above(run: &Run, one: usize, other: usize) -> bool {
     run.recording
         .joints
@@ -256,13 +256,13 @@ fn is_above(run: &Run, one: usize, other: usize) -> bool {
         .any(|JointForces { joint, .. }| [joint.upper, joint.lower] == [one, other])
 }
 
-/// Whether every designed contact of a run is carried by nodes of a rack.
+/// `true` if racks are the contactors of every designed contact of a run.
 pub(super) fn racks_carry_the_nodes(run: &Run) -> bool {
     let parts = &run.assembly.parts;
     designed_pairs(run).all(|(contactor, _, _)| parts[contactor].kind == PartKind::Rack)
 }
 
-/// Largest distance (m at full scale) between two runs of one stack at two scales, at equivalent
+/// Returns the largest distance (m at full scale) between two runs of one stack at two scales, at equivalent
 /// instants up to a time (s at full scale).
 pub(super) fn scale_difference(full: &Run, half: &Run, until: f64) -> f64 {
     let length = half.scenario.run.similitude;

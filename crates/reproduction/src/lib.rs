@@ -1,9 +1,9 @@
-//! The paper of Candia, de la Llera and Almazán (2008), case by case: published against ours.
+//! Reproduction of the paper of Candia, de la Llera and Almazán (2008), case by case: published against ours.
 //!
-//! All cases stand on one geometry, the catalog's rack `candia-2008`; nothing is fitted case by case.
-//! Where a number of ours differs, studies vary what the paper leaves open and show what moves it.
+//! All cases use one geometry, the catalog's rack `candia-2008`; nothing is fitted case by case.
+//! If a number differs, studies vary what the paper leaves open and show which quantities affect it.
 
-// Results have the same bits on every machine, so transcendental functions are those of `libm`.
+// Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod cases;
@@ -32,20 +32,20 @@ use barrelstack_report::Document;
 pub use cases::{Motion, recognize};
 pub use compare::{Comparison, Verdict, percent};
 
-/// The paper's results beside ours.
+/// The comparison of the paper's results with ours.
 #[derive(Clone, Debug)]
 pub struct Reproduction {
-    /// One row for every number and every finding that the paper states.
+    /// One row for every number and every finding of the paper.
     pub comparisons: Vec<Comparison>,
-    /// What shook the six barrels.
+    /// The ground motion of the six barrels.
     pub motion: Motion,
     /// The page.
     pub document: Document,
-    /// Whether the studies were stopped, of which then none is in it.
+    /// `true` if the studies were stopped; then none is included.
     pub stopped: bool,
 }
 
-/// Why there is no reproduction.
+/// The reason why there is no reproduction.
 #[derive(Debug, thiserror::Error)]
 pub enum ReproduceError {
     /// A built-in case cannot be read with its changes.
@@ -54,24 +54,24 @@ pub enum ReproduceError {
     /// The record cannot be used.
     #[error(transparent)]
     Record(Box<GroundError>),
-    /// A case does not run.
+    /// A case cannot be run.
     #[error("{case}: {source}")]
     Run {
         /// The case.
         case: String,
-        /// Why.
+        /// Reason.
         source: Box<RunFailure>,
     },
-    /// A case gave nothing back.
+    /// A case returned no result.
     #[error("{case}: the run was lost")]
     Lost {
         /// The case.
         case: String,
     },
-    /// It was stopped before every case of the paper was done, so there is no table.
+    /// Stopped before every case of the paper was done, so there is no table.
     #[error("the runs were stopped")]
     Stopped {
-        /// The cases that were done, each with what became of it.
+        /// The completed cases, each with its result.
         done: Vec<(String, String)>,
     },
 }
@@ -90,19 +90,19 @@ impl From<GroundError> for ReproduceError {
 
 /// Runs every case of the paper, and the studies around them, on all cores.
 ///
-/// `record` is the file of the Hollywood Storage record, north-south, which cannot be passed on with
+/// `record` is the file of the Hollywood Storage record, north-south, which cannot be distributed with
 /// the program.
-/// Without it the six barrels are shaken by the bundled record of South Napa, and nothing that hangs on
+/// Without it the six barrels are excited by the bundled record of South Napa, and nothing that depends on
 /// the motion is compared.
-/// `studies` asks for the studies too: what moves each case, and contact parameters 10 % off; they are
-/// most of the work.
-/// `tell` hears how many runs are done, of how many, from several threads, and may stop them: once all cases are done
-/// there is a result without the studies.
+/// `studies` includes the studies: effects of single quantities on each case, and contact parameters changed by 10 %;
+/// they are most of the work.
+/// `tell` is called with the numbers of completed and of all runs, from several threads, and may stop them: once all
+/// cases are done there is a result without the studies.
 ///
-/// The result depends on the program, the platform and the record alone.
+/// The result depends only on the program, the platform and the record.
 ///
 /// # Errors
-/// When the record cannot be read, or a case cannot be built.
+/// If the record cannot be read, or a case cannot be built.
 pub fn reproduce(
     record: Option<&Path>,
     studies: bool,
@@ -127,7 +127,7 @@ pub fn reproduce(
     Ok(Reproduction { comparisons, motion: results.motion, document, stopped })
 }
 
-/// The comparisons alone, as one Markdown table.
+/// Writes the comparisons as one Markdown table.
 pub fn table(found: &Reproduction) -> String {
     compare::table(&found.comparisons)
 }

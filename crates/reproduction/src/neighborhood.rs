@@ -1,5 +1,5 @@
-//! The neighborhood of the reconstructed rack: how many racks a little other, with contact parameters a
-//! little other, keep all findings of the paper.
+//! The neighborhood of the reconstructed rack: how many slightly different racks, with slightly different contact
+//! parameters, reproduce all findings of the paper.
 
 use barrelstack::scenario::{Cradle, Scenario, StackSpec};
 use barrelstack::summary::Summary;
@@ -9,16 +9,16 @@ use super::cases::Cases;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// How many draws.
+/// Number of samples.
 pub(super) const COUNT: usize = 40;
 
-/// How far each length and angle of the rack goes, and each coefficient of friction.
+/// Relative range of each length and angle of the rack, and of each coefficient of friction.
 const REACH: f64 = 0.05;
 
-/// How far stiffness and damping go.
+/// Relative range of stiffness and damping.
 const PARAMETERS: f64 = 0.10;
 
-/// What is asked of a draw.
+/// The findings checked for each sample.
 const QUESTIONS: [&str; 5] = [
     "eight barrels: the top level leaves first",
     "eight barrels: drift within 4 to 7 %",
@@ -27,11 +27,11 @@ const QUESTIONS: [&str; 5] = [
     "along the barrels: it does within 3 to 6 s",
 ];
 
-/// Which findings a draw keeps; none for what needs the paper's record.
+/// The findings that a sample reproduces; `None` for those that need the paper's record.
 pub(super) type Kept = [Option<bool>; 5];
 
-/// A number between −1 and 1 of a draw: fractional parts of multiples of √primes (Richtmyer 1951), which
-/// fill the box evenly and are the same everywhere.
+/// Returns a coordinate of a sample between −1 and 1: fractional parts of multiples of √primes (Richtmyer 1951),
+/// which fill the box evenly and are the same everywhere.
 fn draw(index: usize, dimension: usize) -> f64 {
     const PRIMES: [f64; 12] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0];
     2.0 * ((index + 1) as f64 * PRIMES[dimension].sqrt()).fract() - 1.0
@@ -58,7 +58,7 @@ fn change(stack: &mut StackSpec, index: usize) {
     vary::rack_ground_friction(stack, near(11));
 }
 
-/// The runs of every draw: eight barrels, along the barrels, and six where the paper's record shakes them.
+/// Returns the runs of every sample: eight barrels, along the barrels, and six under the paper's record, if given.
 pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for index in 0..COUNT {
@@ -76,7 +76,7 @@ pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     jobs
 }
 
-/// What each draw keeps, from the summaries in the order of the jobs.
+/// Evaluates the findings of each sample, from the summaries in the order of the jobs.
 pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Kept> {
     let mut kept = Vec::new();
     while let (true, Some(eight), Some(along)) = (kept.len() < COUNT, next.next(), next.next()) {
@@ -99,7 +99,7 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
     kept
 }
 
-/// The table.
+/// Builds the table.
 pub(super) fn block(kept: &[Kept]) -> Block {
     let mut table = Table::new(
         format!(

@@ -4,24 +4,24 @@
 //! Its text fixes them: barrels 1, 4 and 7 are drawn together (Fig. 6c), bodies 11 and 10 are the top
 //! barrels of four levels (section 4), bodies 2 and 3 are "barrel and racks" (Fig. 7c), and along the
 //! barrels body 4 is "the rack from the second level".
-//! One rule meets all of it: count level by level from the bottom, the barrels of a level from the
+//! One rule satisfies all of these: count level by level from the bottom, the barrels of a level from the
 //! left and then its rack.
 
 use barrelstack_report::{Cell, Table};
 
-/// Our name of the paper's body `number` in a stack with `columns` barrels on a level.
+/// Returns our name of the paper's body `number` in a stack with `columns` barrels per level.
 pub(super) fn name(number: u32, columns: u32) -> String {
     let level = (number - 1) / (columns + 1) + 1;
     let place = (number - 1) % (columns + 1) + 1;
     if place > columns { format!("R{level}") } else { format!("B{level}.{place}") }
 }
 
-/// The paper's number of the body with one of our names; none for what the paper does not number.
+/// Returns the paper's number of a body by our name; `None` for a body without number.
 pub(super) fn number(name: &str, columns: u32) -> Option<u32> {
     (1..=12 * (columns + 1)).find(|number| self::name(*number, columns) == name)
 }
 
-/// The whole table.
+/// Builds the table of numbers and names.
 pub(super) fn table() -> Table {
     let pair =
         |number: u32, columns: u32| Cell::text(format!("{number} = {}", name(number, columns)));

@@ -1,4 +1,4 @@
-//! The page: the paper's numbers and figures in its order, ours beside them, and why they differ.
+//! The page: the paper's numbers and figures in its order, compared with ours, and why they differ.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use super::results::{Ran, Results};
 use super::study::Subject;
 use super::{ensemble, figures, neighborhood, numbering, racks, tornado};
 
-/// The whole page.
+/// Builds the whole page.
 pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) -> Document {
     Document {
         title: "Candia, de la Llera and Almazán (2008): published against ours".into(),
@@ -43,7 +43,7 @@ pub(super) fn document(results: &Results, rows: &[Comparison], stopped: bool) ->
     }
 }
 
-/// How many rows came out how.
+/// Summarizes the verdicts.
 pub(super) fn headline(rows: &[Comparison]) -> String {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     let compared = rows.len() - count(Verdict::NotCompared);
@@ -120,7 +120,7 @@ fn blocks(results: &Results, rows: &[Comparison]) -> Vec<Block> {
     blocks
 }
 
-/// What no run can settle.
+/// Results that no run can decide.
 const NOT_COMPARED: [&str; 5] = [
     "The curves and drawings of Figs. 6 and 7 point by point: only the text of the paper was read, so \
      ours stand here for themselves.",
@@ -203,7 +203,7 @@ fn figure_6(results: &Results) -> Vec<Block> {
     blocks
 }
 
-/// What the stand-in motion shows, in place of what the paper shows.
+/// States the results under the substitute motion.
 fn stand_in(results: &Results) -> String {
     let slip = |summary: &Summary| {
         let slip = summary.demands.base_slip_residual.unwrap_or(f64::NAN);
@@ -227,7 +227,7 @@ fn stand_in(results: &Results) -> String {
     )
 }
 
-/// Instants of a sequence at half scale, for the same ones at full scale.
+/// Converts the instants of a sequence at full scale to half scale.
 fn equivalent(panels: &[(f64, String)]) -> Vec<(f64, String)> {
     let root = 2.0_f64.sqrt();
     panels.iter().map(|(time, note)| (time / root, note.clone())).collect()

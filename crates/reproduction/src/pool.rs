@@ -11,35 +11,35 @@ use barrelstack::summary::Summary;
 
 use super::ReproduceError;
 
-/// One run to do.
+/// One run.
 pub(super) struct Job {
-    /// What it is, for errors.
+    /// Label, for errors.
     pub(super) label: String,
-    /// What is run.
+    /// The scenario.
     pub(super) scenario: Scenario,
-    /// Whether frames, histories and envelopes are wanted, or the summary alone.
+    /// `true` to keep frames, histories and envelopes, `false` for the summary only.
     pub(super) keep: bool,
 }
 
 impl Job {
-    /// A run of which the summary alone is wanted.
+    /// Creates a job that keeps only the summary.
     pub(super) fn brief(label: String, scenario: Scenario) -> Self {
         Self { label, scenario, keep: false }
     }
 }
 
-/// One run done.
+/// A completed run.
 pub(super) struct Done {
     /// Its summary.
     pub(super) summary: Summary,
-    /// All of it, where it was wanted.
+    /// The run, if kept.
     pub(super) run: Option<Box<Run>>,
-    /// What became of it, in one sentence.
+    /// Its result, in one sentence.
     pub(super) headline: String,
 }
 
-/// Runs all jobs on all cores, the first first; `tell` hears again and again how many are done, of how many, and may
-/// stop them: then there is nothing of those that are not done.
+/// Runs all jobs on all cores, in order; `tell` is called repeatedly with the numbers of completed and of all jobs, and
+/// may stop them: jobs not completed are then `None`.
 pub(super) fn run_all(
     jobs: &[Job],
     tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),

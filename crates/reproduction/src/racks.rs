@@ -1,5 +1,5 @@
-//! Other racks that give the paper's numbers as well, but for the residual slip: how robust its result is
-//! hangs on what it does not state.
+//! Other racks that reproduce the paper's numbers equally well, except for the residual slip: the robustness of the
+//! result depends on dimensions that the paper does not state.
 
 use barrelstack::scenario::{Cradle, StackSpec};
 use barrelstack::summary::Summary;
@@ -10,12 +10,12 @@ use super::ensemble;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// A rack, in words and as a change of the regular one.
+/// A rack: its description, and the change from the regular one.
 type Rack = (&'static str, fn(&mut StackSpec));
 
 /// Solid racks with feet that a random search over cradle, feet, clearance, rails, node spacing and mass
-/// found beside that of the catalog, and two of an independent search that knew the cases across the
-/// barrels only. The catalog's was taken because it gives the case along the barrels as well.
+/// found besides that of the catalog, and two of an independent search that used only the cases across the
+/// barrels. The catalog's was chosen because it reproduces the case along the barrels, too.
 const RACKS: [Rack; 3] = [
     ("cradle ±30°, feet ±6 cm, clearance 12 cm, 30 kg", |stack| {
         cradle(stack, 30.0);
@@ -43,20 +43,20 @@ fn cradle(stack: &mut StackSpec, degrees: f64) {
     }
 }
 
-/// What a rack gives.
+/// The results of a rack.
 pub(super) struct Tried {
-    /// The rack in words.
+    /// Description of the rack.
     pub(super) name: &'static str,
     eight: Summary,
-    /// Six barrels, where the paper's record shook them.
+    /// Six barrels, if under the paper's record.
     six: Option<Summary>,
-    /// How many combinations of contact parameters 10 % off keep the mode of the eight barrels.
+    /// Number of combinations of contact parameters changed by 10 % that keep the mode of the eight barrels.
     pub(super) same_mode: usize,
-    /// Of how many.
+    /// Number of combinations.
     pub(super) members: usize,
 }
 
-/// The runs: for each rack the six barrels, the eight barrels, and these with every combination.
+/// Returns the runs: for each rack the six barrels, the eight barrels, and these with every combination.
 pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (name, change) in RACKS {
@@ -67,14 +67,14 @@ pub(super) fn jobs(cases: &Cases) -> Vec<Job> {
             jobs.push(job("six barrels", six));
         }
         let eight = with(&brief(&cases.eight, 1.0), change);
-        // The mode is known with the first loss of seat.
+        // The mode is determined at the first loss of seat.
         jobs.extend(ensemble::jobs(&brief(&eight, 0.05)));
         jobs.push(job("eight barrels", eight));
     }
     jobs
 }
 
-/// Puts the summaries together, which come in the order of the jobs.
+/// Collects the summaries, which are in the order of the jobs.
 pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> Vec<Tried> {
     let mut found = Vec::new();
     for (name, _) in RACKS {
@@ -88,7 +88,7 @@ pub(super) fn read(with_six: bool, next: &mut dyn Iterator<Item = Summary>) -> V
     found
 }
 
-/// The table.
+/// Builds the table.
 pub(super) fn block(found: &[Tried]) -> Block {
     let mode = |summary: &Summary| summary.outcome.mode.unwrap_or(summary.outcome.kind);
     let stress = |summary: &Summary| summary.demands.stress_amplification;

@@ -1,4 +1,4 @@
-//! The runs of all cases and studies: what is to do, and what came of it.
+//! The runs of all cases and studies: the plan, and the results.
 
 use barrelstack::run::Run;
 use barrelstack::scenario::{Scale, Scenario};
@@ -14,16 +14,16 @@ use super::{ReproduceError, ensemble, vary};
 /// The paper's measured parameters over its calibrated ones: k is 10 % greater than measured, c 16 %.
 pub(super) const MEASURED: (f64, f64) = (1.0 / 1.10, 1.0 / 1.16);
 
-/// Everything there is to run.
+/// All runs to be done.
 pub(super) struct Plan {
     /// The jobs, long ones first.
     pub(super) jobs: Vec<Job>,
     studies: Vec<(Subject, Vec<Factor>)>,
-    /// How many jobs come before those of the studies.
+    /// Number of jobs before those of the studies.
     single: usize,
 }
 
-/// A case with all that was seen of it.
+/// A completed case with everything recorded.
 pub(super) struct Ran {
     /// The run.
     pub(super) run: Run,
@@ -31,9 +31,9 @@ pub(super) struct Ran {
     pub(super) summary: Summary,
 }
 
-/// Everything that was run.
+/// All results.
 pub(super) struct Results {
-    /// What shook the six barrels.
+    /// The ground motion of the six barrels.
     pub(super) motion: Motion,
     /// Six barrels, rack–ground friction 0.4.
     pub(super) six: Ran,
@@ -45,22 +45,22 @@ pub(super) struct Results {
     pub(super) half: Ran,
     /// Four levels along the barrels.
     pub(super) along: Ran,
-    /// Eight barrels under the sine that starts to the other side.
+    /// Eight barrels under the sine of opposite sign.
     pub(super) mirrored: Summary,
     /// Eight barrels with the measured contact parameters.
     pub(super) measured: Summary,
-    /// Eight barrels with contact parameters 10 % off.
+    /// Eight barrels with contact parameters changed by 10 %.
     pub(super) ensemble: Vec<Summary>,
-    /// Other racks that give the paper's numbers as well.
+    /// Other racks that reproduce the paper's numbers.
     pub(super) racks: Vec<Tried>,
-    /// How many racks near the reconstructed one keep the paper's findings.
+    /// Findings of the paper reproduced by racks near the reconstructed one.
     pub(super) neighborhood: Vec<Kept>,
-    /// What moves each case.
+    /// Effects of single quantities on each case.
     pub(super) studies: Vec<Study>,
 }
 
 impl Plan {
-    /// Plans the runs of all cases, and of the studies where they are wanted.
+    /// Plans the runs of all cases, and of the studies if requested.
     pub(super) fn new(cases: &Cases, with_studies: bool) -> Self {
         let mut mirrored = cases.eight.clone();
         mirrored.motion.scale = Scale::Factor(-1.0);
@@ -87,7 +87,7 @@ impl Plan {
             return Self { jobs, studies: Vec::new(), single };
         }
         let mut subjects = vec![(Subject::Along, &cases.along), (Subject::Eight, &cases.eight)];
-        // A study explains differences from the paper; under another motion there is none to explain.
+        // A study explains differences from the paper, which another motion does not allow.
         if cases.motion.is_papers() {
             subjects.insert(1, (Subject::Six, &cases.six));
         }
@@ -104,13 +104,13 @@ impl Plan {
         Self { jobs, studies, single }
     }
 
-    /// Leaves out the studies, whose jobs come last.
+    /// Removes the studies, whose jobs come last.
     pub(super) fn leave_out_studies(&mut self) {
         self.jobs.truncate(self.single);
         self.studies.clear();
     }
 
-    /// Sorts what came of the jobs.
+    /// Collects the results of the jobs.
     pub(super) fn read(self, motion: Motion, done: Vec<Done>) -> Result<Results, ReproduceError> {
         let labels: Vec<String> = self.jobs.into_iter().map(|job| job.label).collect();
         let lost =
@@ -164,7 +164,7 @@ impl Plan {
 }
 
 impl Results {
-    /// The study of a case; none where it was not run.
+    /// Returns the study of a case; `None` if it was not run.
     pub(super) fn study(&self, subject: Subject) -> Option<&Study> {
         self.studies.iter().find(|study| study.subject == subject)
     }

@@ -1,4 +1,4 @@
-//! One row for every number and every finding that the paper states.
+//! One row for every number and every finding of the paper.
 
 use barrelstack::summary::{BodySummary, Summary};
 use barrelstack_report::significant;
@@ -11,7 +11,7 @@ use super::{ensemble, figures};
 /// The project's band of stress amplification.
 const STRESS_BAND: Option<Band> = Some((2.5, 3.5, "2.5 to 3.5"));
 
-/// All rows, in the order of the paper.
+/// Returns all rows, in the order of the paper.
 pub(super) fn all(results: &Results) -> Vec<Comparison> {
     let mut rows = six(results);
     rows.extend(eight(results));
@@ -25,7 +25,7 @@ fn seconds(value: f64) -> String {
     format!("{} s", significant(value, 3))
 }
 
-/// The words of a mode, or what there is in its place.
+/// Describes the mode of collapse, or the outcome without one.
 fn mode_of(summary: &Summary) -> String {
     let outcome = &summary.outcome;
     match (outcome.mode, outcome.from_level, outcome.to_level) {
@@ -35,28 +35,28 @@ fn mode_of(summary: &Summary) -> String {
     }
 }
 
-/// A body by its name.
+/// Returns a body by its name.
 fn body<'a>(summary: &'a Summary, name: &str) -> Option<&'a BodySummary> {
     summary.bodies.iter().find(|body| body.name == name)
 }
 
-/// When a body fell (s).
+/// Returns the time at which a body fell (s).
 fn fell(summary: &Summary, name: &str) -> Option<f64> {
     body(summary, name)?.fell_at
 }
 
-/// When (s) both barrels of the top of four levels had fallen.
+/// Returns the time (s) at which both barrels of the top of four levels had fallen.
 fn top_gone(summary: &Summary) -> Option<f64> {
     Some(fell(summary, "B4.1")?.max(fell(summary, "B4.2")?))
 }
 
-/// Whether both barrels of the top of four levels fall before any other.
+/// `true` if both barrels of the top of four levels fall before any other.
 fn top_falls_before_others(summary: &Summary) -> bool {
     let others = summary.bodies.iter().filter(|b| b.kind == "barrel" && b.level != Some(4));
     top_gone(summary).is_some_and(|top| others.filter_map(|b| b.fell_at).all(|other| other > top))
 }
 
-/// What a study says about a published time: the changes that reach it, or those that come nearest.
+/// Describes a study with respect to a published time: the changes that reach it, or the strongest ones.
 fn reasons(study: Option<&Study>, published: f64) -> String {
     let Some(study) = study else { return String::new() };
     let time = |summary: &Summary| study.subject.time(summary);

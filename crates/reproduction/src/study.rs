@@ -1,4 +1,4 @@
-//! What moves a case: one quantity that the paper leaves open changed at a time, down and up.
+//! Sensitivity study of a case: one quantity that the paper leaves open changed at a time, down and up.
 
 use barrelstack::scenario::{Scenario, StackSpec};
 use barrelstack::summary::Summary;
@@ -6,7 +6,7 @@ use barrelstack::summary::Summary;
 use super::pool::Job;
 use super::vary::{self, brief, with};
 
-/// A case to study.
+/// The case of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Subject {
     /// Six barrels under a record.
@@ -18,7 +18,7 @@ pub(super) enum Subject {
 }
 
 impl Subject {
-    /// What the case is called in captions.
+    /// Returns the name of the case in captions.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Six => "six barrels",
@@ -27,7 +27,7 @@ impl Subject {
         }
     }
 
-    /// The words for the time that stands beside the paper's.
+    /// Returns the words for the time that is compared with the paper's.
     pub(super) fn clock(self) -> &'static str {
         match self {
             Self::Six | Self::Along => "first loss of seat",
@@ -35,7 +35,7 @@ impl Subject {
         }
     }
 
-    /// That time (s) in a summary.
+    /// Returns that time (s) of a summary.
     pub(super) fn time(self, summary: &Summary) -> Option<f64> {
         match self {
             Self::Six | Self::Along => summary.outcome.time,
@@ -43,7 +43,7 @@ impl Subject {
         }
     }
 
-    /// How long (s) a member runs at most, and after its collapse: long enough for the first fall.
+    /// Returns the longest duration (s) of a member, and that after its collapse, which must include the first fall.
     fn duration(self) -> (f64, f64) {
         match self {
             Self::Six => (20.0, 0.1),
@@ -53,15 +53,15 @@ impl Subject {
     }
 }
 
-/// One quantity and what it was changed to.
+/// One quantity with its changes.
 pub(super) struct Factor<Run = Scenario> {
     /// The quantity with its regular value, such as "cradle angle 28°".
     pub(super) name: String,
-    /// What it was changed to, and the run of it.
+    /// Each change, and its run.
     pub(super) ends: Vec<(String, Run)>,
 }
 
-/// A factor with its runs done, and what came of them.
+/// A factor with the results of its runs.
 pub(super) type Effect = Factor<Summary>;
 
 /// A case with all its effects.
@@ -70,14 +70,14 @@ pub(super) struct Study {
     pub(super) subject: Subject,
     /// The case as stated.
     pub(super) base: Summary,
-    /// The largest effect on the time first.
+    /// Sorted by their effect on the time, the largest first.
     pub(super) effects: Vec<Effect>,
 }
 
-/// What a quantity is changed to, each with its name.
+/// The two changes of a quantity, each with its name.
 type Ends<'a> = [(&'a str, &'a dyn Fn(&mut StackSpec)); 2];
 
-/// The factors of a case.
+/// Returns the factors of a case.
 pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     let (duration, after) = subject.duration();
     let mut base = brief(base, after);
@@ -164,7 +164,7 @@ pub(super) fn factors(subject: Subject, base: &Scenario) -> Vec<Factor> {
     list
 }
 
-/// The runs of factors, in order.
+/// Returns the runs of factors, in order.
 pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item = Job> {
     factors.iter().flat_map(move |factor| {
         factor.ends.iter().map(move |(label, scenario)| {
@@ -175,7 +175,7 @@ pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item =
 }
 
 impl Study {
-    /// Puts factors and the summaries of their runs together; `next` gives them in the order of the
+    /// Combines factors with the summaries of their runs, which `next` returns in the order of the
     /// jobs.
     pub(super) fn new(
         subject: Subject,
@@ -192,7 +192,7 @@ impl Study {
             .collect();
         let weight = |effect: &Effect| {
             let from = subject.time(&base).unwrap_or(0.0);
-            // What does not collapse at all is the largest effect there is.
+            // A change that prevents collapse has the largest possible effect.
             let changes = effect.ends.iter().map(|(_, summary)| {
                 subject.time(summary).map_or(f64::INFINITY, |time| (time - from).abs())
             });
@@ -202,21 +202,21 @@ impl Study {
         Self { subject, base, effects }
     }
 
-    /// All changes in words, with what came of each.
+    /// Returns all changes in words, with their results.
     fn changes(&self) -> impl Iterator<Item = (String, &Summary)> {
         self.effects.iter().flat_map(|Effect { name, ends }| {
             ends.iter().map(move |(label, summary)| (format!("{name} ({label})"), summary))
         })
     }
 
-    /// Least and greatest time (s) among all changes that collapse, the case as stated included.
+    /// Returns the smallest and largest time (s) among all changes that collapse, including the case as stated.
     pub(super) fn times(&self) -> Option<[f64; 2]> {
         let all = || self.changes().map(|(_, summary)| summary).chain([&self.base]);
         let times = || all().filter_map(|summary| self.subject.time(summary));
         Some([times().reduce(f64::min)?, times().reduce(f64::max)?])
     }
 
-    /// The changes that bring a quantity to the published value or past it, in words.
+    /// Returns the changes that bring a quantity to the published value or beyond it, in words.
     pub(super) fn reaching(
         &self,
         published: f64,
@@ -227,12 +227,12 @@ impl Study {
         self.holding(|summary| of(summary).is_some_and(crosses))
     }
 
-    /// The changes with which something holds, in words.
+    /// Returns the changes for which a condition holds, in words.
     pub(super) fn holding(&self, what: impl Fn(&Summary) -> bool) -> Vec<String> {
         self.changes().filter(|(_, summary)| what(summary)).map(|(change, _)| change).collect()
     }
 
-    /// The change that brings a quantity nearest to a published value, in words, and what it is then.
+    /// Returns the change that brings a quantity nearest to a published value, in words, and that quantity.
     pub(super) fn nearest(
         &self,
         published: f64,
@@ -243,7 +243,7 @@ impl Study {
         known.min_by(|one, other| off(one).total_cmp(&off(other)))
     }
 
-    /// The changes that move a quantity most, at most `count`, in words with what becomes of it.
+    /// Returns the changes with the largest effect on a quantity, at most `count`, in words with the result.
     pub(super) fn strongest(
         &self,
         count: usize,
@@ -289,7 +289,7 @@ mod tests {
                     });
                 }
             }
-            // Ten quantities, the sine's start where there is one; the fill has one other end.
+            // Ten quantities, and the sine's start if there is a sine; the fill has only one other value.
             assert_eq!(seen.len(), if subject == Subject::Six { 19 } else { 21 });
         }
     }

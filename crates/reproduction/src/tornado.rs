@@ -1,19 +1,19 @@
-//! A study as a picture and a table: how far each change moves time, drift and stress.
+//! A study as a tornado plot and a table: the effect of each change on time, drift and stress.
 
 use barrelstack::summary::Summary;
 use barrelstack_report::{Axis, Block, Cell, Figure, Mark, Plot, Series, SeriesStyle, Table};
 
 use super::study::{Study, Subject};
 
-/// The three quantities of a tornado, with their place in a row.
+/// The three quantities of a tornado plot, by their positions in a row.
 const PLACES: [f64; 3] = [0.26, 0.0, -0.26];
 
-/// Picture and table of a study.
+/// Builds plot and table of a study.
 pub(super) fn blocks(study: &Study, id: &str, published: [Option<f64>; 3]) -> Vec<Block> {
     vec![Block::Figure(figure(study, id, published)), Block::Table(table(study))]
 }
 
-/// Time, drift and stress of a run.
+/// Returns time, drift and stress of a run.
 fn values(subject: Subject, summary: &Summary) -> [Option<f64>; 3] {
     [subject.time(summary), summary.demands.top_drift_ratio, summary.demands.stress_amplification]
 }
@@ -43,7 +43,7 @@ fn figure(study: &Study, id: &str, published: [Option<f64>; 3]) -> Figure {
             let y = Axis::row(row) + PLACES[quantity];
             for x in effect.ends.iter().filter_map(|(_, summary)| change(quantity, summary)) {
                 (low, high) = (low.min(x), high.max(x));
-                // Every bar starts from the case as stated; the gap parts it from the next.
+                // Every bar starts from the case as stated; the gap separates it from the next.
                 for (x, y) in [(0.0, y), (x, y), (f64::NAN, y)] {
                     line.x.push(x);
                     line.y.push(y);

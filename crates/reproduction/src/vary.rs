@@ -1,10 +1,10 @@
-//! One change of a scenario at a time.
+//! Single changes of a scenario.
 
 use barrelstack::scenario::{
     Cradle, Fill, Friction, Interface, MotionSource, Scenario, Scene, StackSpec,
 };
 
-/// A scenario with its stack changed; a free scene stays as it is.
+/// Returns a scenario with its stack changed; a free scene is unchanged.
 pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> Scenario {
     let mut changed = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut changed.scene {
@@ -13,7 +13,7 @@ pub(super) fn with(scenario: &Scenario, change: impl FnOnce(&mut StackSpec)) -> 
     changed
 }
 
-/// A scenario that is stopped a while (s) after its collapse and of which nothing is drawn.
+/// Returns a scenario that stops a time (s) after its collapse, with minimal recording.
 pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     let mut brief = scenario.clone();
     brief.run.stop_after_collapse = Some(after);
@@ -22,7 +22,7 @@ pub(super) fn brief(scenario: &Scenario, after: f64) -> Scenario {
     brief
 }
 
-/// The interfaces of the seats of a stack.
+/// Returns the interfaces of the seats of a stack.
 fn seats(stack: &mut StackSpec) -> [&mut Interface; 3] {
     let all = &mut stack.interfaces;
     [&mut all.rack_ground, &mut all.barrel_rack, &mut all.rack_rack]
@@ -35,7 +35,7 @@ pub(super) fn stiffness(stack: &mut StackSpec, factor: f64) {
     }
 }
 
-/// Multiplies the contact damping of all seats where it is stated as a coefficient.
+/// Multiplies the contact damping of all seats if it is stated as a coefficient.
 pub(super) fn damping(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         interface.damp(factor);
@@ -52,7 +52,7 @@ pub(super) fn rack_ground_friction(stack: &mut StackSpec, factor: f64) {
     stack.interfaces.rack_ground.roughen(factor);
 }
 
-/// Multiplies the tangential over the normal stiffness of sticks everywhere.
+/// Multiplies the ratio of tangential to normal stiffness of all sticks.
 pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     for interface in seats(stack) {
         if let Friction::Coulomb { tangential_stiffness_ratio, .. } = &mut interface.friction {
@@ -61,19 +61,19 @@ pub(super) fn stick_stiffness(stack: &mut StackSpec, factor: f64) {
     }
 }
 
-/// Adds to the angle (rad) of cradle supports; a trough stays as it is.
+/// Adds to the angle (rad) of cradle supports; a trough is unchanged.
 pub(super) fn cradle_angle(stack: &mut StackSpec, more: f64) {
     if let Cradle::Supports { angle } = &mut stack.rack.cradle {
         *angle += more;
     }
 }
 
-/// The barrels with the wine at rest while the wood turns, at the same mass.
+/// Sets barrels whose wine does not rotate with the wood, at the same mass.
 pub(super) fn fluid(stack: &mut StackSpec) {
     stack.barrel.fill = Fill::FullFluid;
 }
 
-/// A sine that grows over so many cycles.
+/// Returns a scenario whose sine has ramps of `cycles` cycles.
 pub(super) fn ramped(scenario: &Scenario, cycles: f64) -> Scenario {
     let mut changed = scenario.clone();
     if let MotionSource::Sine(sine) = &mut changed.motion.source {

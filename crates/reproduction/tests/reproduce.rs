@@ -1,4 +1,4 @@
-//! The page of published against ours: nothing is missing, nothing is compared that cannot be.
+//! The page of published against ours: complete, and without comparisons that are impossible.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -46,7 +46,7 @@ fn what_needs_the_papers_record_is_not_compared_without_it() {
     assert_eq!(found().motion, Motion::Bundled);
     for row in &found().comparisons {
         let six = row.quantity.starts_with("six barrels");
-        // The paper states the measured parameters and no result for them.
+        // The paper states the measured parameters but no result for them.
         let unstated = row.quantity.ends_with("measured k and c");
         assert_eq!(row.verdict == Verdict::NotCompared, six || unstated, "{}", row.quantity);
         if six {
@@ -154,7 +154,7 @@ fn a_missing_record_is_an_error_before_any_run() {
 fn the_papers_record_is_told_from_its_neighbors() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions/peer");
     if !folder.is_dir() {
-        // Past the runner, which keeps what a passing test prints, to where skipped tests are counted.
+        // Bypasses the test runner, which hides the output of passing tests, so that skipped tests are counted.
         let notice = format!("skipped: {} is not there\n", folder.display());
         std::io::stdout().write_all(notice.as_bytes()).unwrap();
         return;
@@ -174,8 +174,8 @@ fn the_validation_page_says_what_the_program_finds() {
     let text = std::fs::read_to_string(page).unwrap();
     let table = barrelstack_reproduction::table(found());
     for (row, line) in found().comparisons.iter().zip(table.lines().skip(2)) {
-        // What needs the record needs the file too, which a fresh clone does not have; verdict and
-        // reason of the rest hang on the studies.
+        // Rows that need the record need its file, too, which a fresh clone does not have; verdict and
+        // reason of the others depend on the studies.
         let cells = if row.quantity.starts_with("six barrels") { 2 } else { 3 };
         let head: Vec<&str> = line.split(" | ").take(cells).collect();
         let head = head.join(" | ");
