@@ -1,4 +1,4 @@
-//! Stiffness, damping and friction together from collapses that were seen.
+//! Joint calibration of stiffness, damping and friction from observed collapses.
 
 mod ensemble;
 mod likelihood;
@@ -27,21 +27,21 @@ use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
 pub use likelihood::Errors;
 
-/// How a calibration from collapses goes.
+/// Settings of a calibration from collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Every parameter is taken to lie within this factor of its value in the scenario, each value of
-    /// its logarithm as likely as another before the tests.
+    /// Factor that bounds every parameter relative to its value in the scenario; the prior is uniform in
+    /// its logarithm.
     pub within: f64,
-    /// Standard deviation (m) of the place of each rack and each barrel when a stack is built.
+    /// Standard deviation (m) of the position of each rack and each barrel when a stack is built.
     pub placement: f64,
-    /// How observations differ from simulations that are right.
+    /// Errors of observations relative to correct simulations.
     pub errors: Errors,
-    /// Sets of parameters that are simulated, each once for every test.
+    /// Number of parameter sets, each simulated once for every test.
     pub simulations: usize,
-    /// Start of all random numbers.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// The vector unit in which simulations run; the widest of the machine without. The result does not
+    /// Vector unit of the simulations; the widest of the machine if `None`. The result does not
     /// depend on it.
     pub lanes: Option<Width>,
 }
@@ -59,27 +59,27 @@ impl Default for Settings {
     }
 }
 
-/// Share of its width before the tests that an interval must have lost for a test to say something.
+/// Fraction by which an interval must be narrower than the prior for a test to be informative.
 const TOLD: f64 = 0.15;
 
-/// Correlation above which two parameters cannot be told apart.
+/// Correlation above which two parameters are inseparable.
 const ALIKE: f64 = 0.9;
 
-/// Weight of simulations that go as observed below which the model does not show what was seen.
+/// Weight of the simulations that agree with an observation, below which the model does not reproduce it.
 const UNSEEN: f64 = 0.2;
 
-/// What was seen of collapses, one row of a table a test.
+/// Observations of collapses, one row of a table per test.
 ///
-/// | column | what stands in it |
+/// | column | content |
 /// |---|---|
 /// | `mode` | `ejection`, `rocking`, `rack-sliding`, `overturning`, or `stands` |
-/// | `B4.1 fell (s)` | when that barrel had fallen, or `stands`; one column a barrel |
-/// | `first fall (s)`, `first barrel` | the same of the first barrel, where others were not seen |
-/// | `loss of seat (s)` | when the first body left its seat |
-/// | `until (s)` | how long it was watched; needed where something stands |
-/// | `scenario` | the scenario of the test, where tests differ |
+/// | `B4.1 fell (s)` | time at which that barrel had fallen, or `stands`; one column per barrel |
+/// | `first fall (s)`, `first barrel` | the same for the first barrel, if others were not observed |
+/// | `loss of seat (s)` | time at which the first body left its seat |
+/// | `until (s)` | duration of observation; required if anything stands |
+/// | `scenario` | scenario of the test, if tests differ |
 ///
-/// An empty cell was not seen. Times count from the start of the motion.
+/// An empty cell was not observed. Times count from the start of the motion.
 #[derive(Clone, Debug)]
 pub struct Observations {
     file: String,
@@ -91,47 +91,48 @@ impl Observations {
     /// Reads a table.
     ///
     /// # Errors
-    /// At the first cell that cannot be what it stands for.
+    /// At the first invalid cell.
     pub fn read(table: &Table, errors: &Errors) -> Result<Self, CalibrateError> {
         let (tests, warnings) = Observed::read(table, 5.0 * errors.reading)?;
         Ok(Self { file: table.file().to_owned(), tests, warnings })
     }
 
-    /// The scenario that each test names, if it does.
+    /// Returns the scenario that each test names, if any.
     pub fn scenarios(&self) -> impl Iterator<Item = Option<&str>> {
         self.tests.iter().map(|test| test.scenario.as_deref())
     }
 }
 
-/// One test, ready to be simulated.
+/// One test, prepared for simulation.
 struct Trial<'a> {
     observed: &'a Observed,
     tunable: Tunable,
-    /// Runs until the end of the watch.
+    /// Scenario that runs until the end of observation.
     scenario: Scenario,
-    /// What shakes it.
+    /// Ground motion.
     ground: Arc<Ground>,
-    /// Standard deviation (m at full scale) of places.
+    /// Standard deviation (m at full scale) of positions.
     scatter: f64,
 }
 
-/// Finds parameters of a stack from collapses that were seen, `scenarios` being those of the tests.
+/// Estimates parameters of a stack from observed collapses, `scenarios` being those of the tests.
 ///
-/// Collapse is chaotic: the course of one stack cannot be fitted, the chance of it can.
-/// Each set of parameters is simulated with racks and barrels a little beside their places, as no two
-/// stacks are built alike, and weighs as much as what was seen is likely beside that course
-/// ([`Errors`]). Sampling is iterated around what has become likely; the intervals hold the middle
-/// 95 % of the weight. Where too few courses come near, the likelihood is raised to a power below one,
+/// Collapse is chaotic: the course of one stack cannot be fitted, but its probability can.
+/// Each set of parameters is simulated with random offsets of racks and barrels, since no two
+/// stacks are built alike, and weighted by the likelihood of the observations given that course
+/// ([`Errors`]). Sampling is iterated around likely parameters; the intervals hold the central
+/// 95 % of the weight. If too few courses agree, the likelihood is raised to a power below one,
 /// which widens the intervals and is stated.
-/// What is stated for one rack–ground and one barrel–rack interface keeps its ratio between both, as in
+/// Constants of the rack–ground and barrel–rack interfaces keep their ratio, as in
 /// [`super::response`].
 ///
-/// The result is a function of the observations, the scenarios and the settings; the number of threads
-/// is not an input. `tell` hears how many simulations are done, of how many, from several threads, and may stop them.
+/// The result is a function of the observations, the scenarios and the settings, independent of the number of
+/// threads. `tell` is called with the numbers of completed and of all simulations, from several threads, and may stop
+/// them.
 ///
 /// # Errors
-/// When a scenario is no stack of linear laws or cannot be simulated, does not go with what was seen,
-/// or when nothing within the range is like it; and when it was stopped.
+/// If a scenario is not a stack of linear laws, cannot be simulated or does not match the observations,
+/// or if nothing within the range agrees with them; and if it was stopped.
 pub fn collapse(
     observations: &Observations,
     scenarios: &[Scenario],
@@ -151,7 +152,7 @@ pub fn collapse(
         let batch: Vec<Prepared> = draws
             .iter()
             .flat_map(|draw| {
-                // One generator for all tests of a draw: each stack is built anew.
+                // One generator for all tests of a sample: each stack is built anew.
                 let mut random = Random::new(draw.seed);
                 let built = |trial: &Trial<'_>| {
                     let scenario = trial.tunable.at(&trial.scenario, &point(draw));
@@ -235,7 +236,7 @@ pub fn collapse(
     })
 }
 
-/// The tests with their scenarios, checked against each other.
+/// Combines the tests with their scenarios and checks their consistency.
 fn trials<'a>(
     observations: &'a Observations,
     scenarios: &[Scenario],
@@ -275,7 +276,7 @@ fn trials<'a>(
     Ok(trials)
 }
 
-/// Runs a test once as its scenario has it: it must be possible, and have the barrels that were seen.
+/// Runs a test briefly with its own scenario: it must be possible, and contain the observed barrels.
 fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), CalibrateError> {
     let mut short = scenario.clone();
     short.run.duration = Some(1e-3);
@@ -321,7 +322,7 @@ fn estimates(tunable: &Tunable, posterior: &Posterior, reach: f64) -> Vec<Estima
     tunable.parameters().iter().enumerate().map(estimate).collect()
 }
 
-/// What the tests cannot tell, one sentence each.
+/// Describes what the tests do not determine, one sentence each.
 fn identifiability(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
@@ -330,7 +331,7 @@ fn identifiability(
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     for (at, estimate) in estimates.iter().enumerate() {
-        // The middle 95 % of the box is 1.9 wide.
+        // The central 95 % of the prior is 1.9 wide.
         let width = posterior.quantile(at, 0.975) - posterior.quantile(at, 0.025);
         if width > (1.0 - TOLD) * 1.9 {
             warnings.push(format!(
@@ -356,8 +357,8 @@ fn identifiability(
     warnings
 }
 
-/// What of a test can be compared in one word, and the weight of the simulations that go so; none where
-/// no word was said.
+/// Returns the observed mode of a test and the weight of the simulations with this mode; `None` if no mode
+/// was observed.
 fn alike<'a>(
     trial: &Trial<'_>,
     courses: impl Iterator<Item = &'a Option<Seen>>,

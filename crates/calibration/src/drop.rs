@@ -1,4 +1,4 @@
-//! Restitution and damping `c` from drops: heights, or times of impact.
+//! Restitution and damping `c` from drop tests: heights, or times of impact.
 
 use barrelstack::scenario::Dimension;
 use barrelstack_dynamics::contact::restitution;
@@ -12,14 +12,14 @@ use super::result::{quoted, rounded, short};
 use super::statistics::mean;
 use super::{CalibrateError, Calibration, Estimate, Table, impact};
 
-/// What falls on what, as far as the file does not say.
+/// Properties of a drop test that the file does not contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Striker {
-    /// Mass (kg) that falls.
+    /// Falling mass (kg).
     pub mass: f64,
     /// Stiffness `k` (N/m) of one contact node.
     pub stiffness: f64,
-    /// Nodes that it falls on at once.
+    /// Number of nodes that it hits at once.
     pub nodes: u32,
     /// Acceleration of gravity (m/s²).
     pub gravity: f64,
@@ -28,23 +28,23 @@ pub struct Striker {
 /// Standard gravity (m/s²).
 pub const GRAVITY: f64 = 9.80665;
 
-/// Fits from a start; parameters are about 1, and differences and the last step small.
+/// Fits from a start; parameters are about 1, with small finite differences and a small last step.
 fn fit(start: &[f64], evaluate: &least_squares::Evaluate<'_>) -> Option<Fit> {
     let parameters = start.to_vec();
     least_squares::fit(Start { parameters, slopes: None, width: 1e-4, share: 0.01 }, evaluate)
 }
 
-/// Restitution, and with a striker the damping, from a table with the columns `drop height` and
+/// Estimates restitution, and with a striker the damping, from a table with the columns `drop height` and
 /// `rebound height`, or `time` of the impacts of one bounce sequence.
 ///
-/// With a striker, the impact is solved with gravity and with its duration, and ζ is fitted so that it
-/// shows the rebounds or the times: gravity presses the mass into the contact and takes from the
+/// With a striker, the impact is solved with gravity and with its duration, and ζ is fitted to
+/// the rebounds or the times: gravity presses the mass into the contact and reduces the
 /// rebound of slow impacts.
-/// Without one the rebound is taken as that of an instantaneous impact.
-/// The scatter is taken as that of restitution from drop to drop, or as that of the times.
+/// Without one the impact is taken as instantaneous.
+/// The scatter is attributed to restitution from drop to drop, or to the times.
 ///
 /// # Errors
-/// When the table lacks its columns or rows, or what rebounds does not fit a drop.
+/// If the table lacks its columns or rows, or a rebound does not match its drop.
 pub fn drop(
     table: &Table,
     striker: Option<Striker>,
@@ -102,19 +102,19 @@ pub fn drop(
     })
 }
 
-/// What either form of the test gives.
+/// Results of either form of the test.
 struct Found {
     restitution: Estimate,
     /// ln ζ and half its interval.
     log_ratio: Option<(f64, f64)>,
     impacts: usize,
-    /// What rebounds, beside what the fit lets rebound.
+    /// Measured rebounds, and those of the fit.
     figure: Figure,
     warnings: Vec<String>,
 }
 
 impl Striker {
-    /// Whole stiffness (N/m) and damping (N·s/m) at a damping ratio.
+    /// Returns total stiffness (N/m) and damping (N·s/m) at a damping ratio.
     fn constants(&self, ratio: f64) -> (f64, f64) {
         let stiffness = self.stiffness * f64::from(self.nodes);
         (stiffness, restitution::damping(stiffness, ratio, self.mass))
@@ -169,10 +169,10 @@ fn from_heights(table: &Table, striker: Option<Striker>) -> Result<Found, Calibr
     Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// Rebounds (m) over drops (m), measured and as the fit gives them.
+/// Draws rebounds (m) over drops (m), measured and fitted.
 fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     let centimeters = |values: &[f64]| values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>();
-    // Between the drops that were measured: of slower ones the mass may stay where it falls.
+    // Only between the measured drops: after slower ones the mass may not rebound.
     let lowest = from.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = from.iter().copied().fold(0.0, f64::max);
     let series = vec![
@@ -185,8 +185,8 @@ fn heights(from: &[f64], to: &[f64], rebound: &dyn Fn(f64) -> f64) -> Figure {
     figure("drops", caption, axes, series)
 }
 
-/// Flights between the impacts at `times` (s), measured and as the fit has them, whose residuals are in
-/// flights of the length `unit` (s).
+/// Draws the flights between the impacts at `times` (s), measured and fitted; residuals are in units of
+/// `unit` (s).
 fn bounces(times: &[f64], residuals: &[f64], unit: f64) -> Figure {
     let found: Vec<f64> = times.iter().zip(residuals).map(|(t, r)| t + unit * r).collect();
     let between = |times: &[f64]| times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -227,7 +227,7 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
             "the flights between impacts do not grow shorter: are these the impacts of one bounce?",
         ).into());
     }
-    // Instants in units of the first flight, speeds in units of the first one's: all about 1.
+    // Times in units of the first flight, speeds in units of that of the first one: all about 1.
     let (origin, unit) = (times[0], flights[0]);
     let instant = |e: f64, at: usize| (1.0 - math::pow(e, at as f64)) / (1.0 - e);
     let bounce = |point: &Vec<f64>| -> Option<Vec<f64>> {
@@ -271,13 +271,13 @@ fn from_times(table: &Table, striker: Option<Striker>) -> Result<Found, Calibrat
     Ok(Found { restitution, log_ratio: Some(log_ratio), impacts, figure, warnings })
 }
 
-/// ln ζ without gravity, from which the fit with gravity starts.
+/// Returns ln ζ without gravity, the start of the fit with gravity.
 fn start_ratio(e: f64) -> f64 {
     let ratio = restitution::speed_gap_damping_ratio(e).unwrap_or(0.1);
     math::log(ratio.clamp(1e-3, 1e3))
 }
 
-/// A parameter and half its 95 % interval; none where the fit failed or does not determine it.
+/// Returns a parameter and half its 95 % interval; `None` if the fit failed or does not determine it.
 fn log_interval(fit: Option<&Fit>, at: usize) -> Option<(f64, f64)> {
     let fit = fit.filter(|fit| fit.converged && fit.matters.iter().all(|matters| *matters))?;
     let variance = fit.covariance.as_ref()?[at][at];
@@ -294,7 +294,7 @@ fn no_rebound(striker: &Striker) -> String {
     )
 }
 
-/// Slow impacts sink in under gravity before they rebound, and say little about the damper.
+/// Warns of slow impacts, which sink in under gravity before they rebound and hardly depend on the damper.
 fn gravity_warning(striker: &Striker, log_ratio: f64, speed: f64) -> Option<String> {
     let ideal = restitution::speed_gap(math::exp(log_ratio));
     let shown = striker.strike(log_ratio, speed).speed / speed;

@@ -1,21 +1,21 @@
-//! Why a test gives no parameters.
+//! Errors of calibration.
 
 use barrelstack::run::RunFailure;
 use barrelstack_input::measured::TableError;
 
-/// Why a test gives no parameters.
+/// The reason why a test gives no parameters.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
-    /// The table cannot be used, or no parameter can be had from it.
+    /// The table cannot be used, or determines no parameter.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The scenario does not go with the fit.
+    /// The scenario does not match the fit.
     #[error("{0}")]
     Scenario(String),
-    /// The simulation that the fit starts from fails.
+    /// The first simulation of the fit fails.
     #[error(transparent)]
     Run(#[from] RunFailure),
-    /// It was told to stop: what a part of the simulations says is no estimate.
+    /// It was stopped: a part of the simulations gives no estimate.
     #[error("the simulations were stopped")]
     Stopped,
 }

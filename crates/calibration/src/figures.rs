@@ -1,25 +1,25 @@
-//! Pictures of tests: what was measured beside what the fitted parameters give.
+//! Figures of tests: measurements compared with the fitted parameters.
 
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
 use super::Estimate;
 
-/// Places at which a fitted curve is drawn.
+/// Number of intervals of a fitted curve.
 const PLACES: usize = 60;
 
-/// Single measurements.
+/// Creates a series of single measurements.
 pub(super) fn measured(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { points: true, index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }
 }
 
-/// What is fitted, as a line.
+/// Creates a fitted line.
 pub(super) fn fitted(label: &str, x: Vec<f64>, y: Vec<f64>, index: usize) -> Series {
     let style = SeriesStyle { index: Some(index), ..SeriesStyle::default() };
     Series { style, ..Series::new(label, x, y) }
 }
 
-/// A fitted curve between two places.
+/// Creates a fitted curve between two abscissas.
 pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) -> Series {
     let place = |k: usize| from + (to - from) * k as f64 / PLACES as f64;
     let x: Vec<f64> = (0..=PLACES).map(place).collect();
@@ -27,14 +27,14 @@ pub(super) fn curve(label: &str, [from, to]: [f64; 2], of: impl Fn(f64) -> f64) 
     fitted(label, x, y, 0)
 }
 
-/// An estimate between two places, with its interval.
+/// Creates the line of an estimate between two abscissas, with its interval.
 pub(super) fn level(estimate: &Estimate, [from, to]: [f64; 2], index: usize) -> Series {
     let label = format!("{}, 95 % interval", estimate.name);
     let range = vec![[estimate.low, estimate.high]; 2];
     Series { range, ..fitted(&label, vec![from, to], vec![estimate.value; 2], index) }
 }
 
-/// The least and the largest of some values, and a little beyond.
+/// Returns the smallest and the largest value, with a margin.
 pub(super) fn span(values: &[f64]) -> [f64; 2] {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -42,9 +42,9 @@ pub(super) fn span(values: &[f64]) -> [f64; 2] {
     [low - air, high + air]
 }
 
-/// A picture of a test.
+/// Creates a figure of a test.
 pub(super) fn figure(id: &str, caption: &str, [x, y]: [Axis; 2], series: Vec<Series>) -> Figure {
-    // What lies in time can be looked at closely.
+    // Time series are interactive, for closer inspection.
     let interactive = series.iter().all(|one| one.range.is_empty() && !one.style.points);
     Figure::new(id, caption, Plot { x, y, series, interactive, ..Plot::default() })
 }

@@ -23,7 +23,7 @@ const COLUMNS: [&str; 6] = [
     "sliding time",
 ];
 
-/// Static and kinetic friction from a table of repeated tests, one a row.
+/// Estimates static and kinetic friction from a table of repeated tests, one per row.
 ///
 /// Pull tests have the columns `normal force`, `breakaway force` (the largest pull before it moves)
 /// and, for the kinetic coefficient, `sliding force`; each row gives a ratio of forces.
@@ -33,7 +33,7 @@ const COLUMNS: [&str; 6] = [
 /// The interval is that of the mean over the rows by Student's t.
 ///
 /// # Errors
-/// When the table lacks its columns, has less than two rows, or a value cannot be meant.
+/// If the table lacks its columns, has fewer than two rows, or contains an impossible value.
 pub fn friction(table: &Table, interface: &str) -> Result<Calibration, CalibrateError> {
     let (test, rest, slide) = if table.has("angle") {
         let (rest, slide) = tilt(table)?;
@@ -99,7 +99,7 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     })
 }
 
-/// The coefficient of every test, over the load where it was measured, and the means.
+/// Draws the coefficient of every test, over the load if measured, and the means.
 fn picture(
     table: &Table,
     coefficients: &[Option<Vec<f64>>; 2],
@@ -123,7 +123,7 @@ fn picture(
     Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
 }
 
-/// Static coefficients, and kinetic ones where they were measured.
+/// Static coefficients, and kinetic ones if measured.
 type Coefficients = (Vec<f64>, Option<Vec<f64>>);
 
 fn pull(table: &Table) -> Result<Coefficients, CalibrateError> {
@@ -156,7 +156,7 @@ fn tilt(table: &Table) -> Result<Coefficients, CalibrateError> {
     Ok((rest, Some(slide.collect())))
 }
 
-/// A coefficient that goes with the load is no constant (a slope outside its 99 % interval).
+/// Warns of a coefficient that depends on the load, and so is no constant (a slope outside its 99 % interval).
 fn load_warning(table: &Table, rest: &[f64]) -> Result<Option<String>, CalibrateError> {
     if !table.has("normal force") || table.has("angle") {
         return Ok(None);

@@ -1,13 +1,13 @@
-//! A mass that falls on one contact under gravity: how fast it leaves, and how long it stayed.
+//! Impact of a mass on one contact under gravity: rebound speed and duration.
 
 use barrelstack_dynamics::{NormalLaw, math};
 
 /// One impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Speed (m/s) at which the mass leaves; zero when it stays.
+    /// Rebound speed (m/s); zero if the mass stays.
     pub speed: f64,
-    /// Time (s) from touch to release; zero when it stays.
+    /// Time (s) from touch to release; zero if the mass stays.
     pub duration: f64,
     /// Largest penetration (m).
     pub depth: f64,
@@ -16,20 +16,20 @@ pub struct Impact {
 /// Steps of the approach per radian of the undamped oscillation.
 const STEPS: f64 = 100.0;
 
-/// Speed over that of the free oscillation through the depth below which the mass lies still.
+/// Ratio of speed to depth × frequency below which the mass is at rest.
 const CREEP: f64 = 1e-9;
 
-/// Lets `mass` (kg) strike the speed-gap law of `stiffness` (N/m) and `damping` (N·s/m) at `speed`
+/// Computes the impact of `mass` (kg) on the speed-gap law of `stiffness` (N/m) and `damping` (N·s/m) at `speed`
 /// (m/s) under `gravity` (m/s²).
 ///
 /// The approach, on which the damper acts, is integrated by the classical Runge–Kutta method to the
-/// deepest point `x`; the way back is elastic, so the mass leaves at `√(ω² x² − 2 g x)`, if at all.
+/// deepest point `x`; the rebound is elastic, so the mass leaves at `√(ω² x² − 2 g x)`, if at all.
 ///
 /// ```
 /// use barrelstack_calibration::impact;
 /// use barrelstack_dynamics::contact::restitution;
 ///
-/// // Without gravity it shows the restitution of the closed form.
+/// // Without gravity it has the restitution of the closed form.
 /// let found = impact(100.0, 1e6, 2000.0, 0.0, 1.0);
 /// let e = restitution::speed_gap(restitution::damping_ratio(1e6, 2000.0, 100.0));
 /// assert!((found.speed - e).abs() < 1e-8); // measured 2e-11
@@ -50,14 +50,14 @@ pub fn impact(mass: f64, stiffness: f64, damping: f64, gravity: f64, speed: f64)
     let (mut state, mut time) = ((0.0, speed), 0.0);
     loop {
         let next = advance(state, step);
-        // Not a number ends the approach as well, and so does creep into a strong damper, whose speed is
-        // never quite zero.
+        // NaN ends the approach as well, and so does creep into a strong damper, whose speed never
+        // quite vanishes.
         if next.1.is_nan() || next.1 <= CREEP * omega * next.0 {
             break;
         }
         (state, time) = (next, time + step);
     }
-    // The deepest point lies within the last step; the law's kink at rest is not crossed.
+    // The deepest point lies within the last step; the law's kink at zero speed is not crossed.
     let (mut low, mut high) = (0.0, step);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);

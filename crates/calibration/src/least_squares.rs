@@ -1,20 +1,20 @@
-//! Nonlinear least squares after Levenberg and Marquardt, for a handful of parameters.
+//! Nonlinear least squares by Levenberg and Marquardt, for a handful of parameters.
 //!
-//! Differences are central and taken in one batch, so that simulations can run side by side.
-//! With four parameters at most the linear algebra is a Cholesky factor of a 4 × 4 matrix; a library
-//! for it would weigh more than the whole of calibration.
+//! Differences are central and evaluated in one batch, so that simulations run in parallel.
+//! With at most four parameters the linear algebra is a Cholesky factorization of a 4 × 4 matrix; a library
+//! for it would be larger than the whole of calibration.
 
-/// Residuals for each of a batch of parameter sets; none where the model has no answer.
+/// Returns the residuals for each of a batch of parameter sets; `None` if the model has no result.
 pub type Evaluate<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + 'a;
 
-/// Most steps before a fit is given up as not converged.
+/// Largest number of steps before a fit counts as not converged.
 const MOST_STEPS: usize = 30;
 
-/// Longest way of a parameter in one step, in its own units: parameters are logarithms or scaled to
+/// Largest change of a parameter in one step, in its own units: parameters are logarithms or scaled to
 /// be about 1.
 const LONGEST: f64 = 0.5;
 
-/// Where a fit ended.
+/// Result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// Parameters.
@@ -23,34 +23,34 @@ pub struct Fit {
     pub residuals: Vec<f64>,
     /// Sensitivities of the residuals to every parameter, at most one last step away.
     pub slopes: Vec<Vec<f64>>,
-    /// Whether any residual depends on the parameter.
+    /// `true` for each parameter on which any residual depends.
     pub matters: Vec<bool>,
-    /// Covariance of the parameters that matter, in their order; none where they cannot be told apart.
+    /// Covariance of the parameters that matter, in their order; `None` if they are inseparable.
     pub covariance: Option<Vec<Vec<f64>>>,
     /// Sum of squared sensitivities between the parameters that matter, in their order.
     pub information: Vec<Vec<f64>>,
-    /// Residuals less parameters that matter.
+    /// Degrees of freedom: residuals minus parameters that matter.
     pub freedom: usize,
-    /// Whether the last step was short enough.
+    /// `true` if the last step was short enough.
     pub converged: bool,
 }
 
-/// Where a fit starts and how it goes.
+/// Start and settings of a fit.
 #[derive(Clone, Debug)]
 pub struct Start {
     /// Parameters.
     pub parameters: Vec<f64>,
-    /// Sensitivities there, where they are known.
+    /// Sensitivities there, if known.
     pub slopes: Option<Vec<Vec<f64>>>,
-    /// Differences are taken this far to either side.
+    /// Step of finite differences to either side.
     pub width: f64,
-    /// A step shorter than this share of the standard error is the last one.
+    /// A step shorter than this fraction of the standard error is the last one.
     pub share: f64,
 }
 
 /// Minimizes the sum of squared residuals.
 ///
-/// Returns none when the model has no answer at the start or around it.
+/// Returns `None` if the model has no result at the start or around it.
 pub fn fit(start: Start, evaluate: &Evaluate<'_>) -> Option<Fit> {
     let Start { mut parameters, slopes, width, share } = start;
     let mut residuals = evaluate(std::slice::from_ref(&parameters)).pop()??;
@@ -119,7 +119,7 @@ fn finish(
     Fit { parameters, residuals, slopes, matters, covariance, information, freedom, converged }
 }
 
-/// Sensitivities: for every parameter the change of all residuals with it.
+/// Computes the sensitivities: the derivatives of all residuals with respect to every parameter.
 fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f64>>> {
     let moved = |which: usize, by: f64| {
         let mut point = at.to_vec();
@@ -136,7 +136,7 @@ fn jacobian(at: &[f64], width: f64, evaluate: &Evaluate<'_>) -> Option<Vec<Vec<f
     Some(found.chunks_exact(2).map(slope).collect())
 }
 
-/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr`; parameters without any sensitivity stay where they are.
+/// Solves `(JᵀJ + λ diag JᵀJ) δ = −Jᵀr`; parameters without sensitivity do not change.
 fn damped_step(normal: &[Vec<f64>], gradient: &[f64], lambda: f64) -> Option<Vec<f64>> {
     let mut matrix = normal.to_vec();
     for (at, row) in matrix.iter_mut().enumerate() {
@@ -171,7 +171,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The lower factor of a symmetric matrix; none unless it is positive definite beyond rounding.
+/// Computes the lower Cholesky factor of a symmetric matrix; `None` unless it is positive definite beyond rounding.
 fn cholesky(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let size = matrix.len();
     let mut lower = vec![vec![0.0; size]; size];
@@ -212,15 +212,15 @@ fn inverse(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some((0..matrix.len()).map(|at| solve(&lower, &unit(at))).collect())
 }
 
-/// A symmetric matrix scaled to ones on its diagonal: correlations from covariances.
+/// Scales a symmetric matrix to a unit diagonal: correlations from covariances.
 pub fn normalized(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let size = |at: usize| matrix[at][at].sqrt();
     let row = |i: usize| (0..matrix.len()).map(|j| matrix[i][j] / (size(i) * size(j))).collect();
     (0..matrix.len()).map(row).collect()
 }
 
-/// The ratio of the largest to the smallest eigenvalue of a positive definite matrix, by the power
-/// method on it and on its inverse; infinite where it is singular.
+/// Returns the ratio of the largest to the smallest eigenvalue of a positive definite matrix, by the power
+/// method on it and on its inverse; infinite if it is singular.
 pub fn condition(matrix: &[Vec<f64>]) -> f64 {
     let largest = |matrix: &[Vec<f64>]| {
         let mut vector: Vec<f64> = (0..matrix.len()).map(|at| 1.0 + 0.3 * at as f64).collect();

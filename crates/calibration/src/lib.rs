@@ -1,4 +1,4 @@
-//! Calibration: from a user's tests to contact parameters, each with its 95 % interval.
+//! Calibration of contact parameters from a user's tests, each with its 95 % interval.
 //!
 //! | test | file | gives |
 //! |---|---|---|
@@ -8,13 +8,13 @@
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
 //! | [`mod@collapse`] | mode and fall times of collapses | `k`, `c`, μ together |
 //!
-//! Those of [`response`] have held the truth in about 90 % of made records only.
+//! In simulated records, the intervals of [`response`] covered the truth in only about 90 %.
 //!
 //! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
-//! Intervals hold what scatters in the file; what is given as exact (a mass, the model itself) is not
-//! in them.
+//! Intervals cover the scatter in the file; values given as exact (a mass, the model itself) are
+//! not included.
 
-// Results have the same bits on every machine, so transcendental functions are those of `libm`.
+// Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod collapse;

@@ -1,11 +1,11 @@
-//! The page of a calibration: the parameters, and what was measured beside the fit.
+//! The page of a calibration: the parameters, and measurements compared with the fit.
 
 use barrelstack_report::{Block, Cell, Document, Table, Verdict, capital, significant};
 
 use super::{Calibration, Estimate};
 
 impl Calibration {
-    /// The result as a page.
+    /// Builds the page.
     pub fn document(&self) -> Document {
         let heading = |text: &str| Block::heading(2, text);
         let mut blocks = Vec::new();
@@ -57,7 +57,7 @@ impl Calibration {
         }
     }
 
-    /// Every parameter in a few words.
+    /// States every parameter in a few words.
     fn headline(&self) -> String {
         let told = |estimate: &Estimate| {
             let unit = estimate.unit();

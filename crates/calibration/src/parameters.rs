@@ -1,4 +1,4 @@
-//! The contact parameters that a test of a whole stack may tell, and scenarios with other values of them.
+//! The contact parameters that a test of a whole stack can determine, and scenarios with other values of them.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use barrelstack_dynamics::math;
 use super::CalibrateError;
 use super::result::{quoted, rounded};
 
-/// A parameter that a response or a collapse may tell.
+/// A parameter that a response or a collapse can determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// Stiffness of barrel–rack; that of rack–ground keeps its ratio to it.
@@ -25,7 +25,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// All parameters, with the word that names them on the command line.
+    /// All parameters, with their names on the command line.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("k", Self::Stiffness),
         ("c", Self::Damping),
@@ -33,7 +33,7 @@ impl Parameter {
         ("mu-rg", Self::FrictionRackGround),
     ];
 
-    /// What tables call it.
+    /// Returns the name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stiffness => "stiffness k",
@@ -53,7 +53,7 @@ struct Constants {
     rest: f64,
 }
 
-/// The parameters of a scenario that are to be found, as the scenario has them.
+/// The parameters to be estimated, with their values in a scenario.
 ///
 /// A point holds the logarithm of a factor on each of them, in their order.
 pub(super) struct Tunable {
@@ -64,8 +64,10 @@ pub(super) struct Tunable {
 }
 
 impl Tunable {
+    /// Creates the parameters of a scenario.
+    ///
     /// # Errors
-    /// When the scenario is no stack of linear laws with friction.
+    /// If the scenario is not a stack of linear laws with friction.
     pub(super) fn new(
         scenario: &Scenario,
         parameters: &[Parameter],
@@ -89,12 +91,12 @@ impl Tunable {
         Ok(Self { parameters: parameters.to_vec(), barrel_rack, rack_ground, basis })
     }
 
-    /// The parameters, in the order of a point.
+    /// Returns the parameters, in the order of a point.
     pub(super) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
-    /// The value that a parameter has in the scenario (SI).
+    /// Returns the value of a parameter in the scenario (SI).
     pub(super) fn start(&self, parameter: Parameter) -> f64 {
         match parameter {
             Parameter::Stiffness => self.barrel_rack.stiffness,
@@ -104,7 +106,7 @@ impl Tunable {
         }
     }
 
-    /// What a parameter measures.
+    /// Returns the dimension of a parameter.
     pub(super) fn dimension(&self, parameter: Parameter) -> Dimension {
         match (parameter, self.basis) {
             (Parameter::Stiffness, Basis::Node | Basis::Seat) => Dimension::STIFFNESS,
@@ -115,7 +117,7 @@ impl Tunable {
         }
     }
 
-    /// A scenario with the values of a point in place of its own.
+    /// Returns a scenario with the values of a point.
     pub(super) fn at(&self, scenario: &Scenario, point: &[f64]) -> Scenario {
         let mut scenario = scenario.clone();
         if let Scene::Stack { stack, .. } = &mut scenario.scene {
@@ -125,7 +127,7 @@ impl Tunable {
         scenario
     }
 
-    /// The constants of barrel–rack or of rack–ground at a point.
+    /// Returns the constants of barrel–rack or of rack–ground at a point.
     fn constants(&self, barrel_rack: bool, point: &[f64]) -> Constants {
         let mut constants = if barrel_rack { self.barrel_rack } else { self.rack_ground };
         for (parameter, log) in self.parameters.iter().zip(point) {
@@ -144,7 +146,7 @@ impl Tunable {
         constants
     }
 
-    /// The lines for a scenario: each interface with all that was fitted of it.
+    /// Writes the lines for a scenario: each interface with all its fitted constants.
     pub(super) fn scenario_lines(&self, point: &[f64]) -> String {
         let mut text = String::new();
         let has = |parameter| self.parameters.contains(&parameter);
@@ -176,7 +178,7 @@ impl Tunable {
     }
 }
 
-/// The constants of an interface, which must be such that a factor can change them.
+/// Returns the constants of an interface, which must be positive so that a factor can change them.
 fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateError> {
     let refuse =
         |reason: &str| Err(CalibrateError::Scenario(format!("interface.{name}: {reason}")));
@@ -187,7 +189,7 @@ fn constants(name: &str, interface: &Interface) -> Result<Constants, CalibrateEr
             "k and c are those of a linear law: law = \"speed-gap\" or \"kelvin-voigt\"",
         );
     };
-    // A fit that moves k and c apart starts from the c that a stated restitution gives.
+    // A fit that varies k and c separately starts from the c that a stated restitution gives.
     let damping = match damping {
         Damping::Coefficient(damping) => damping,
         Damping::Restitution { restitution: ratio, reference: mass } => {

@@ -1,4 +1,4 @@
-//! Stiffness, damping and friction together from the recorded response of a shaken stack.
+//! Joint calibration of stiffness, damping and friction from the recorded response of a shaken stack.
 
 mod simulate;
 
@@ -14,47 +14,47 @@ use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
 use super::{CalibrateError, Calibration, Estimate, Parameter, Table};
 
-/// Differences of the logarithms of the parameters over which sensitivities are taken: wide enough
-/// that single nodes coming into contact average out.
+/// Step of the logarithms of the parameters for sensitivities: wide enough
+/// that the effects of single nodes coming into contact average out.
 const WIDTH: f64 = 0.01;
 
-/// The last step of a fit as a share of the standard error; what it leaves adds 0.3 % to an interval.
+/// Length of the last step of a fit over the standard error; it adds 0.3 % to an interval.
 const SHARE: f64 = 0.05;
 
-/// The same for the first fit, which is wanted for the scatter of the channels.
+/// That length in the first fit, which only estimates the scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
-/// Share of a channel's own size below which its residuals are taken as rounding.
+/// Fraction of a channel's magnitude below which residuals count as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Correlation above which two parameters cannot be told apart.
+/// Correlation above which two parameters are inseparable.
 const ALIKE: f64 = 0.95;
 
-/// Largest ratio of eigenvalues of a test that determines its parameters.
+/// Largest ratio of eigenvalues of a well-conditioned test.
 const ILL: f64 = 1e3;
 
 /// Fits parameters of a stack to its recorded histories.
 ///
 /// The table has a column `time` from the start of the scenario's motion and further columns named as
-/// in `histories.csv`, such as `B1.1 displacement x (m)` (relative to the ground and to the place at
-/// rest) or `R1 rotation (rad)`; `until` (s) leaves out later rows.
+/// in `histories.csv`, such as `B1.1 displacement x (m)` (relative to the ground and to the position at
+/// rest) or `R1 rotation (rad)`; rows after `until` (s) are ignored.
 ///
-/// The sum of squares of simulated less recorded values, each over the scatter of its channel, is
+/// The sum of squared differences between simulated and recorded values, each over the scatter of its channel, is
 /// minimized over the logarithms of the parameters; the scatter is that of a first fit.
-/// The covariance is that of the last sensitivities and residuals. Where residuals follow one another
+/// The covariance follows from the last sensitivities and residuals. If residuals are correlated in time
 /// (lag-one correlation ρ), it is widened by (1 + ρ)/(1 − ρ).
-/// Meant as 95 % intervals, these have held the truth in about 90 of 100 made records (89 to 94), for a reason
+/// The nominal 95 % intervals covered the truth in about 90 of 100 simulated records (89 to 94), for a reason
 /// that is not known; the result warns of it.
 ///
-/// `tell` hears how many simulations were begun, from several threads, and may stop them.
+/// `tell` is called with the number of simulations started, from several threads, and may stop them.
 ///
 /// The fit starts from the scenario and finds the minimum next to it.
 /// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
 /// still slide a little keep the response smooth.
 ///
 /// # Errors
-/// When the scenario is no stack of linear laws, the table does not go with it, or the first
-/// simulation fails; and when it was stopped.
+/// If the scenario is not a stack of linear laws, the table does not match it, or the first
+/// simulation fails; and if it was stopped.
 pub fn response(
     scenario: &Scenario,
     table: &Table,
@@ -100,7 +100,7 @@ pub fn response(
         for (scatter, factor) in scatter.iter_mut().zip(&factors) {
             *scatter *= factor;
         }
-        // Other weights scale sensitivities; the stack need not be simulated for them again.
+        // Other weights only scale the sensitivities; no new simulations are needed.
         let scaled = |slope: &Vec<f64>| -> Vec<f64> {
             let channels = by_channel(slope, rows).zip(&factors);
             channels.flat_map(|(values, factor)| values.iter().map(move |v| v / factor)).collect()
@@ -126,7 +126,7 @@ pub fn response(
         );
     }
     let follow = correlation_in_time(&found.residuals, rows);
-    // Chance alone shows a correlation of 2/√n.
+    // Chance alone gives a correlation of 2/√n.
     let widening = if follow > 2.0 / (values as f64).sqrt() {
         let follow = follow.min(0.999);
         warnings.push(format!(
@@ -192,7 +192,7 @@ fn weighted(
     })
 }
 
-/// Every channel as it was recorded and as the fitted parameters give it.
+/// Draws every channel as recorded and as fitted.
 fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figure> {
     let fits = by_channel(residuals, measured.times.len()).zip(scatter);
     let mut figures = Vec::new();
@@ -214,7 +214,7 @@ fn pictures(measured: &Measured, residuals: &[f64], scatter: &[f64]) -> Vec<Figu
     figures
 }
 
-/// Estimates and their correlations, both in the order of `parameters`.
+/// Returns estimates and their correlations, both in the order of `parameters`.
 fn estimates(
     simulator: &Simulator<'_>,
     parameters: &[Parameter],
@@ -244,7 +244,7 @@ fn estimates(
     (estimates, rows)
 }
 
-/// What the test cannot tell, one sentence each.
+/// Describes what the test does not determine, one sentence each.
 fn identifiability(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
@@ -286,7 +286,7 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Correlation of residuals with those of the sample before, over all channels.
+/// Returns the lag-one correlation of residuals, over all channels.
 fn correlation_in_time(residuals: &[f64], rows: usize) -> f64 {
     let pairs = by_channel(residuals, rows).flat_map(|channel| channel.windows(2));
     let together: f64 = pairs.map(|pair| pair[0] * pair[1]).sum();

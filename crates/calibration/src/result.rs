@@ -1,4 +1,4 @@
-//! What a calibration gives: parameters with intervals, lines for a scenario, warnings.
+//! Results of a calibration: parameters with intervals, lines for a scenario, warnings.
 
 use std::collections::BTreeMap;
 
@@ -8,48 +8,48 @@ use barrelstack_report::{Figure, described};
 /// A parameter with its 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// What it is, such as "stiffness k".
+    /// Name, such as "stiffness k".
     pub name: String,
     /// Value (SI).
     pub value: f64,
-    /// Lower end of the interval (SI); `−∞` or 0 where the test does not bound it.
+    /// Lower end of the interval (SI); `−∞` or 0 if the test does not bound it.
     pub low: f64,
-    /// Upper end of the interval (SI); infinite where the test does not bound it.
+    /// Upper end of the interval (SI); infinite if the test does not bound it.
     pub high: f64,
-    /// What it measures.
+    /// Dimension.
     pub dimension: Dimension,
 }
 
-/// What a test gives.
+/// Result of a test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calibration {
     /// The test, in one line.
     pub title: String,
     /// Parameters.
     pub estimates: Vec<Estimate>,
-    /// Correlations between the estimates, in their order; empty where they are not fitted together.
+    /// Correlations between the estimates, in their order; empty if they are not fitted together.
     pub correlation: Vec<Vec<f64>>,
-    /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities; none
-    /// where parameters are not fitted together.
+    /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities; `None`
+    /// if parameters are not fitted together.
     pub condition: Option<f64>,
-    /// What was measured beside the fit.
+    /// Measurements compared with the fit.
     pub figures: Vec<Figure>,
-    /// Further numbers for people, name and value.
+    /// Further numbers for the reader, name and value.
     pub facts: Vec<(String, String)>,
     /// Lines to paste into a scenario.
     pub scenario: String,
-    /// What the reader should know, one sentence each.
+    /// Limits that the reader must know, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Estimate {
-    /// An estimate with an interval of equal arms.
+    /// Creates an estimate with a symmetric interval.
     pub(super) fn symmetric(name: &str, value: f64, half: f64, dimension: Dimension) -> Self {
         let (low, high) = (value - half, value + half);
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
-    /// An estimate of what `of` makes of a logarithm whose interval has equal arms.
+    /// Creates an estimate that is a function of a logarithm with a symmetric interval.
     pub(super) fn of_log(
         name: &str,
         log: f64,
@@ -61,29 +61,29 @@ impl Estimate {
         Self { name: name.to_owned(), value, low, high, dimension }
     }
 
-    /// Whether a value lies within the interval.
+    /// `true` if a value lies within the interval.
     pub fn covers(&self, value: f64) -> bool {
         self.low <= value && value <= self.high
     }
 
-    /// The unit; nothing for a plain number.
+    /// Returns the unit; empty for a plain number.
     pub(super) fn unit(&self) -> String {
         if self.dimension == Dimension::NONE { String::new() } else { self.dimension.si_unit() }
     }
 
-    /// Half the width of the interval over the value.
+    /// Returns half the width of the interval over the value.
     pub fn relative(&self) -> f64 {
         0.5 * (self.high - self.low) / self.value.abs()
     }
 }
 
 impl Calibration {
-    /// The estimate of a name.
+    /// Returns the estimate of a name.
     pub fn estimate(&self, name: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.name == name)
     }
 
-    /// The result for people: a table, further figures, the lines for a scenario.
+    /// Formats the result for a terminal: a table, further figures, the lines for a scenario.
     pub fn lines(&self) -> Vec<String> {
         let head = ["parameter", "value", "95 % interval", "unit"].map(str::to_owned);
         let cells = |estimate: &Estimate| {
@@ -124,7 +124,7 @@ impl Calibration {
         lines
     }
 
-    /// The result for programs, all numbers in SI; an end that the test does not bound is null.
+    /// Returns the result as a document for programs, all numbers in SI; unbounded ends are null.
     pub fn to_document(&self) -> CalibrationDocument {
         CalibrationDocument::of(self)
     }
@@ -168,7 +168,7 @@ described! {
     }
 }
 
-/// A warning for every two estimates whose correlation is above a limit.
+/// Returns a warning for every pair of estimates whose correlation exceeds a limit.
 pub(super) fn inseparable(
     estimates: &[Estimate],
     correlation: &[Vec<f64>],
@@ -191,7 +191,7 @@ fn bounded(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Rows with their columns under each other.
+/// Aligns the columns of rows.
 fn aligned<R: AsRef<[String]>>(rows: &[R]) -> Vec<String> {
     let columns = rows.iter().map(|row| row.as_ref().len()).max().unwrap_or(0);
     let width = |column: usize| {
@@ -208,12 +208,12 @@ fn aligned<R: AsRef<[String]>>(rows: &[R]) -> Vec<String> {
     rows.iter().map(padded).collect()
 }
 
-/// Four significant digits: three that are read and one to compute with.
+/// Rounds to four significant digits: three to read and one to compute with.
 pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// A number for people, with four significant digits.
+/// Formats a number with four significant digits.
 pub(super) fn short(value: f64) -> String {
     let value = rounded(value);
     if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {
@@ -223,7 +223,7 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// A quantity as a scenario takes it, with its quotes.
+/// Formats a quantity for a scenario, with its quotes.
 pub(super) fn quoted(value: f64, dimension: Dimension) -> String {
     format!("\"{} {}\"", short(value), dimension.si_unit())
 }

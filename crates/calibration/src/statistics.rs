@@ -1,8 +1,8 @@
-//! Means and straight lines with their intervals.
+//! Means and regression lines with their intervals.
 
 use barrelstack_fragility::student_quantile;
 
-/// Mean, and half the width of its 95 % interval, of at least two values.
+/// Returns the mean, and half the width of its 95 % interval, of at least two values.
 pub fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -11,12 +11,12 @@ pub fn mean(values: &[f64]) -> (f64, f64) {
     (mean, student_quantile(0.95, values.len() - 1) * error)
 }
 
-/// A straight line `y = intercept + slope x` by least squares.
+/// A least-squares line `y = intercept + slope x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
     /// `y` at `x = 0`.
     pub intercept: f64,
-    /// Rise of `y` with `x`.
+    /// Slope.
     pub slope: f64,
     /// Variance of the slope.
     pub slope_variance: f64,
@@ -26,11 +26,11 @@ pub struct Line {
     pub center: f64,
     /// Sum of squared residuals.
     pub squares: f64,
-    /// Points less two.
+    /// Degrees of freedom: number of points minus two.
     pub freedom: usize,
 }
 
-/// The line through at least three points whose `x` are not all the same.
+/// Fits the line through at least three points with different `x`.
 pub fn line(x: &[f64], y: &[f64]) -> Option<Line> {
     let count = x.len().min(y.len());
     if count < 3 {

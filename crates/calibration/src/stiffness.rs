@@ -9,7 +9,7 @@ use super::result::{quoted, short};
 use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
-/// How much lower the information criterion of the other law must be before it is mentioned; a
+/// Smallest difference of the information criteria by which the other law is mentioned; a
 /// difference of ten leaves the worse of two models essentially no support (Burnham and Anderson
 /// 2002).
 const CLEARLY: f64 = 10.0;
@@ -17,12 +17,12 @@ const CLEARLY: f64 = 10.0;
 /// Fits `F = k (δ − δ₀)` to a press test with the columns `penetration` and `force`.
 ///
 /// δ₀ is the seating offset: the reading at which the surfaces first touch.
-/// The scatter is taken as that of the force, the same in every row.
-/// `nodes` are the contact nodes that share the force; `k` is that of one.
+/// The scatter is attributed to the force, equally in every row.
+/// `nodes` is the number of contact nodes that share the force; `k` is that of one.
 /// `interface` names the pair in the lines for a scenario, such as "barrel-rack".
 ///
 /// # Errors
-/// When the table lacks a column, has less than three rows, or its force does not grow with
+/// If the table lacks a column, has fewer than three rows, or its force does not grow with
 /// penetration.
 pub fn stiffness(
     table: &Table,
@@ -104,7 +104,7 @@ pub fn stiffness(
     })
 }
 
-/// The readings and the line through them.
+/// Draws the readings and the fitted line.
 fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figure {
     let scaled = |values: &[f64], by: f64| values.iter().map(|v| by * v).collect::<Vec<f64>>();
     let depth = scaled(penetration, 1e3);
@@ -119,10 +119,10 @@ fn picture(penetration: &[f64], force: &[f64], slope: f64, offset: f64) -> Figur
     figure("press-test", caption, axes, series)
 }
 
-/// `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and by how much its information criterion (Akaike 1974) is
+/// Returns `k` (N/m^1.5) of `F = k (δ − δ₀)^1.5`, and the amount by which its information criterion (Akaike 1974) is
 /// below that of the straight line; both laws have two parameters.
 ///
-/// For a given δ₀ the best `k` is a ratio of sums, so δ₀ alone is searched: on a grid over the span of
+/// For a given δ₀ the best `k` is a ratio of sums, so only δ₀ is searched: on a grid over the span of
 /// the readings to either side of the first one, then finer around the best.
 fn hertz(penetration: &[f64], force: &[f64], line_squares: f64) -> Option<(f64, f64)> {
     let low = penetration.iter().copied().fold(f64::INFINITY, f64::min);
@@ -146,7 +146,7 @@ fn hertz(penetration: &[f64], force: &[f64], line_squares: f64) -> Option<(f64, 
     }
     let (k, squares) = at(center);
     let rows = force.len() as f64;
-    // An exact line leaves nothing to compare, up to the rounding of the sums.
+    // An exact fit leaves nothing to compare, up to the rounding of the sums.
     let rounding = 1e-24 * force.iter().map(|f| f * f).sum::<f64>();
     let ratio = line_squares.max(rounding) / squares.max(rounding);
     Some((k, rows * barrelstack_dynamics::math::log(ratio)))

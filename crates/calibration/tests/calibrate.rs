@@ -1,4 +1,4 @@
-//! Calibration: parameters come back from noisy synthetic tests within their stated intervals.
+//! Calibration recovers parameters from noisy synthetic tests within their stated intervals.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "the coverage is shown")]
@@ -16,7 +16,7 @@ use barrelstack_calibration::{CalibrateError, Calibration, Parameter, Table, imp
 use barrelstack_motion::Random;
 use barrelstack_report::FigureKind;
 
-/// How many of 100 campaigns state an interval that holds each true value.
+/// Returns in how many of 100 campaigns the interval covers each true value.
 ///
 /// Seeds are 1 to 100; a 95 % interval covers 95 on average, and 90 or more with a probability of
 /// 0.99.
@@ -77,14 +77,14 @@ fn a_press_test_of_spheres_is_told_from_a_straight_line() {
 
 #[test]
 fn an_impact_with_gravity_agrees_with_the_closed_form() {
-    // Rebounds for Γ = g / (ω v₀), from the damped oscillation about the sunk position.
+    // Rebounds for Γ = g / (ω v₀), from the damped oscillation about the sunken position.
     for (ratio, gamma, e) in
         [(0.0676, 0.1, 0.88988), (0.0676, 0.5, 0.80881), (0.3, 0.1, 0.62674), (0.3, 0.5, 0.24616)]
     {
         let found = impact(1.0, 1.0, 2.0 * ratio, gamma, 1.0);
         assert!((found.speed - e).abs() < 1e-5, "{ratio} {gamma}: {found:?}"); // measured 4.7e-6
     }
-    // Beyond Γ = 0.555 nothing leaves at ζ = 0.3.
+    // Beyond Γ = 0.555 the mass does not leave at ζ = 0.3.
     assert_eq!(impact(1.0, 1.0, 0.6, 0.56, 1.0).speed, 0.0);
     assert!(impact(1.0, 1.0, 0.6, 0.55, 1.0).speed > 0.0);
 }
@@ -97,7 +97,7 @@ const DAMPING: f64 = 2200.0;
 
 #[test]
 fn a_mass_that_creeps_into_a_strong_damper_comes_to_rest() {
-    // Laid down, and dropped slowly: nothing rebounds, and the approach ends.
+    // Laid down, or dropped slowly: no rebound, and the approach ends.
     for speed in [0.0, 1e-6, 1e-3] {
         let found = impact(275.0, 3.92e6, 1e6, GRAVITY, speed);
         assert_eq!((found.speed, found.duration), (0.0, 0.0));
@@ -106,7 +106,7 @@ fn a_mass_that_creeps_into_a_strong_damper_comes_to_rest() {
     }
 }
 
-/// Points of the series of a figure, by its label.
+/// Returns the points of a series of a figure, by its label.
 fn drawn(found: &Calibration, figure: usize, label: &str) -> Vec<(f64, f64)> {
     let FigureKind::Plot(plot) = &found.figures[figure].kind else { panic!("no plot") };
     let series = plot.series.iter().find(|series| series.label == label).unwrap();
@@ -287,7 +287,7 @@ fn shaken() -> Scenario {
 
 const CHANNELS: [&str; 3] = ["R1 displacement x", "B1.1 displacement x", "B1.2 displacement z"];
 
-/// What a perfect instrument records of the scenario, 200 times a second.
+/// Returns a perfect recording of the scenario, 200 times a second.
 fn recorded(scenario: &Scenario) -> (Vec<f64>, Vec<Vec<f64>>) {
     let mut scenario = scenario.clone();
     scenario.record.history_rate = 200.0;
@@ -296,7 +296,7 @@ fn recorded(scenario: &Scenario) -> (Vec<f64>, Vec<Vec<f64>>) {
     (run.recording.times.clone(), CHANNELS.iter().map(channel).collect())
 }
 
-/// The recording as a table in millimeters, with noise (mm).
+/// Writes the recording as a table in millimeters, with noise (mm).
 fn noisy((times, channels): &(Vec<f64>, Vec<Vec<f64>>), noise: f64, random: &mut Random) -> Table {
     let heads = CHANNELS.map(|name| format!("{name} (mm)"));
     let mut text = format!("time (s),{}\n", heads.join(","));
@@ -345,7 +345,7 @@ fn a_response_gives_its_parameters_back_within_their_intervals() {
             .unwrap()
     });
     // Measured 94, 89, 90 and 89 (92, 96, 93 and 91 before bodies were solid). These intervals are too
-    // narrow, for a reason not yet found; this bound only tells when they grow narrower still.
+    // narrow, for a reason not yet found; this bound only detects that they become narrower still.
     assert!(covered.iter().all(|covered| *covered >= 87), "{covered:?}");
 }
 
@@ -369,7 +369,7 @@ fn a_response_says_what_it_cannot_tell() {
     assert!(found.estimate("stiffness k").unwrap().relative() < 0.05, "{found:?}");
 }
 
-/// The eight barrels under two sines, the second stronger than the first.
+/// Returns the eight barrels under two sines, the second stronger than the first.
 fn shaken_down() -> [Scenario; 2] {
     ["4 in", "6 in"].map(|amplitude| {
         let change = format!("motion.sine.amplitude={amplitude}");
@@ -377,7 +377,7 @@ fn shaken_down() -> [Scenario; 2] {
     })
 }
 
-/// What a video shows of scenarios with other values in their text: modes and fall times, read off to a
+/// Returns video observations of scenarios with changed values: modes and fall times, read to a
 /// hundredth of a second.
 fn filmed(scenarios: &[Scenario], values: &[(&str, &str)]) -> String {
     let mut text = String::from("mode,until (s)");
@@ -428,7 +428,7 @@ fn two_collapses_tell_little_and_say_so() {
     // Measured: 5 % and 9 % off, within intervals of a factor of three.
     assert!((stiffness.value / 1.2e6 - 1.0).abs() < 0.15, "{stiffness:?}");
     assert!((friction.value / 0.18 - 1.0).abs() < 0.15, "{friction:?}");
-    // How often each test goes as it was seen, and when: a row with a name for each.
+    // Weight of the observed mode of each test, and times: a row with a name for each.
     for figure in &found.figures {
         let FigureKind::Plot(plot) = &figure.kind else { panic!("no plot") };
         let bars = plot.series[0].x.iter().filter(|x| x.is_nan()).count();
@@ -446,7 +446,7 @@ fn a_collapse_says_what_it_cannot_tell_and_the_same_every_time() {
     let found = from_film(1, 50, &[Parameter::Damping]);
     let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
     assert!(told("says nothing about damping c"), "{:?}", found.warnings);
-    // As texts: gaps of its figures are no numbers, and equal nothing.
+    // Compared as texts, since NaN gaps in figures equal nothing.
     let again = from_film(1, 50, &[Parameter::Damping]);
     assert_eq!(format!("{found:?}"), format!("{again:?}"));
 }

@@ -1,4 +1,4 @@
-//! Many collapses simulated, and what an observer would have seen of each.
+//! Simulated collapses, reduced to the quantities that an observer records.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,20 +10,20 @@ use barrelstack_motion::Random;
 
 use super::observed::{Mode, Time};
 
-/// What an observer would have seen of a case.
+/// Observable result of a simulated case.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// How the stack went.
+    /// Mode.
     pub(super) mode: Mode,
-    /// When the first body left its seat.
+    /// Time at which the first body left its seat.
     pub(super) loss: Time,
-    /// When each barrel had fallen, by name, in the order of the bodies.
+    /// Time at which each barrel had fallen, by name, in the order of the bodies.
     pub(super) falls: Vec<(String, Time)>,
 }
 
 impl Seen {
     fn of(case: &CaseResult) -> Option<Self> {
-        // A stack that was tested had come to rest first: parameters with which it does not are none of it.
+        // A tested stack stood at rest before: parameters with which it falls at rest are impossible.
         if case.fell_at_rest() {
             return None;
         }
@@ -38,7 +38,7 @@ impl Seen {
         Some(Self { mode, loss, falls: case.falls.iter().map(fall).collect() })
     }
 
-    /// The first barrel to fall, and when.
+    /// Returns the first barrel to fall, and the time.
     pub(super) fn first_fall(&self) -> Option<(&str, f64)> {
         let fallen = self.falls.iter().filter_map(|(barrel, time)| match time {
             Time::At(time) => Some((barrel.as_str(), *time)),
@@ -47,15 +47,15 @@ impl Seen {
         fallen.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// When a barrel had fallen; none where there is no such barrel.
+    /// Returns the time at which a barrel had fallen; `None` if there is no such barrel.
     pub(super) fn fall(&self, barrel: &str) -> Option<Time> {
         self.falls.iter().find(|(name, _)| name == barrel).map(|(_, time)| *time)
     }
 }
 
-/// Simulates all cases on all cores, in their order; none where one cannot be simulated.
+/// Simulates all cases on all cores, in their order; `None` for a case that cannot be simulated.
 ///
-/// `done` hears again and again how many cases are done and may stop them; then there is nothing.
+/// `done` is called repeatedly with the number of completed cases and may stop them; the result is then `None`.
 pub(super) fn simulate(
     cases: Vec<Prepared>,
     lanes: Option<Width>,
@@ -68,8 +68,8 @@ pub(super) fn simulate(
     Some(results.iter().map(Seen::of).collect())
 }
 
-/// A scenario with every rack and every barrel set down a little beside its place, by normal deviates
-/// of a standard deviation (m): no two stacks are built alike.
+/// Returns a scenario with every rack and barrel offset by normal deviates of a standard deviation (m), since no two
+/// stacks are built alike.
 pub(super) fn placed(scenario: &Scenario, scatter: f64, random: &mut Random) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, .. } = &mut changed.scene else { return changed };

@@ -1,4 +1,4 @@
-//! How likely an observation is when a simulated stack went its way.
+//! Likelihood of an observation given a simulated course.
 
 use std::f64::consts::PI;
 
@@ -7,17 +7,17 @@ use barrelstack_dynamics::math;
 use super::ensemble::Seen;
 use super::observed::{Observed, Time};
 
-/// How observations differ from the course of a simulation that is otherwise right.
+/// Errors of observations relative to the course of a correct simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Standard deviation (s) of a time read off a video.
+    /// Standard deviation (s) of a time read from a video.
     pub reading: f64,
-    /// What is added to it for every second after the first loss of seat: the course of a collapse is
-    /// less and less that of any model. Falls of the eight barrels two seconds after the loss of seat
-    /// move by half a second when one contact parameter changes by 10 %.
+    /// Its increase per second after the first loss of seat: the course of a collapse
+    /// departs more and more from that of any model. Falls of the eight barrels two seconds after the loss of seat
+    /// shift by half a second when one contact parameter changes by 10 %.
     pub growth: f64,
-    /// Probability that a mode, a barrel or a time is another than the simulated one for no reason that
-    /// is modeled.
+    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that
+    /// is not modeled.
     pub other: f64,
 }
 
@@ -28,11 +28,11 @@ impl Default for Errors {
 }
 
 impl Errors {
-    /// The logarithm of the likelihood of an observation.
+    /// Returns the log-likelihood of an observation.
     ///
-    /// Labels that agree weigh 1 − ε, others ε. A time t beside a simulated one s weighs
+    /// Labels that agree have the probability 1 − ε, others ε. A time t given a simulated one s has the density
     /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
-    /// time of the watch.
+    /// duration of observation.
     pub(super) fn log_likelihood(&self, observed: &Observed, seen: &Seen) -> f64 {
         let label = |same: bool| math::log(if same { 1.0 - self.other } else { self.other });
         let mut sum = observed.mode.map_or(0.0, |mode| label(mode == seen.mode));

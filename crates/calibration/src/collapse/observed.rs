@@ -1,4 +1,4 @@
-//! What was seen of collapses: one row a test, from a video or from notes.
+//! Observations of collapses: one row per test, from a video or from notes.
 
 use barrelstack::outcome::CollapseMode;
 use barrelstack::scenario::Dimension;
@@ -6,56 +6,56 @@ use barrelstack_input::measured::Entry;
 
 use crate::{CalibrateError, Table};
 
-/// The word for a barrel that still stood when the watch ended, and for a stack that did.
+/// The word for a barrel or a stack that still stood at the end of observation.
 const STANDS: &str = "stands";
 
-/// What follows the name of a barrel in the head of its column.
+/// Suffix of the name of a barrel in the header of its column.
 const FELL: &str = " fell";
 
-/// Columns that are not of a barrel.
+/// Columns that do not belong to a barrel.
 const COLUMNS: [&str; 6] =
     ["scenario", "mode", "first barrel", "loss of seat", "first fall", "until"];
 
-/// When something happened.
+/// Time of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Time {
     /// At this time (s).
     At(f64),
-    /// Not before the watch ended.
+    /// Not before the end of observation.
     Never,
 }
 
-/// How a stack went.
+/// Result of a stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {
-    /// It kept standing.
+    /// It stood.
     Stands,
     /// It collapsed in this mode.
     Collapse(CollapseMode),
 }
 
-/// One test.
+/// Observation of one test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Observed {
-    /// The scenario of the test, where the file names one.
+    /// The scenario of the test, if the file names one.
     pub(super) scenario: Option<String>,
-    /// How the stack went.
+    /// Result of the stack.
     pub(super) mode: Option<Mode>,
     /// The first barrel to fall.
     pub(super) first_barrel: Option<String>,
-    /// When the first body left its seat.
+    /// Time at which the first body left its seat.
     pub(super) loss: Option<Time>,
-    /// When the first barrel had fallen.
+    /// Time at which the first barrel had fallen.
     pub(super) first_fall: Option<Time>,
-    /// When barrels had fallen, by name.
+    /// Times at which barrels had fallen, by name.
     pub(super) falls: Vec<(String, Time)>,
-    /// How long (s) it was watched, from the start of the motion.
+    /// Duration of observation (s), from the start of the motion.
     pub(super) until: f64,
 }
 
 impl Observed {
-    /// Every row of a table; `margin` (s) is added to the last time of a row without an end of the
-    /// watch.
+    /// Reads every row of a table; `margin` (s) is added to the last time of a row without an end of
+    /// observation.
     pub(super) fn read(
         table: &Table,
         margin: f64,
@@ -108,14 +108,14 @@ impl Observed {
         self.first_fall.is_some() || self.first_barrel.is_some()
     }
 
-    /// All times, with the column of each.
+    /// Returns all times, with the column of each.
     fn times(&self) -> impl Iterator<Item = (String, Time)> + '_ {
         let own = [("loss of seat", self.loss), ("first fall", self.first_fall)];
         let own = own.into_iter().filter_map(|(name, time)| Some((name.to_owned(), time?)));
         own.chain(self.falls.iter().map(|(barrel, time)| (format!("{barrel}{FELL}"), *time)))
     }
 
-    /// The test with the end of its watch.
+    /// Sets the end of observation.
     fn watched(
         mut self,
         table: &Table,
@@ -157,7 +157,7 @@ impl Observed {
     }
 }
 
-/// The times of a column, where there is one.
+/// Returns the times of a column, if it exists.
 fn times(table: &Table, name: &str) -> Result<Vec<Option<Time>>, CalibrateError> {
     if !table.has(name) {
         return Ok(vec![None; table.count()]);

@@ -1,4 +1,4 @@
-//! Pictures of collapses: what was seen beside what the stacks with the found values do.
+//! Figures of collapses: observations compared with simulations at the estimated values.
 
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
@@ -8,10 +8,10 @@ use super::sampler::Posterior;
 use super::{Trial, alike};
 use crate::figures::measured;
 
-/// Shares of the weight between which simulated times are drawn.
+/// Quantiles of the weight between which simulated times are drawn.
 const MIDDLE: [f64; 2] = [0.05, 0.95];
 
-/// How often each test goes as it was seen, and when what was seen happens.
+/// Draws the posterior weight of the observed modes, and the times of the observed events.
 pub(super) fn pictures(
     trials: &[Trial<'_>],
     courses: &[Option<Seen>],
@@ -23,7 +23,7 @@ pub(super) fn pictures(
         .collect()
 }
 
-/// The courses of a test.
+/// Returns the courses of a test.
 fn of<'a>(
     courses: &'a [Option<Seen>],
     at: usize,
@@ -32,7 +32,7 @@ fn of<'a>(
     courses.iter().skip(at).step_by(trials.len())
 }
 
-/// The weight of the courses that go as was seen; none where no test says how the stack went.
+/// Draws the weight of the courses with the observed mode; `None` if no mode was observed.
 fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
     let mut rows = Rows::default();
     for (at, trial) in trials.iter().enumerate() {
@@ -46,7 +46,7 @@ fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
     rows.figure("collapse-modes", caption, x, None)
 }
 
-/// When things happened; none where no time was seen.
+/// Draws the times of events; `None` if no time was observed.
 fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
     let mut rows = Rows::default();
     let mut seen = Vec::new();
@@ -79,7 +79,7 @@ fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
     rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(seen))
 }
 
-/// The times between which the middle of the weight lies; not a number where there is none.
+/// Returns the quantiles that enclose the middle of the weight; NaN without weight.
 fn middle(mut weighed: Vec<(f64, f64)>) -> [f64; 2] {
     weighed.sort_by(|one, other| one.0.total_cmp(&other.0));
     let all: f64 = weighed.iter().map(|(_, weight)| weight).sum();
@@ -103,13 +103,13 @@ struct Rows {
 
 impl Rows {
     fn bar(&mut self, name: String, [from, to]: [f64; 2]) {
-        // The gap parts every bar from the next.
+        // The gap separates every bar from the next.
         self.x.extend([from, to, f64::NAN]);
         self.y.extend([Axis::row(self.names.len()); 3]);
         self.names.push(name);
     }
 
-    /// The picture; `seen` has a dot for every row.
+    /// Draws the rows; `seen` has the observed value of every row.
     fn figure(self, id: &str, caption: &str, x: Axis, seen: Option<Vec<f64>>) -> Option<Figure> {
         let rows = (0..self.names.len()).map(Axis::row).collect();
         let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };

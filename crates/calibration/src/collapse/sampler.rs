@@ -1,61 +1,61 @@
-//! Iterated importance sampling in a box: every draw of every round counts in the end.
+//! Iterated importance sampling in a box: the samples of all rounds count in the result.
 //!
-//! Adaptive multiple importance sampling (Cornuet, Marin, Mira and Robert 2012): a first round spreads
-//! over the box (Latin hypercube), each further round is drawn around what has become likely, and the
-//! weight of a draw is its likelihood over the density of all rounds' proposals together.
+//! Adaptive multiple importance sampling (Cornuet, Marin, Mira and Robert 2012): a first round covers
+//! the box (Latin hypercube), each further round samples around likely points, and the
+//! weight of a sample is its likelihood over the joint density of all rounds' proposals.
 //! A likelihood that is itself random, as that of one simulated course of a chaotic collapse, leaves
-//! the weights right: the randomness is one more coordinate that is drawn from its own distribution.
-//! With a handful of parameters this takes a page; samplers on crates.io want gradients, or chains whose
-//! thousands of steps cannot run side by side.
+//! the weights correct: the randomness is one more coordinate, sampled from its own distribution.
+//! For a handful of parameters this takes a page; samplers on crates.io require gradients, or chains of
+//! thousands of steps that cannot run in parallel.
 
 use barrelstack_dynamics::math;
 use barrelstack_motion::Random;
 
-/// Share of draws of the first round.
+/// Fraction of samples in the first round.
 const FIRST: f64 = 0.3;
 
-/// Rounds after the first.
+/// Number of rounds after the first.
 const ROUNDS: usize = 5;
 
-/// Share of a later round that is still drawn from the whole box, so that no weight grows without
-/// bound.
+/// Fraction of a later round that is still sampled from the whole box, which bounds the
+/// weights.
 const WIDE: f64 = 0.2;
 
-/// Fewest draws, in effect, that a proposal or a result rests on; the likelihood is raised to a power
-/// below one until there are so many.
+/// Smallest effective number of samples of a proposal or a result; the likelihood is raised to a power
+/// below one until it is reached.
 const FEWEST: f64 = 40.0;
 
-/// One draw: a point of the box `[−1, 1]ⁿ`, and what seeds everything else that is random in it.
+/// One sample: a point of the box `[−1, 1]ⁿ`, and the seed of everything else that is random in it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Draw {
     pub(super) point: Vec<f64>,
     pub(super) seed: u64,
 }
 
-/// Draws with their weights, which sum to one.
+/// Samples with their weights, which sum to one.
 #[derive(Clone, Debug)]
 pub(super) struct Posterior {
     pub(super) draws: Vec<Draw>,
     pub(super) weights: Vec<f64>,
-    /// The power to which the likelihood was raised so that enough draws count; one where it needed
-    /// not be. Below it, intervals are wider than they had to be.
+    /// The power to which the likelihood was raised to reach the effective number of samples; one if
+    /// not necessary. Below one, intervals are wider than with enough samples.
     pub(super) power: f64,
 }
 
-/// Where a round draws from: normal kernels around centers, each coordinate mirrored at the walls.
+/// Proposal of a round: normal kernels around centers, each coordinate reflected at the walls.
 struct Proposal {
     count: usize,
     centers: Vec<Vec<f64>>,
-    /// Cumulated weights of the centers.
+    /// Cumulative weights of the centers.
     cumulated: Vec<f64>,
     weights: Vec<f64>,
     width: Vec<f64>,
 }
 
-/// Samples the posterior of a uniform prior on the box from about `count` draws.
+/// Samples the posterior of a uniform prior on the box with about `count` samples.
 ///
-/// `evaluate` gives the logarithm of the likelihood of each of a batch of draws; `−∞` where there is
-/// none. None is returned where no draw has any likelihood.
+/// `evaluate` returns the log-likelihood of each of a batch of samples; `−∞` if it is
+/// zero. Returns `None` if no sample has any likelihood.
 pub(super) fn sample(
     dimensions: usize,
     count: usize,
@@ -91,7 +91,7 @@ pub(super) fn sample(
     Some(Posterior { draws, weights, power })
 }
 
-/// Points with seeds of their own, which differ for every place in the list.
+/// Adds a seed to each point, different for every position in the list.
 fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     let seeded = |(at, point)| Draw {
         point,
@@ -100,7 +100,7 @@ fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     points.into_iter().enumerate().map(seeded).collect()
 }
 
-/// Points of which every coordinate falls once into every one of as many equal parts.
+/// Latin hypercube: every coordinate has one point in each of `count` equal parts.
 fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f64>> {
     let mut points = vec![vec![0.0; dimensions]; count];
     for at in 0..dimensions {
@@ -116,7 +116,7 @@ fn hypercube(count: usize, dimensions: usize, random: &mut Random) -> Vec<Vec<f6
     points
 }
 
-/// The density of all rounds together at every draw, that of the box being one.
+/// Returns the joint density of all rounds at every sample, relative to that of the box.
 fn densities(draws: &[Draw], first: usize, proposals: &[Proposal]) -> Vec<f64> {
     let total = draws.len() as f64;
     let density = |draw: &Draw| {
@@ -126,14 +126,14 @@ fn densities(draws: &[Draw], first: usize, proposals: &[Proposal]) -> Vec<f64> {
     draws.iter().map(density).collect()
 }
 
-/// Weights of draws with the likelihood raised to a power, summing to one.
+/// Returns the weights of samples with the likelihood raised to a power, summing to one.
 fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if most == f64::NEG_INFINITY {
         return None;
     }
     let weight = |(log, density): (&f64, &f64)| {
-        // What cannot be stays impossible to the power zero.
+        // Zero likelihood stays zero, even to the power zero.
         if *log == f64::NEG_INFINITY { 0.0 } else { math::exp(power * (log - most)) / density }
     };
     let weights: Vec<f64> = logs.iter().zip(densities).map(weight).collect();
@@ -141,7 +141,7 @@ fn weights(logs: &[f64], densities: &[f64], power: f64) -> Option<Vec<f64>> {
     Some(weights.into_iter().map(|weight| weight / sum).collect())
 }
 
-/// The same with the highest power, up to one, that leaves enough draws in effect, and that power.
+/// Returns the weights with the largest power, up to one, that leaves enough effective samples, and that power.
 fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     let whole = weights(logs, densities, 1.0)?;
     if effective(&whole) >= FEWEST {
@@ -156,7 +156,7 @@ fn flattened(logs: &[f64], densities: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((weights(logs, densities, low)?, low))
 }
 
-/// How many equally weighted draws say as much as these (Kish).
+/// Returns the effective number of samples (Kish).
 fn effective(weights: &[f64]) -> f64 {
     1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>()
 }
@@ -164,7 +164,7 @@ fn effective(weights: &[f64]) -> f64 {
 impl Proposal {
     fn around(draws: &[Draw], weights: Vec<f64>, count: usize, dimensions: usize) -> Self {
         let n = dimensions as f64;
-        // Silverman's rule for the width of a kernel.
+        // Silverman's rule for the bandwidth.
         let rule = math::pow(4.0 / (n + 2.0) / effective(&weights), 1.0 / (n + 4.0));
         let spread = |at: usize| {
             let mean = |of: fn(f64) -> f64| {
@@ -178,7 +178,7 @@ impl Proposal {
         let mut sum = 0.0;
         let (mut centers, mut kept, mut cumulated) = (Vec::new(), Vec::new(), Vec::new());
         for (draw, weight) in draws.iter().zip(weights) {
-            // What is never drawn from need not be summed over.
+            // Centers of negligible weight are omitted.
             if weight > 1e-9 {
                 sum += weight;
                 centers.push(draw.point.clone());
@@ -200,7 +200,7 @@ impl Proposal {
         self.centers[at].iter().zip(&self.width).map(moved).collect()
     }
 
-    /// Density at a point, that of the box being one.
+    /// Returns the density at a point, relative to that of the box.
     fn density(&self, point: &[f64]) -> f64 {
         let total = self.cumulated.last().copied().unwrap_or(1.0);
         let kernel = |center: &Vec<f64>| -> f64 {
@@ -214,9 +214,9 @@ impl Proposal {
     }
 }
 
-/// A coordinate thrown back from the walls at ±1.
+/// Reflects a coordinate at the walls at ±1.
 fn mirrored(mut x: f64) -> f64 {
-    // A kernel is narrower than the box, so a few mirrors do.
+    // A kernel is narrower than the box, so a few reflections suffice.
     for _ in 0..16 {
         if x > 1.0 {
             x = 2.0 - x;
@@ -229,30 +229,30 @@ fn mirrored(mut x: f64) -> f64 {
     x.clamp(-1.0, 1.0)
 }
 
-/// Density of a mirrored normal deviate.
+/// Returns the density of a reflected normal deviate.
 fn mirrored_normal(x: f64, center: f64, width: f64) -> f64 {
     let normal = |x: f64| {
         let off = (x - center) / width;
         math::exp(-0.5 * off * off) / (width * (2.0 * std::f64::consts::PI).sqrt())
     };
-    // Of the images further out next to nothing comes in.
+    // Images further out are negligible.
     normal(x) + normal(2.0 - x) + normal(-2.0 - x) + normal(4.0 + x) + normal(x - 4.0)
 }
 
 impl Posterior {
-    /// The posterior of draws from the box itself.
+    /// Creates the posterior of samples from the box itself.
     #[cfg(test)]
     pub(super) fn of(draws: Vec<Draw>, logs: &[f64]) -> Option<Self> {
         let (weights, power) = flattened(logs, &vec![1.0; draws.len()])?;
         Some(Self { draws, weights, power })
     }
 
-    /// How many equally weighted draws say as much.
+    /// Returns the effective number of samples.
     pub(super) fn effective(&self) -> f64 {
         effective(&self.weights)
     }
 
-    /// The value of a coordinate below which a share of the weight lies.
+    /// Returns a quantile of a coordinate.
     pub(super) fn quantile(&self, at: usize, share: f64) -> f64 {
         let mut values: Vec<(f64, f64)> =
             self.draws.iter().zip(&self.weights).map(|(d, w)| (d.point[at], *w)).collect();
@@ -267,7 +267,7 @@ impl Posterior {
         values.last().map_or(0.0, |(value, _)| *value)
     }
 
-    /// Means, and covariances, of all coordinates.
+    /// Returns the covariance matrix of the coordinates.
     pub(super) fn covariance(&self) -> Vec<Vec<f64>> {
         let count = self.draws.first().map_or(0, |draw| draw.point.len());
         let mean = |of: &dyn Fn(&Draw) -> f64| -> f64 {
@@ -331,7 +331,7 @@ mod tests {
 
     #[test]
     fn too_few_draws_flatten_the_likelihood_and_what_cannot_be_weighs_nothing() {
-        // Fifteen draws in the first round, fewer than a result rests on, half of them impossible.
+        // Fifteen samples in the first round, fewer than a result needs, half of them impossible.
         let possible = |x: f64| if x < 0.0 { 0.0 } else { f64::NEG_INFINITY };
         let found = sample(1, 50, 1, |draws| draws.iter().map(|d| possible(d.point[0])).collect());
         let found = found.unwrap();

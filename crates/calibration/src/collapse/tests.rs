@@ -17,7 +17,7 @@ use super::{Parameter, Prepared, Tunable};
 const ALL: [Parameter; 3] =
     [Parameter::Stiffness, Parameter::Damping, Parameter::FrictionBarrelRack];
 
-/// What an observer notes of a course.
+/// Returns what an observer records of a course.
 fn noted(seen: &Seen, until: f64, errors: &Errors, random: &mut Random) -> Observed {
     let read = |time: Time, random: &mut Random| match time {
         Time::At(time) => Time::At((time + errors.reading * random.normal()).clamp(1e-3, until)),
@@ -32,8 +32,8 @@ fn noted(seen: &Seen, until: f64, errors: &Errors, random: &mut Random) -> Obser
     }
 }
 
-/// Every campaign draws its truth from the range, builds three stacks with other placements, notes how
-/// they go, and looks for the parameters with one table of simulations that all campaigns share.
+/// Every campaign draws its true values from the range, builds three stacks with random placements, records the
+/// outcomes, and estimates the parameters from one table of simulations that all campaigns share.
 #[test]
 fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
     const TESTS: usize = 3;

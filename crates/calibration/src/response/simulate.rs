@@ -57,13 +57,13 @@ impl Measured {
         Ok(Self { times, channels })
     }
 
-    /// Time (s) of the last row.
+    /// Returns the time (s) of the last row.
     pub(super) fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 }
 
-/// Simulates a scenario for sets of logarithms of factors on its constants.
+/// Simulates a scenario for points: sets of logarithms of factors on its constants.
 pub(super) struct Simulator<'a> {
     scenario: Scenario,
     measured: &'a Measured,
@@ -73,7 +73,7 @@ pub(super) struct Simulator<'a> {
     stopped: AtomicBool,
 }
 
-/// Hears again and again how many simulations were begun, from several threads, and may stop them.
+/// Callback with the number of simulations started, called repeatedly from several threads; may stop them.
 pub(super) type Tell<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
 impl<'a> Simulator<'a> {
@@ -87,12 +87,12 @@ impl<'a> Simulator<'a> {
         let mut scenario = scenario.clone();
         scenario.run.stop_after_collapse = None;
         let scale = scenario.run.similitude.sqrt();
-        // One step for all simulations, so that a change of step does not pass for an effect of a
-        // parameter; the step of a run is a small share of the critical one.
+        // One step for all simulations, so that a change of step is not mistaken for an effect of a
+        // parameter; the step of a run is a small fraction of the critical one.
         let assembly = assemble(&scenario).map_err(RunFailure::from)?;
         let step = time_step(&scenario, &assembly)? / scale;
         scenario.run.step = Some(step);
-        // Two steps more, so that the last row lies between samples.
+        // Two more steps, so that the last row lies between samples.
         scenario.run.duration = Some(measured.end() / scale + 2.0 * step);
         // Every step is sampled, so that interpolation adds nothing to the residuals.
         scenario.record.history_rate = 1.0 / step;
@@ -101,17 +101,17 @@ impl<'a> Simulator<'a> {
         Ok(Self { scenario, measured, tunable, count, tell, stopped })
     }
 
-    /// How many simulations were run.
+    /// Returns the number of simulations run.
     pub(super) fn count(&self) -> usize {
         self.count.load(Ordering::Relaxed)
     }
 
-    /// Whether the simulations were stopped.
+    /// `true` if the simulations were stopped.
     pub(super) fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }
 
-    /// Runs the scenario as it is, and checks that it shows the channels that were recorded; what to warn of.
+    /// Runs the scenario unchanged and checks that it has the recorded channels; returns a warning, if any.
     pub(super) fn first(&self) -> Result<Option<String>, CalibrateError> {
         let run = self.run(&vec![0.0; self.tunable.parameters().len()])?;
         if self.stopped() {
@@ -150,7 +150,7 @@ impl<'a> Simulator<'a> {
         })
     }
 
-    /// All channels at the recorded times; none where the stack cannot be simulated.
+    /// Returns all channels at the recorded times; `None` if the stack cannot be simulated.
     fn channels(&self, point: &[f64]) -> Option<Vec<Vec<f64>>> {
         if self.stopped() {
             return None;
@@ -169,13 +169,13 @@ impl<'a> Simulator<'a> {
         self.measured.channels.iter().map(channel).collect()
     }
 
-    /// Several points on all cores; which thread runs which changes nothing.
+    /// Simulates several points on all cores; the assignment to threads has no effect.
     pub(super) fn batch(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<Vec<f64>>>> {
         pool::map(points, |point| self.channels(point), &|_| ())
     }
 }
 
-/// Linear between samples, constant beyond the last.
+/// Interpolates linearly between samples, constant beyond the last.
 fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
     let above = times.partition_point(|sample| *sample < time);
     match (above.checked_sub(1), values.get(above)) {
