@@ -1,17 +1,16 @@
-//! Cases for another engine: stacks in space as they stand before the motion, and what became of each here.
+//! Cases for another engine: stacks in space as they stand before the motion, and the outcome of each here.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example cases -- 50 cases "stack.levels=3+motion.scale.factor=0.5"
 //! ```
 //!
-//! The first argument is the number of cases, the second the folder to be written, the third a change of `demo-napa`;
-//! several are joined by `+`.
-//! The cases are the first variants of those of `evidence`, so shares can be laid beside each other.
-//! `motion.json` holds the velocity of the ground, `0001.json` and so on hold a case each: bodies at rest with their
-//! masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the outcome: as it
-//! is stated (`outcome`), and with seats as MuJoCo has them (`alike`), whose friction holds without an elastic stick
-//! and whose damper acts both ways.
-//! All is in SI units; turns are quaternions `w`, `x`, `y`, `z` from the body to space.
+//! The first argument is the number of cases, the second the output folder, the third a change of `demo-napa`;
+//! several are joined by `+`. The cases are the first variants of those of `evidence`, so shares can be compared.
+//! `motion.json` has the velocity of the ground; `0001.json` and so on have one case each: bodies at rest with their
+//! masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the outcome: as
+//! stated (`outcome`), and with MuJoCo-like seats (`alike`), whose friction holds without an elastic stick and whose
+//! damper acts both ways.
+//! All values are in SI units; rotations are quaternions `w`, `x`, `y`, `z` from the body to space.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -32,15 +31,15 @@ use barrelstack_space::run::{Standing, run_on, stand};
 use barrelstack_space::{Ground, Heading};
 use serde_json::{Value, json};
 
-/// What every stack changes of the demo, as in `evidence`.
+/// Changes of the demo that all stacks share, as in `evidence`.
 const COMMON: [&str; 3] =
     ["stack.view=spatial", "run.stop_after_collapse='3 s'", "run.duration='16 s'"];
 
 /// Interfaces of seats.
 const SEATS: [&str; 2] = ["barrel-rack", "rack-ground"];
 
-/// What makes a seat like one of MuJoCo: a stick that gives a hundredth of the normal spring, and half the damping of
-/// the demo in both directions, which takes as much from a swing as all of it on approach alone.
+/// MuJoCo-like seats: a stick that yields by a hundredth of the normal spring, and half the damping of the demo in
+/// both directions, which dissipates as much per cycle as all of it on approach alone.
 const ALIKE: [&str; 5] = [
     "law='kelvin-voigt'",
     "stiffness='9.8 kN/cm'",
@@ -49,7 +48,7 @@ const ALIKE: [&str; 5] = [
     "friction.tangential_damping_ratio=20",
 ];
 
-/// The ground is told every this many seconds.
+/// Time step (s) of the ground motion in the file.
 const MOTION_STEP: f64 = 0.5e-3;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -81,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The velocity of the ground (m/s) at equal steps.
+/// Returns the velocity of the ground (m/s) at equal steps.
 fn motion(ground: &Ground) -> Value {
     let times = (0_u32..).map(|at| f64::from(at) * MOTION_STEP);
     let times = times.take_while(|time| *time < ground.end() + MOTION_STEP);
@@ -89,7 +88,7 @@ fn motion(ground: &Ground) -> Value {
     json!({ "step": MOTION_STEP, "velocity": velocity })
 }
 
-/// All but its outcome.
+/// Returns a case without its outcome.
 fn case(number: u32, scenario: &Scenario, standing: &Standing) -> Value {
     let Standing { stack, state, .. } = standing;
     let limits = thresholds(scenario);
@@ -132,7 +131,7 @@ fn case(number: u32, scenario: &Scenario, standing: &Standing) -> Value {
     })
 }
 
-/// What becomes of it here, and how long (s) that takes.
+/// Returns the outcome here, and the computing time (s).
 fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>> {
     let start = Instant::now();
     let run = run_on(scenario, ground.clone(), &mut |_| ControlFlow::Continue(()))?;
@@ -157,7 +156,7 @@ fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>
     }))
 }
 
-/// A solid in the frame of its body, its axis along its own `x`.
+/// Returns a solid in the frame of its body, with its axis along its own `x`.
 fn solid(nodes: &Nodes<Spatial>) -> Option<Value> {
     let Nodes::Whole(whole) = nodes else { return None };
     let mut told = match whole.hull {

@@ -1,13 +1,13 @@
-//! The same stacks, motions and imperfections across the barrels, along them, and in space: when is a verdict of a
-//! plane enough, and on which side does it err?
+//! Compares the same stacks, motions and imperfections across the barrels, along them, and in space: when is a
+//! verdict of a plane enough, and on which side does it err?
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example evidence -- 200 shares.svg "four levels: stack.levels=4"
 //! ```
 //!
-//! The first argument is the number of cases, the second where the figure goes, each other one a name and a change of
-//! `demo-napa` that makes a stack of its own; several changes of one stack are joined by `+`.
-//! It prints the rows of the table in `validation/space.md` and draws their shares.
+//! The first argument is the number of cases, the second the output file of the figure, each other one a name and a
+//! change of `demo-napa` that makes a stack of its own; several changes of one stack are joined by `+`. It prints the
+//! rows of the table in `validation/space.md` and draws their shares.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
@@ -29,7 +29,7 @@ use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
 use barrelstack_space::fate::Heading;
 use barrelstack_space::variants::run_all;
 
-/// What every stack of the comparison changes of the demo: all are followed to one time, and falls for some seconds.
+/// Changes of the demo that all stacks share: all run to the same time, and some seconds after a collapse.
 const COMMON: [&str; 3] =
     ["stack.view=spatial", "run.stop_after_collapse='3 s'", "run.duration='16 s'"];
 
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How many of the cases of a stack as it is seen fall: the name, the share, and its interval of 95 %.
+/// Share of the cases of a stack in a view that fall: the name, the share, and its interval of 95 %.
 type Share = (String, f64, Interval);
 
 fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Error>> {
@@ -85,7 +85,7 @@ fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Er
         row(stack, "along", &along[1..], "0 / all"),
         row(stack, "in space", &results[1..], &format!("{aside} / {on}")),
     ];
-    // Cases that have no verdict in one of the views say nothing of the others.
+    // Cases without a verdict in one of the views are left out of the comparison.
     let judged: Vec<_> = across
         .iter()
         .zip(&along)
@@ -118,7 +118,7 @@ fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Er
     Ok(shares)
 }
 
-/// Every share as a dot in the bar of its interval, one below the other.
+/// Draws every share as a dot in the bar of its interval, one below the other.
 fn drawn(shares: &[Share]) -> Figure {
     let names = shares.iter().map(|(name, ..)| name.clone()).collect();
     let of = |place: usize, label: &str, x: Vec<f64>, style: SeriesStyle| {
@@ -139,7 +139,7 @@ fn drawn(shares: &[Share]) -> Figure {
     Figure { id: "shares".into(), caption: caption.into(), kind: FigureKind::Plot(plot) }
 }
 
-/// The cases of a stack as a plane shows it, under one component.
+/// Returns the cases of a stack in a plane, under one component.
 fn in_plane(
     scenario: &Scenario,
     view: View,
@@ -199,7 +199,7 @@ fn row(stack: &str, seen: &str, results: &[CaseResult], debris: &str) -> Share {
     (format!("{stack}: {seen}"), f64::from(fallen) / f64::from(all.max(1)), interval)
 }
 
-/// The most frequent names with their counts.
+/// Returns the most frequent names with their counts.
 fn most(counts: BTreeMap<&str, usize>) -> String {
     let mut all: Vec<(&str, usize)> = counts.into_iter().collect();
     all.sort_by_key(|(_, count)| std::cmp::Reverse(*count));

@@ -1,4 +1,4 @@
-//! How much faster than real time a stack in space runs on one core.
+//! Measures the speed of a stack in space on one core, relative to real time.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example speed -- stack.levels=4

@@ -1,4 +1,4 @@
-//! A stack in space while it is built up: racks of tubes, barrels of revolution, and which of them meet by which law.
+//! Construction of a stack in space: racks of tubes, barrels of revolution, and contact pairs with their laws.
 
 use barrelstack::assemble::{AssembleError, PartKind, law_in_space, laws_in_space};
 use barrelstack::device::{Isolators, Words};
@@ -14,10 +14,10 @@ use crate::part::{Part, Seats, ground};
 use crate::rack::{Heights, Tubes, along_barrels, reach_along, tubes};
 use crate::stack::Stack;
 
-/// Length (m) of boundary that a contact stands for, where constants are stated for a meter of it; as in the plane.
+/// Tributary length (m) of a contact, where constants are stated per meter; as in the plane.
 pub(crate) const TRIBUTARY: f64 = 0.01;
 
-/// A stack while it is built up.
+/// A stack under construction.
 pub(crate) struct Builder<'a> {
     pub(crate) spec: &'a StackSpec,
     pub(crate) barrel: Barrel,
@@ -25,23 +25,23 @@ pub(crate) struct Builder<'a> {
     /// One part for every body, in the same order.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
-    /// Elements that are fit to the stack at rest.
+    /// Elements that are fitted to the stack at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Elements without which the stack does not stand, and what is said of them.
+    /// Elements without which the stack does not stand, each with its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
-    /// The bearings of platforms on the ground.
+    /// Contact pairs of the bearings of platforms on the ground.
     pub(crate) bearings: Vec<ContactPair>,
-    /// How far (m) all that stands on the ground was lifted.
+    /// Height (m) by which the bodies on the ground were raised.
     pub(crate) raised: f64,
 }
 
-/// The laws of contact, and the numbers of those of devices.
+/// Contact laws, and the indices of those of devices.
 pub(crate) struct Laws {
-    /// At the places of [`StackPair::ALL`], then those of devices in their order.
+    /// At the indices of [`StackPair::ALL`], then those of devices in their order.
     pub(crate) all: Vec<Interface<Spatial>>,
-    /// That of barrels in their cradles.
+    /// The law of barrels in their cradles.
     cradle: InterfaceId,
-    /// That of the bearings of platforms, where there are some: one at each corner.
+    /// The law of the bearings of platforms, one at each corner; `None` without platforms.
     pub(crate) bearing: Option<InterfaceId>,
 }
 
@@ -54,7 +54,7 @@ impl Laws {
         };
         let pad = spec.devices.pad.law();
         let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", law));
-        // Two corners make an end.
+        // An end has two corners.
         let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
         let bearing = isolator.map(|isolator| add("isolator-ground", isolator.law(0.5)));
         Self { all, cradle, bearing }
@@ -76,19 +76,19 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// How far (m) the outermost beams of a rack lie from its middle, along the barrels.
+    /// Returns the distance (m) of the outermost beams of a rack from its middle, along the barrels.
     pub(crate) fn reach_along(&self) -> f64 {
         reach_along(&self.spec.rack, self.spec.barrel.length + self.spec.gap)
     }
 
-    /// Adds a body; returns its id.
+    /// Adds a body; returns its ID.
     pub(crate) fn add(&mut self, body: Body<Spatial>, part: Part) -> BodyId {
         self.bodies.push(body);
         self.parts.push(part);
         self.bodies.len() - 1
     }
 
-    /// Lifts all that stands on the ground by a height (m).
+    /// Raises everything that stands on the ground by a height (m).
     pub(crate) fn raise(&mut self, height: f64) {
         for body in &mut self.bodies[1..] {
             body.pose.position.z += height;
@@ -96,7 +96,7 @@ impl<'a> Builder<'a> {
         self.raised = height;
     }
 
-    /// All levels, racks and their barrels from below.
+    /// Adds all levels, racks and their barrels from below.
     pub(crate) fn build(&mut self) -> Result<(), AssembleError> {
         let Self { spec, barrel, .. } = *self;
         let (racks, rows) = (spec.racks_per_level(), spec.racks_along());
@@ -122,7 +122,8 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// One rack with its barrels, whose underside has its middle at a place (m); returns the ids of the barrels.
+    /// Adds one rack with its barrels, with the middle of its underside at a position (m); returns the IDs of the
+    /// barrels.
     fn add_rack(
         &mut self,
         (level, column, row): (u32, u32, u32),
@@ -158,7 +159,7 @@ impl<'a> Builder<'a> {
         let id = self.bodies.len();
         let count = list.len();
         let mut seats = Seats { carries: vec![None; count], lies_on: vec![None; count] };
-        // Barrels below are in the order of places along the rack, then columns.
+        // Barrels below are ordered by place along the rack, then by column.
         let columns = rack.barrels;
         for (deep, tube) in beams {
             let of_beam = supports
@@ -246,14 +247,14 @@ impl<'a> Builder<'a> {
         self.add(body, part)
     }
 
-    /// A place (m), on the other side where the stack is mirrored.
+    /// Returns a position (m), mirrored if the stack is.
     pub(crate) fn mirrored(&self, place: Vec3) -> Vec3 {
         let side = if self.spec.mirror { -1.0 } else { 1.0 };
         Vec3::new(side * place.x, place.y, place.z)
     }
 
-    /// All boundaries that can ever meet, each with its law: two bodies that the stack joins meet at seats, everything
-    /// else about them, and any other two bodies, meets in impacts only.
+    /// Returns all boundary pairs that can meet, each with its law: two bodies that the stack joins meet at seats,
+    /// all their other boundaries, and any other two bodies, meet in impacts only.
     pub(crate) fn pairs(&self) -> Vec<ContactPair> {
         let mut list = Vec::new();
         let count = self.bodies.len();
@@ -284,13 +285,13 @@ impl<'a> Builder<'a> {
         list
     }
 
-    /// How many solids a body has: its first surfaces, and as many that touch.
+    /// Returns the number of solids of a body: of its first surfaces and node sets.
     fn solids(&self, body: BodyId) -> usize {
         // Dishes in the ground are for bearings alone.
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// All solids of a body with all of another, each by the law of the first one's.
+    /// Adds all solids of a body with all of another, each by the law of the first body's solid.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,
@@ -316,7 +317,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// A rack stands on its platform as on the ground.
+    /// Returns the pair of a rack and a platform; a rack stands on its platform as on the ground.
     fn on_platform(&self, rack: BodyId, tube: usize, device: BodyId) -> StackPair {
         let part = &self.parts[rack];
         match part.seats.lies_on.get(tube) {
@@ -337,7 +338,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// What differs at one place, later entries last.
+/// Returns the overrides of one place, later entries last.
 fn changes_of(
     spec: &StackSpec,
     body: StackBody,

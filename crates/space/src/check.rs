@@ -1,4 +1,4 @@
-//! Is a scenario in space sound, and does what stands there stand before it is shaken?
+//! Checks a scenario in space without shaking it: is it sound, and does it stand?
 
 use barrelstack::assemble::PartKind;
 use barrelstack::check::{AtRest, Checked};
@@ -8,7 +8,7 @@ use barrelstack::{RunFailure, Scenario};
 use crate::ground::Ground;
 use crate::run::{Standing, affordable, stand};
 
-/// Does everything that comes before the shaking.
+/// Runs everything that precedes the shaking.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -38,7 +38,7 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
         time_step: stack.step,
         rest: settled.map(|settled| AtRest::of(settled, sunk)),
         motion: ground.first.motion.as_ref().map(MotionSummary::of),
-        // How far sticks give is told of planes alone.
+        // The warning about soft sticks exists for planes only.
         sticks: Vec::new(),
         warnings: ground.warnings,
         scenario_hash: format!("{:016x}", scenario.fingerprint()),

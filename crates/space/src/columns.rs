@@ -1,11 +1,11 @@
-//! What tables of cases in space have besides: where things went.
+//! Additional columns of tables of cases in space: directions of falls.
 
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 
 use crate::fate::Heading;
 use crate::variants::Case;
 
-/// The column of the way of the first body, and that of barrels that came to lie each way.
+/// The direction of the first body, and the number of fallen barrels in each direction.
 const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "heading",
@@ -26,18 +26,18 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
     ("debris_near", ValueKind::Integer, "the same the other way along the barrels"),
 ];
 
-/// The columns, in the order of [`values`].
+/// Returns the specifications of the columns, in the order of [`values`].
 pub fn specs() -> impl Iterator<Item = ColumnSpec> {
     COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
 }
 
-/// What a column means; none where it is not of space.
+/// Returns the description of a column; `None` if it is not one of these.
 pub fn meaning(name: &str) -> Option<&'static str> {
     COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
 }
 
-/// The values of a case: the way of the first body, if one left its seat, and those of fallen barrels; none of a case
-/// without a verdict.
+/// Returns the values of a case, from the direction of the first body, if one left its seat, and those of fallen
+/// barrels; `None` for a case without a verdict.
 pub fn values(ways: Option<(Option<Heading>, &[Heading])>) -> impl Iterator<Item = Option<Value>> {
     let first = ways.and_then(|(first, _)| first).map(|way| Value::Text(way.name().to_owned()));
     let lie = move |way: Heading| {
@@ -47,7 +47,7 @@ pub fn values(ways: Option<(Option<Heading>, &[Heading])>) -> impl Iterator<Item
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
 }
 
-/// The columns of cases.
+/// Returns the columns of cases.
 pub fn table(cases: &[Case]) -> Vec<Column> {
     let rows: Vec<Vec<Option<Value>>> =
         cases.iter().map(|case| values(case.ways()).collect()).collect();

@@ -1,8 +1,8 @@
-//! A run in space as scenes of planes: across the barrels, along them, and from above.
+//! A run in space as plane scenes: across the barrels, along them, and from above.
 //!
-//! A scene holds bodies of fixed outlines that move in its plane.
-//! What is seen of a solid body changes only with the direction in the body from which it is looked at, so a body
-//! becomes one drawing for every direction that occurs, in steps of a few degrees, of which each frame shows one.
+//! A scene has bodies of fixed outlines that move in its plane. The outline of a solid body depends only on the view
+//! direction in the body frame, so a body becomes one drawing for every direction that occurs, in steps of a few
+//! degrees, and each frame shows one of them.
 
 mod seen;
 
@@ -26,22 +26,22 @@ use crate::run::Run;
 use crate::stack::Stack;
 use crate::words::leaves;
 
-/// A direction from which a stack is looked at.
+/// View direction of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sight {
-    /// At the heads of the barrels: `x` to the right, `z` up.
+    /// Toward the heads of the barrels: `x` to the right, `z` up.
     Across,
-    /// At their sides: `y` to the right, `z` up.
+    /// Toward their sides: `y` to the right, `z` up.
     Along,
     /// From above: `x` to the right, `y` up the page.
     Above,
 }
 
 impl Sight {
-    /// All of them.
+    /// All view directions.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// For people, of what stands there.
+    /// Returns the words for people, depending on the stack.
     pub fn words(self, stack: &Stack) -> &'static str {
         match self {
             Self::Across if stack.is_free() => "from the front",
@@ -52,7 +52,7 @@ impl Sight {
         }
     }
 
-    /// Whether it is told of what goes in a direction, so that all is told once.
+    /// Returns `true` if events in a direction are labeled in this view; each is labeled in one.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -61,7 +61,7 @@ impl Sight {
         }
     }
 
-    /// What is right and up on the page; both with what points at the reader are right-handed.
+    /// Returns the right and up axes of the page; both with the direction toward the viewer are right-handed.
     fn page(self) -> [Vec3; 2] {
         let [x, y, z] =
             [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
@@ -73,16 +73,16 @@ impl Sight {
     }
 }
 
-/// Most frames per second of a picture.
+/// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
-/// The scene of a run from a direction.
+/// Returns the scene of a run from a direction.
 pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let [right, up] = sight.page();
     let toward = right.cross(up);
     let frames = shown(run);
     let bodies = run.stack.model.bodies();
-    // What is far is drawn first.
+    // Distant bodies are drawn first.
     let mut order: Vec<usize> = (1..bodies.len()).collect();
     let depth = |body: usize| run.fates[body].rest.dot(toward);
     order.sort_by(|a, b| depth(*a).total_cmp(&depth(*b)));
@@ -137,15 +137,15 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     })
 }
 
-/// A strap or a tie, between two bodies that are its ends and show nothing: what is seen of a solid body changes with
-/// how it is turned, and a point in it has no place of its own in such a drawing.
+/// A strap or a tie, between two invisible bodies at its ends: the drawing of a solid body depends on its rotation,
+/// and has no fixed position for a point of the body.
 struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,
 }
 
 impl Band<'_> {
-    /// Where its ends are on the page.
+    /// Returns the positions of its ends on the page.
     fn ends(&self, run: &Run, frame: usize, page: [Vec3; 2]) -> [[f64; 3]; 2] {
         [0, 1].map(|end| {
             let (place, rotation) = placed(run.frames.poses[frame][self.link.bodies[end]]);
@@ -155,10 +155,10 @@ impl Band<'_> {
     }
 }
 
-/// How far apart (m) the ends of what is seen end on are, at the most.
+/// Minimum distance (m) of the ends on the page: a band seen end-on is not drawn.
 const END_ON: f64 = 0.01;
 
-/// The straps and ties, whose ends follow so many drawings; without those that are seen end on.
+/// Returns the straps and ties, whose ends follow a number of drawings; without those seen end-on.
 fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     let straps = run.devices().filter_map(|((element, _), fate)| match element {
         Element::Strap(strap) => Some((&strap.link, fate)),
@@ -179,7 +179,7 @@ fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     bands
 }
 
-/// Whether a body is a barrel and nothing else, with its center of mass on its axis.
+/// Returns `true` if a body is a barrel alone, with its center of mass on its axis.
 fn is_barrel(body: &Body<Spatial>) -> bool {
     let [Placed { surface: Solid::Barrel(_), offset, .. }] = body.surfaces.as_slice() else {
         return false;
@@ -187,7 +187,7 @@ fn is_barrel(body: &Body<Spatial>) -> bool {
     offset.y == 0.0 && offset.z == 0.0
 }
 
-/// The frames of a run that a picture shows.
+/// Returns the frames of a run that a picture shows.
 fn shown(run: &Run) -> Vec<usize> {
     let mut next = 0.0;
     let mut shown = Vec::new();
@@ -204,7 +204,7 @@ fn placed([x, y, z, w, a, b, c]: [f64; 7]) -> (Vec3, Rotation3) {
     (Vec3::new(x, y, z), Quaternion { w, v: Vec3::new(a, b, c) }.matrix())
 }
 
-/// By how much (rad) the ground rises to the right.
+/// Returns the slope (rad) of the ground, rising to the right.
 fn slope(run: &Run) -> f64 {
     match &run.scenario.scene {
         scenario::Scene::Spatial(scene) => scene.ground.slope,
@@ -212,8 +212,8 @@ fn slope(run: &Run) -> f64 {
     }
 }
 
-/// The floor: a line longer than any picture is wide; nothing from above, and from the side where it slopes. And the
-/// walls, ceilings and dishes of devices.
+/// Returns the floor: a line longer than any picture is wide; none from above, and from the side where it slopes.
+/// Walls, ceilings and dishes of devices are included.
 fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
     let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
@@ -225,8 +225,8 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// What keeps room around bodies, as two points that show nothing: around a stack from above, where nothing below it
-/// bounds the picture, and around all the ways of a free scene.
+/// Returns invisible points that pad the viewport: around a stack from above, where nothing below it bounds the
+/// picture, and around all paths of a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         ways(run, sight)
@@ -238,7 +238,7 @@ fn yard(run: &Run, sight: Sight) -> SceneBody {
     SceneBody::new("", Role::Block, corners.into())
 }
 
-/// The corners of what all bodies pass through, over the ground.
+/// Returns the corners of the area that all bodies cover, relative to the ground.
 fn ways(run: &Run, sight: Sight) -> [Point; 2] {
     let page = sight.page();
     let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
@@ -259,11 +259,11 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
     let mut events = Vec::new();
     for (body, (part, fate)) in run.stack.parts.iter().zip(&run.fates).enumerate() {
         let barrel = part.kind == PartKind::Barrel;
-        // A barrel that leaves its seat by falling is one thing that happens, not two.
+        // A barrel that leaves its seat by falling is one event, not two.
         let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
         let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
         if let Some((time, loss, heading)) = left.filter(|(.., way)| sight.shows(*way)) {
-            // Its pane shows whether it is along the barrels or across them.
+            // The pane shows whether it is along the barrels or across them.
             let text = format!("{}, {}", leaves(&part.name, loss), heading.name());
             events.push(Event { time, body: Some(first[body]), kind: EventKind::LossOfSeat, text });
         }
@@ -273,7 +273,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
             events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
         }
     }
-    // What gives way has no direction, and is told once.
+    // Failures of devices have no direction, and are labeled once.
     if sight == Sight::Across {
         for ((element, words), fate) in run.devices() {
             if let Some(time) = fate.broken_at {
@@ -296,10 +296,10 @@ fn moment(run: &Run, first: &[usize]) -> Option<Moment> {
     Some(Moment { time: *time, body: first[body], text, falls: true })
 }
 
-/// The acceleration of the ground along each axis of the stack over gravity.
+/// Returns the acceleration of the ground along each axis of the stack, over gravity.
 pub fn ground_histories(run: &Run) -> Vec<History> {
     use barrelstack_dynamics::Drive as _;
-    /// Time (s) between two values.
+    /// Time step (s) of the values.
     const STEP: f64 = 0.02;
     if run.ground.first.motion.is_none() {
         return Vec::new();

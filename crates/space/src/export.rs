@@ -1,4 +1,4 @@
-//! The files of an answer in space.
+//! Output files of an answer in space.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
 
-/// The files of an answer by their names, the report last.
+/// Returns the files of an answer with their names, the report last.
 pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
@@ -19,13 +19,13 @@ pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
         ("report.html", html(&document(answer))),
     ];
     if answer.run.stack.is_free() {
-        // It has no variants.
+        // A free scene has no variants.
         files.retain(|(name, _)| *name != "variants.csv");
     }
     files.into_iter().map(|(name, text)| (name.to_owned(), text.into_bytes())).collect()
 }
 
-/// Where all bodies were: time (s), and of every body its place (m) and the quaternion by which it is turned.
+/// Writes all poses: time (s), and of every body its position (m) and the quaternion of its rotation.
 fn frames_csv(run: &Run) -> String {
     let mut text = String::from("time (s)");
     for part in &run.stack.parts {
@@ -45,7 +45,7 @@ fn frames_csv(run: &Run) -> String {
     text
 }
 
-/// The case as it is stated, number 0, and its variants, a row each.
+/// Writes the case as stated, number 0, and its variants, one row each.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "variant,outcome,mode,collapse time (s),first body,heading,first fall (s),barrels fallen,debris right,debris \
@@ -55,7 +55,7 @@ fn variants_csv(answer: &Answer) -> String {
         use barrelstack::outcome::Outcome;
         let result = &case.result;
         let (kind, mode, time, first, reason) = match &result.outcome {
-            // What was not done has no row.
+            // An interrupted case has no row.
             Ok(Outcome::Interrupted) => continue,
             Ok(Outcome::Collapse { mode, time, first, .. }) => {
                 ("collapse", mode.name(), Some(*time), first.as_str(), "")

@@ -1,4 +1,4 @@
-//! The fate of every body in space: whether it kept its seat, when and in which direction it left it, how far it fell.
+//! Fate of every body in space: loss of seat with its direction, fall, slip and tilt.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::watch::{Loss, Thresholds};
@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::stack::Stack;
 
-/// Where something went, as seen from above by one who stands before the heads of the barrels, with `x` to the right
-/// and `y` into the depth.
+/// Direction of a motion, from above and from the position of a viewer before the heads of the barrels, with `x` to
+/// the right and `y` away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Heading {
@@ -23,10 +23,10 @@ pub enum Heading {
 }
 
 impl Heading {
-    /// All of them.
+    /// All directions.
     pub const ALL: [Self; 4] = [Self::Right, Self::Left, Self::Away, Self::Near];
 
-    /// Of a way: the direction of which it has most.
+    /// Returns the direction of the largest component of a displacement.
     pub fn of(way: Vec3) -> Self {
         match (way.x.abs() >= way.y.abs(), way.x >= 0.0, way.y >= 0.0) {
             (true, true, _) => Self::Right,
@@ -36,12 +36,12 @@ impl Heading {
         }
     }
 
-    /// Whether it is across the barrels, not along them.
+    /// Returns `true` if it is across the barrels, not along them.
     pub fn is_across(self) -> bool {
         matches!(self, Self::Right | Self::Left)
     }
 
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -52,27 +52,27 @@ impl Heading {
     }
 }
 
-/// What became of one body.
+/// Fate of one body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
     pub rest: Vec3,
-    /// When (s) it left its seat, how, and in which direction.
+    /// Time (s), kind and direction of its loss of seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
-    /// When (s) it had fallen by the threshold.
+    /// Time (s) at which it had fallen by the threshold.
     pub fell_at: Option<f64>,
     /// Largest drop (m) below its place at rest.
     pub drop: f64,
-    /// Largest force (N) on it since it had fallen.
+    /// Largest force (N) on it after it had fallen.
     pub fall_force: f64,
-    /// Where it is (m), relative to the ground and its place at rest.
+    /// Displacement (m) relative to the ground and to its place at rest.
     pub moved: Vec3,
-    /// The same at the moment of the collapse; at the end if there was none.
+    /// Displacement (m) at the collapse; at the end if there was none.
     pub moved_at_collapse: Vec3,
-    /// Displacement (m) across and along relative to what it stands on, in the mean of all of that, at the end.
+    /// Displacement (m) across and along relative to its supports, averaged over them, at the end.
     pub residual_slip: [f64; 2],
-    /// Largest displacement (m) across and along relative to what it stands on, in the mean of all of that, before
-    /// the collapse; of different instants.
+    /// Largest displacement (m) across and along relative to its supports, averaged over them, before the collapse;
+    /// at different instants.
     pub peak_slip: [f64; 2],
     /// Largest rise (m) above its place at rest, before the collapse.
     pub peak_uplift: f64,
@@ -82,15 +82,14 @@ pub struct Fate {
     pub whole_run: PeakMotion,
 }
 
-/// The largest motions of a body in any step; displacements are horizontal, whatever their direction, and each is that of
-/// one instant.
+/// Largest motions of a body in any step; displacements are horizontal, in any direction, each at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion {
     /// Largest displacement (m) relative to the ground.
     pub displacement: f64,
-    /// Largest displacement (m) relative to what the body stands on, in the mean of all of that.
+    /// Largest displacement (m) relative to the supports, averaged over them.
     pub slip: f64,
-    /// Largest tilt (rad) of a rack from where it stood.
+    /// Largest tilt (rad) of a rack from its orientation at rest.
     pub tilt: f64,
 }
 
@@ -102,26 +101,26 @@ impl PeakMotion {
     }
 }
 
-/// Follows all bodies through a run; sees every step.
+/// Follows all bodies of a run; needs every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<'a> {
     stack: &'a Stack,
     thresholds: Thresholds,
-    /// How every body was turned at rest.
+    /// Rotations of all bodies at rest.
     upright: Vec<Rotation3>,
-    /// What was up in every body at rest, in its own frame.
+    /// Upward direction at rest in every body, in its own frame.
     upward: Vec<Vec3>,
-    /// How every body is turned in the state that is looked at.
+    /// Rotations of all bodies in the current state.
     turned: Vec<Rotation3>,
     all: Vec<Fate>,
-    /// When (s) the first body left its seat, and which.
+    /// Time (s) of the first loss of seat, and the body.
     collapse: Option<(f64, BodyId)>,
-    /// When (s) the first barrel had fallen.
+    /// Time (s) at which the first barrel had fallen.
     first_fall: Option<f64>,
 }
 
 impl<'a> Fates<'a> {
-    /// Starts at rest.
+    /// Creates the fates of a stack at rest.
     pub fn new(stack: &'a Stack, state: &State<Spatial>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Stack::GROUND].position;
         let fate = |pose: &barrelstack_dynamics::Pose<Spatial>| Fate {
@@ -141,22 +140,22 @@ impl<'a> Fates<'a> {
         }
     }
 
-    /// The fates of all bodies, in the order of the parts.
+    /// Returns the fates of all bodies, in the order of the parts.
     pub fn all(&self) -> &[Fate] {
         &self.all
     }
 
-    /// When (s) the first body left its seat, and which.
+    /// Returns the time (s) of the first loss of seat, and the body.
     pub fn collapse(&self) -> Option<(f64, BodyId)> {
         self.collapse
     }
 
-    /// When (s) the first barrel had fallen.
+    /// Returns the time (s) at which the first barrel had fallen.
     pub fn first_fall(&self) -> Option<f64> {
         self.first_fall
     }
 
-    /// The fates of all bodies at the end of a run, in the order of the parts.
+    /// Returns the fates of all bodies at the end of a run, in the order of the parts.
     pub fn at_end(mut self, state: &State<Spatial>) -> Vec<Fate> {
         self.turn(state);
         let mut slips = Vec::new();
@@ -168,14 +167,14 @@ impl<'a> Fates<'a> {
         self.all
     }
 
-    /// Looks at how the bodies are turned.
+    /// Updates the rotations of the bodies.
     fn turn(&mut self, state: &State<Spatial>) {
         for (turned, pose) in self.turned.iter_mut().zip(&state.poses) {
             *turned = pose.orientation.matrix();
         }
     }
 
-    /// Looks at an accepted state.
+    /// Records an accepted state.
     pub fn observe(&mut self, state: &State<Spatial>, scratch: &Scratch<Spatial>) {
         let ground = state.poses[Stack::GROUND].position;
         let standing = self.collapse.is_none();
@@ -201,7 +200,7 @@ impl<'a> Fates<'a> {
             }
             self.slips(state, i, &mut slips);
             let mean = mean(&slips);
-            // A barrel turns about its axis without end.
+            // A barrel may roll about its axis without limit.
             let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
             let tilt = if up < 1.0 { math::acos(up.max(-1.0)) } else { 0.0 };
             let (way, slip) = (level(moved).length(), level(mean).length());
@@ -222,19 +221,19 @@ impl<'a> Fates<'a> {
         }
     }
 
-    /// Whether a body has left its seat now, how, and whereto.
+    /// Returns kind and direction of a loss of seat, if a body has left its seat now.
     fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
         let slip = mean(slips);
-        // What protects a stack has no seat to lose.
+        // Devices have no seat to lose.
         if part.kind == PartKind::Device {
             return None;
         }
         if part.kind == PartKind::Barrel {
             let most = self.thresholds.seat_loss_ratio * part.size;
             if slip.dot(slip) > most * most {
-                // Over the ground, not in the frame of a rack that may be tilted.
+                // Relative to the ground, not in the frame of a rack that may be tilted.
                 let way = part.carrier.map_or(fate.moved, |rack| fate.moved - self.all[rack].moved);
                 return Some((Loss::Displaced, Heading::of(way)));
             }
@@ -265,13 +264,14 @@ impl<'a> Fates<'a> {
         fate.fell_at.map(|_| (Loss::Dropped, Heading::of(fate.moved)))
     }
 
-    /// What was up in a body at rest.
+    /// Returns the current direction of the axis that was up at rest.
     fn up(&self, i: BodyId) -> Vec3 {
         self.turned[i].apply(self.upward[i])
     }
 
-    /// Displacements (m) of a body relative to what it stands on: of a barrel in the frame of its rack, of a rack on
-    /// each of the barrels below in its own frame, of others against the ground; as at rest turned.
+    /// Computes the displacements (m) of a body relative to its supports: of a barrel in the frame of its rack, of a
+    /// rack on each of the barrels below in its own frame, of others relative to the ground; in the orientation at
+    /// rest.
     fn slips(&self, state: &State<Spatial>, i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];
@@ -297,7 +297,7 @@ fn mean(slips: &[Vec3]) -> Vec3 {
     slips.iter().fold(Vec3::default(), |sum, slip| sum + *slip) * (1.0 / slips.len() as f64)
 }
 
-/// The horizontal part.
+/// Returns the horizontal part.
 fn level(way: Vec3) -> Vec3 {
     Vec3::new(way.x, way.y, 0.0)
 }

@@ -1,4 +1,4 @@
-//! From a free scene to bodies that can move in space, and which of them meet by which law.
+//! Assembles a free scene in space: bodies, and contact pairs with their laws.
 
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
@@ -11,7 +11,7 @@ use crate::part::{Part, ground};
 use crate::stack::Stack;
 use crate::step::time_step;
 
-/// Builds a free scene, not yet at rest.
+/// Builds a free scene, without settling it.
 pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stack, RunFailure> {
     if scenario.run.similitude != 1.0 {
         let reason =
@@ -19,7 +19,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
         return Err(AssembleError::NotInSpace { field: "run.similitude", reason }.into());
     }
     let mut floor = ground();
-    // What rises to the right is turned about y, with the clock where y points away.
+    // A slope that rises to the right is a negative rotation about y.
     floor.pose.orientation = Quaternion::turn(Vec3::new(0.0, -scene.ground.slope, 0.0));
     let mut bodies = vec![floor];
     bodies.extend(scene.bodies.iter().map(SpatialBody::build));
@@ -44,7 +44,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     })
 }
 
-/// All solids of two bodies that an interface names, each pair of them once.
+/// Returns all pairs of solids of two bodies that an interface names, each once.
 fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
     let mut list = Vec::new();
     for one in 0..bodies.len() {
@@ -53,7 +53,7 @@ fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
             if [one, other].iter().all(|id| bodies[*id].motion == Motion::Prescribed) {
                 continue;
             }
-            // A half-space touches nothing, it is touched.
+            // A half-space is always the target.
             let turned = if is_unbounded(&bodies[one]) || is_unbounded(&bodies[other]) {
                 is_unbounded(&bodies[one])
             } else {
@@ -75,7 +75,7 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
 }
 
-/// The interface by which two bodies meet, and whether the second of them is the one that it names first.
+/// Returns the interface of two bodies, and `true` if it names the second of them first.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

@@ -1,38 +1,38 @@
-//! The ground in space: both horizontal components of a motion and the vertical one, turned to the stack.
+//! Ground motion in space: both horizontal components of a motion and the vertical one, rotated to the stack.
 
 use barrelstack::ground::{GroundError, of_spec, other_component, turn_to_other};
 use barrelstack::scenario::{MotionSource, MotionSpec, Scenario};
 use barrelstack_dynamics::{Drive, Spatial, Vec3, math};
 
-/// How far (degrees) from a right angle two horizontal components may be and count as one.
+/// Tolerance (degrees) of the right angle between two horizontal components.
 const SQUARE: f64 = 5.0;
 
-/// What moves the ground of a stack in space.
+/// Ground motion of a stack in space.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// The component of the scenario, with the vertical one if there is one.
+    /// The component of the scenario, with the vertical one if any.
     pub first: barrelstack::Ground,
-    /// The other horizontal component; none where the motion has one alone.
+    /// The other horizontal component; `None` if the motion has only one.
     pub second: Option<barrelstack::Ground>,
-    /// Cosine and sine of the angle by which the stack is turned against the clock.
+    /// Cosine and sine of the counterclockwise rotation of the stack.
     turn: [f64; 2],
-    /// 1 where the second component points a quarter turn against the clock from the first, -1 where with it.
+    /// 1 if the second component points a quarter turn counterclockwise from the first, -1 if clockwise.
     hand: f64,
-    /// What should be known of it, one sentence each.
+    /// Warnings, one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Ground {
-    /// That of a scenario: turned by its azimuth (rad), its component shakes the stack across its barrels and the other
-    /// one along them.
+    /// Returns the ground motion of a scenario: rotated by its azimuth (rad), with its component across the barrels
+    /// and the other one along them.
     ///
     /// # Errors
-    /// When the motion cannot be read, or cannot be scaled as the scenario says.
+    /// If the motion cannot be read, or cannot be scaled as the scenario requires.
     pub fn of(scenario: &Scenario) -> Result<Self, GroundError> {
         Ok(Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario))
     }
 
-    /// That of a motion for a stack of a length scale, not turned: its component shakes a stack across its barrels.
+    /// Returns a motion for a stack of a length scale, not rotated: its component acts across the barrels.
     ///
     /// # Errors
     /// As [`Ground::of`].
@@ -64,7 +64,7 @@ impl Ground {
         Ok(Self { first, second, turn: [1.0, 0.0], hand, warnings })
     }
 
-    /// As it shakes the stack of a scenario, which is turned by its azimuth.
+    /// Rotates the motion to the stack of a scenario, by its azimuth.
     #[must_use]
     pub fn under(self, scenario: &Scenario) -> Self {
         let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
@@ -72,7 +72,7 @@ impl Ground {
         Self { turn: [cos, sin], ..self }
     }
 
-    /// With all components times one factor.
+    /// Returns the motion with all components scaled by a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let of = |ground: &barrelstack::Ground| barrelstack::Ground {
@@ -82,22 +82,22 @@ impl Ground {
         Self { first: of(&self.first), second: self.second.as_ref().map(of), ..self.clone() }
     }
 
-    /// When (s) its motion ends; none where there is none.
+    /// Returns the time (s) at which the motion ends; `None` without motion.
     pub fn motion_end(&self) -> Option<f64> {
         self.first.motion_end().map(|_| self.end())
     }
 
-    /// When (s) it is still: the end of its motion, or from the start.
+    /// Returns the time (s) from which the ground is still: the end of its motion, or the start.
     pub fn end(&self) -> f64 {
         self.each(barrelstack::Ground::end)
     }
 
-    /// From when on (s) none of its accelerations exceeds a limit (m/s²).
+    /// Returns the time (s) from which none of its accelerations exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.each(|ground| ground.calm_from(limit))
     }
 
-    /// Where its components came from and what was done to them, one sentence each.
+    /// Returns source and processing of its components, one sentence each.
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
@@ -116,7 +116,7 @@ impl Ground {
     }
 }
 
-/// Ground that shakes a stack across its barrels, and up and down.
+/// Ground that moves across the barrels of a stack, and vertically.
 impl From<barrelstack::Ground> for Ground {
     fn from(first: barrelstack::Ground) -> Self {
         let warnings = first.warnings.clone();

@@ -1,10 +1,10 @@
-//! What of a stack is known in space, and what is refused at its field.
+//! Features of a stack that are supported in space; others are rejected at their field.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Refuses what is not known in space; the barrel of what is.
+/// Rejects unsupported features; returns the barrel.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;

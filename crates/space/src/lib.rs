@@ -1,5 +1,4 @@
-//! Stacks of barrels and free scenes in space: what a scenario states, as it stands, under all three components of a
-//! motion.
+//! Stacks of barrels and free scenes in space, under all three components of a motion.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -9,7 +8,7 @@
 //! ```
 //!
 //! Across the barrels is `x`, along them `y`, and `z` is up; columns count along `x`, rows along `y`.
-//! A run is that of the plane in all but its geometry: the same laws, steps, thresholds and words.
+//! A run differs from that of the plane in geometry only: the laws, steps, thresholds and words are the same.
 
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

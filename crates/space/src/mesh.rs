@@ -1,4 +1,4 @@
-//! Surfaces of bodies in space as triangles, and a run of them for viewers.
+//! Triangle meshes of bodies in space, and a run of them for viewers.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -8,15 +8,15 @@ use barrelstack_report::{Role, SolidBody, Solids};
 
 use crate::run::Run;
 
-/// Corners around a quarter of balls and barrels, and of tubes, of which racks have many: all of them are written for
-/// every time.
+/// Number of corners per quarter circle, for balls and barrels, and for tubes, of which racks have many: all corners
+/// are written for every frame.
 const FINE: u32 = 6;
 const COARSE: u32 = 3;
 
-/// Points of a surface (m) and its triangles, against the clock as seen from outside.
+/// Points of a surface (m) and its triangles, counterclockwise from outside.
 type Mesh = (Vec<Vec3>, Vec<[usize; 3]>);
 
-/// The bodies of a run between two times (s), as triangles.
+/// Returns the bodies of a run between two times (s), as triangles.
 pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     let floor = floor(run);
     let parts = run.stack.parts.iter().zip(run.stack.model.bodies());
@@ -47,7 +47,8 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     }
 }
 
-/// Half the side (m) of the square that is drawn of a half-space: a viewer fits its first picture to all of it.
+/// Returns half the side (m) of the square that represents a half-space: viewers fit their first picture to all of
+/// it.
 fn floor(run: &Run) -> f64 {
     let far = |pose: &[f64; 7]| pose[..3].iter().fold(0.0_f64, |far, x| far.max(x.abs()));
     let sizes = run.stack.model.bodies().iter().map(Body::reach);
@@ -55,13 +56,13 @@ fn floor(run: &Run) -> f64 {
     run.frames.poses.iter().flatten().map(far).fold(0.0, f64::max) + 2.0 * reach
 }
 
-/// The surface of a body in its frame, half-spaces as squares of half a side (m).
+/// Returns the surface of a body in its frame, with half-spaces as squares of half a side (m).
 fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
             Solid::HalfSpace => square(floor),
-            // Lies in the ground.
+            // It lies in the ground.
             Solid::Dish(_) => Mesh::default(),
             Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius, FINE), FINE),
             Solid::Capsule(tube) => {
@@ -104,7 +105,7 @@ fn square(half: f64) -> Mesh {
     (corners, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// A block of half sides (m), its edges sharp.
+/// Returns a block of half sides (m), with sharp edges.
 fn cuboid(half: Vec3) -> Mesh {
     let corner = |at: u32| {
         let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
@@ -116,13 +117,13 @@ fn cuboid(half: Vec3) -> Mesh {
     ((0..8).map(corner).collect(), triangles.collect())
 }
 
-/// Place along the axis and distance from it (m) of a tube with round ends, from pole to pole, in so many steps a
-/// quarter of a circle.
+/// Returns the profile of a tube with round ends, as position along the axis and distance from it (m), from pole to
+/// pole, with a number of steps per quarter circle.
 fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     let step = FRAC_PI_2 / f64::from(quarter);
     let end = |side: f64, at: u32| {
         let (sin, cos) = math::sin_cos(step * f64::from(at));
-        // The cosine of a right angle is not quite nothing.
+        // The cosine of a right angle is not exactly zero.
         let away = if at == quarter { 0.0 } else { radius * cos };
         [side * (half_length + radius * sin), away]
     };
@@ -133,7 +134,8 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     profile
 }
 
-/// The surface that a profile, from pole to pole, sweeps about `x` in so many steps a quarter turn.
+/// Returns the surface of revolution of a profile, from pole to pole, about `x`, with a number of steps per quarter
+/// turn.
 fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
     debug_assert!(profile.len() >= 3, "a profile between two poles");
     let around = 4 * quarter as usize;
@@ -169,13 +171,13 @@ mod tests {
 
     use super::*;
 
-    /// The volume (m³) that a closed surface encloses; negative where it is inside out.
+    /// Returns the volume (m³) that a closed surface encloses; negative if it is inside out.
     fn volume((points, triangles): &Mesh) -> f64 {
         let corner = |[a, b, c]: &[usize; 3]| points[*a].dot(points[*b].cross(points[*c])) / 6.0;
         triangles.iter().map(corner).sum()
     }
 
-    /// Every edge of a closed surface belongs to two triangles, which go along it in opposite directions.
+    /// Returns `true` if every edge of a surface belongs to two triangles, with opposite directions.
     fn is_closed((_, triangles): &Mesh) -> bool {
         let mut edges: Vec<(usize, usize)> =
             triangles.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]).collect();

@@ -1,18 +1,18 @@
-//! What bodies in space mean, and the ground on which they stand.
+//! Descriptions of the bodies in space, and the ground.
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{
     Body, BodyId, Motion, Placed, Pose, Quaternion, Rotation3, Solid, Spatial, Vec3,
 };
 
-/// What a body in space means.
+/// Description of a body in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The name in results, that of the body: level, column, and row where there are several.
+    /// Name in results, equal to that of the body: level, column, and row if there are several.
     pub name: String,
-    /// What it is.
+    /// Kind of the body.
     pub kind: PartKind,
-    /// Level, 1 at the bottom; 0 for what belongs to no stack.
+    /// Level, 1 at the bottom; 0 for a body that belongs to no stack.
     pub level: u32,
     /// Column, 1 at the left: of barrels, or of racks for a rack.
     pub column: u32,
@@ -22,28 +22,27 @@ pub struct Part {
     pub carrier: Option<BodyId>,
     /// For a rack above the first level, the barrels it lies on.
     pub supports: Vec<BodyId>,
-    /// A length (m) that tells the size of the body: for a barrel the radius above the beams, for a rack
-    /// half its width.
+    /// Characteristic size (m) of the body: for a barrel the radius above the beams, for a rack half its width.
     pub size: f64,
-    /// Volume (m³) of the wine in a barrel; 0 for all else.
+    /// Volume (m³) of the wine in a barrel; 0 for all other bodies.
     pub wine: f64,
-    /// Of a rack which of its tubes lie on which of what is below, and carry which of its barrels, by their numbers.
+    /// Seats of the tubes of a rack.
     pub(crate) seats: Seats,
-    /// Lines (m) in the frame of the body that show what of a device is fixed to it.
+    /// Lines (m) in the body frame that show the parts of devices fixed to it.
     pub(crate) lines: Vec<Vec<Vec3>>,
 }
 
-/// Which tubes of a rack bear what.
+/// Seats of the tubes of a rack.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seats {
     /// For every tube the barrel that it carries.
     pub(crate) carries: Vec<Option<BodyId>>,
-    /// For every tube whether it lies on what is below, and on which barrels if these are some.
+    /// For every tube the barrels on which it lies; empty on the ground, `None` if it bears on nothing.
     pub(crate) lies_on: Vec<Option<Vec<BodyId>>>,
 }
 
 impl Part {
-    /// What belongs to no stack.
+    /// Creates a part that belongs to no stack.
     pub(crate) fn alone(name: &str, kind: PartKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -61,7 +60,7 @@ impl Part {
     }
 }
 
-/// The ground: all below a level plane through the origin.
+/// Returns the ground: everything below a horizontal plane through the origin.
 pub(crate) fn ground() -> Body<Spatial> {
     let floor = Placed {
         surface: Solid::HalfSpace,
@@ -69,7 +68,7 @@ pub(crate) fn ground() -> Body<Spatial> {
         rotation: Rotation3::identity(),
     };
     let pose = Pose { position: Vec3::default(), orientation: Quaternion::identity() };
-    // No force moves it, so its mass is of no account.
+    // No force moves it, so its mass is irrelevant.
     let body = Body::free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), pose);
     Body { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
 }

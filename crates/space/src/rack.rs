@@ -8,9 +8,9 @@
 //!          o──────o      two beams, joined        ════╩═╩══════╩═╩════
 //! ```
 //!
-//! The plane across the barrels gives beams, cradles and their heights, that along them the places of the beams;
-//! tubes are as round as high.
-//! What joins the beams is an assumption: two tubes on top of their ends, so that the beams alone lie on what is below.
+//! The plane across the barrels defines beams, cradles and their heights, that along them the positions of the beams;
+//! tubes are as wide as high. The connection of the beams is an assumption: two tubes on top of their ends, so that
+//! only the beams rest on the support.
 
 use barrelstack::assemble::{BAR_RADIUS, TUBE_CORNER};
 use barrelstack::device::Chocks;
@@ -20,28 +20,29 @@ use barrelstack_dynamics::{Quaternion, Rotation3, Vec3, math};
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Which tubes of a rack bear what.
+/// Tubes of a rack, with their functions.
 #[derive(Clone, Debug)]
 pub(crate) struct Tubes {
-    /// The tubes, with masses (kg) that make that of the rack; chocks, which are last, have none.
+    /// The tubes, with masses (kg) that add up to that of the rack; chocks, which are last, have none.
     pub(crate) parts: Vec<Part>,
-    /// The numbers of the beams, which lie on what is below, by the place along the rack of the barrels that they
-    /// carry and lie on.
+    /// Place along the rack of the barrels that a beam carries and lies on, and the index of the beam, which rests on
+    /// the support.
     pub(crate) beams: Vec<(u32, usize)>,
-    /// The numbers of the posts, by the column and the place along the rack of the barrel that they carry.
+    /// Column and place along the rack of a carried barrel, and the index of its post.
     pub(crate) posts: Vec<((u32, u32), usize)>,
 }
 
-/// Heights (m) that rack and barrel make together.
+/// Heights (m) that result from rack and barrel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Heights {
-    /// Of the axis of a carried barrel above the underside of its rack.
+    /// Height of the axis of a carried barrel above the underside of its rack.
     pub(crate) axis: f64,
-    /// Of the underside of a rack above the axis of a barrel on which it lies.
+    /// Height of the underside of a rack above the axis of a barrel on which it lies.
     pub(crate) underside: f64,
 }
 
-/// Radius (m) of the surface that keeps a distance (m) from the stave of a barrel, at a place (m) along its axis.
+/// Returns the radius (m) of the surface at a distance (m) from the stave of a barrel, at a position (m) along its
+/// axis.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;
     (arc * arc - along * along).sqrt() - barrel.stave_offset
@@ -57,8 +58,8 @@ impl Heights {
     }
 }
 
-/// The tubes of a rack whose barrels lie `apart` (m) one behind the other, last its chocks; none where its cradle is
-/// no pair of supports.
+/// Returns the tubes of a rack whose barrels lie `apart` (m) one behind the other, its chocks last; `None` if its
+/// cradle is not a pair of supports.
 pub(crate) fn tubes(
     rack: &Rack,
     barrel: &Barrel,
@@ -67,13 +68,13 @@ pub(crate) fn tubes(
 ) -> Option<Tubes> {
     let Cradle::Supports { angle } = rack.cradle else { return None };
     let beam = 0.5 * rack.beam_height;
-    // The line on which a beam bears ends where the corner of its plane begins.
+    // The bearing line of a beam ends where the corner of its plane begins.
     let half = 0.5 * rack.width - TUBE_CORNER;
     let heights = Heights::of(rack, barrel);
     let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
     let (mut beams, mut posts) = (Vec::new(), Vec::new());
     let (mut list, mut horns) = (Vec::new(), Vec::new());
-    // What stands on a beam beside a barrel and ends at an angle and a distance from it.
+    // A tube on a beam beside a barrel that ends at an angle and a distance from it.
     let beside = |[place, y]: [f64; 2], side: f64, angle: f64, gap: f64| {
         let (sin, cos) = math::sin_cos(angle);
         let away = around(barrel, BAR_RADIUS + gap, rack.rail_half_spacing);
@@ -103,21 +104,21 @@ pub(crate) fn tubes(
         let at = Vec3::new(side * half, 0.0, rack.beam_height);
         list.push(Tube::along_y(reach, BAR_RADIUS, at));
     }
-    // Tubes of one wall: mass goes with length and girth.
+    // Tubes have one wall thickness: mass is proportional to length and circumference.
     let weight = |tube: &Tube| (2.0 * tube.half_length + tube.radius) * tube.radius;
     let whole: f64 = list.iter().map(weight).sum();
     let weighs = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole));
-    // What a rack weighs, it weighs without chocks.
+    // The mass of a rack does not include its chocks.
     let parts = weighs.chain(horns.iter().map(|horn| horn.part(0.0))).collect();
     Some(Tubes { parts, beams, posts })
 }
 
-/// How far (m) the outermost beams of a rack lie from its middle, along the barrels.
+/// Returns the distance (m) of the outermost beams of a rack from its middle, along the barrels.
 pub(crate) fn reach_along(rack: &Rack, apart: f64) -> f64 {
     0.5 * f64::from(rack.barrels_deep - 1) * apart + rack.rail_half_spacing
 }
 
-/// A tube at its place.
+/// A tube in place.
 struct Tube {
     half_length: f64,
     radius: f64,
@@ -146,7 +147,7 @@ impl Tube {
     }
 }
 
-/// The turn of what lies along the barrels.
+/// Returns the rotation of bodies that lie along the barrels.
 pub(crate) fn along_barrels() -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, 0.0, FRAC_PI_2))
 }

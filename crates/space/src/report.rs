@@ -1,4 +1,4 @@
-//! The page of a run in space: its verdict, three views that move together, moments, numbers.
+//! Report of a run in space: verdict, three synchronized views, moments, numbers.
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend};
@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
 
-/// The whole report of an answer as a document, free of any output format.
+/// Returns the whole report of an answer as a document, independent of the output format.
 pub fn document(answer: &Answer) -> Document {
     let Answer { run, summary, .. } = answer;
     let scenes = Sight::ALL.map(|sight| (sight, scene(run, sight)));
@@ -65,7 +65,7 @@ pub fn document(answer: &Answer) -> Document {
         .rows
         .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
     blocks.push(Block::Table(numbers));
-    // Numbers of a run that broke down look like results and are none.
+    // Numbers of a run that broke down look like results but are invalid.
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("What became of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
@@ -107,7 +107,7 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// What all variants say, as a table.
+/// Returns the statistics of all variants as a table.
 fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
@@ -188,7 +188,7 @@ fn fates(run: &Run) -> Table {
     )
 }
 
-/// What became of the bodies of a free scene.
+/// Returns the fates of the bodies of a free scene.
 fn ends(summary: &Summary) -> Table {
     let measured = |value: f64| Cell::Measured(value, 4);
     let length = |[x, y, z]: [f64; 3]| measured((x * x + y * y + z * z).sqrt());

@@ -1,5 +1,5 @@
-//! Rest in space, as in the plane: the ground is still, or calm where the stack has collapsed, and nothing moves fast
-//! enough to change what became of the stack.
+//! Rest criterion in space, as in the plane: the ground is still, or calm after a collapse, and no motion is fast
+//! enough to change the outcome.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::{Scenario, Until};
@@ -9,15 +9,15 @@ use barrelstack_dynamics::{BodyId, Linear as _, Space as _, Spatial, State, Vec3
 use crate::ground::Ground;
 use crate::stack::Stack;
 
-/// Follows all bodies until they rest.
+/// Detects rest of all bodies.
 pub(crate) struct Rest<'a> {
     stack: &'a Stack,
-    /// From when on (s) the ground is still, and calm; infinite where the run does not end by rest.
+    /// Times (s) from which the ground is still, and calm; infinite if the run does not end by rest.
     still_from: f64,
     calm_from: f64,
     /// Largest kinetic energy of a body at rest over its mass (m²/s²).
     slow: f64,
-    /// When (s) something moved last.
+    /// Time (s) of the last motion.
     moved: f64,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// Looks at an accepted state, and whether the stack has collapsed; whether all have come to rest.
+    /// Records an accepted state, and whether the stack has collapsed; returns `true` if all have come to rest.
     pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
         let from = if collapsed { self.calm_from } else { self.still_from };
         let moves = state.time < from
@@ -57,7 +57,7 @@ impl<'a> Rest<'a> {
         self.slow < 0.5 * velocity.dot(velocity) + turning / of.mass
     }
 
-    /// Whether a body is a barrel on the floor that reaches nothing any more.
+    /// Returns `true` if a body is a barrel on the floor that reaches nothing any more.
     fn rolls_away(&self, state: &State<Spatial>, own: BodyId) -> bool {
         let part = &self.stack.parts[own];
         if part.kind != PartKind::Barrel {

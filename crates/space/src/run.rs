@@ -1,4 +1,4 @@
-//! One run in space: scenario in, what was seen out.
+//! One run of a scenario in space, and its result.
 
 use std::ops::ControlFlow;
 
@@ -29,67 +29,67 @@ use crate::stack::Stack;
 pub struct Standing {
     /// The stack.
     pub stack: Stack,
-    /// Where it came to rest.
+    /// The state at rest.
     pub state: State<Spatial>,
-    /// The forces there.
+    /// The forces at rest.
     pub scratch: Scratch<Spatial>,
-    /// How equilibrium was found; none where the scenario starts without.
+    /// Result of settling; `None` where the scenario starts without.
     pub settled: Option<Settled>,
 }
 
-/// Where all bodies were and how they moved, at moments of a run.
+/// Poses and twists of all bodies at the frames of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
-    /// The moments (s).
+    /// Times (s).
     pub times: Vec<f64>,
-    /// For each of them and every body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    /// For every frame and body, position (m) and quaternion `w`, `x`, `y`, `z`.
     pub poses: Vec<Vec<[f64; 7]>>,
-    /// For each of them and every body, velocity of its center of mass (m/s) and spin (rad/s).
+    /// For every frame and body, velocity of its center of mass (m/s) and spin (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
-/// Everything that was seen of a run.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What was run.
+    /// The scenario of the run.
     pub scenario: Scenario,
-    /// What stood there.
+    /// The stack.
     pub stack: Stack,
-    /// What shook it.
+    /// The ground motion.
     pub ground: Ground,
-    /// What happened.
+    /// The outcome.
     pub outcome: Outcome,
     /// The direction in which the first body left its seat.
     pub heading: Option<Heading>,
-    /// What became of every body, in the order of the parts.
+    /// Fates of all bodies, in the order of the parts.
     pub fates: Vec<Fate>,
-    /// When (s) the first barrel had fallen.
+    /// Time (s) at which the first barrel had fallen.
     pub first_fall: Option<f64>,
-    /// What became of every element of the devices, in the order of the model.
+    /// Fates of all elements of the devices, in the order of the model.
     pub elements: Vec<ElementFate>,
-    /// What the seats bore.
+    /// Forces of the seats.
     pub seats: Seats,
-    /// Where all bodies were.
+    /// Recorded frames.
     pub frames: Frames,
-    /// Where all bodies are at the end, and how they move.
+    /// The final state.
     pub last: State<Spatial>,
-    /// The energy books at the end; none where numbers were lost.
+    /// Energy balance at the end; `None` if numbers were lost.
     pub energy: Option<EnergySummary>,
-    /// How equilibrium was found; none where the scenario starts without.
+    /// Result of settling; `None` where the scenario starts without.
     pub settled: Option<Settled>,
-    /// How it was integrated.
+    /// Integration settings.
     pub simulation: Simulation,
-    /// What was done.
+    /// Work counters.
     pub work: Work,
     /// Time (s) that the run reached.
     pub end_time: f64,
-    /// Why it ended.
+    /// Reason for its end.
     pub ending: Ending,
-    /// What the reader of the result should know, one sentence each.
+    /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Builds the stack of a scenario and lets it come to rest.
+/// Builds the stack of a scenario and settles it.
 ///
 /// ```
 /// use barrelstack::Scenario;
@@ -102,7 +102,7 @@ pub struct Run {
 /// ```
 ///
 /// # Errors
-/// When it cannot be built, or does not stand.
+/// If it cannot be built, or does not stand.
 pub fn stand(scenario: &Scenario) -> Result<Standing, RunFailure> {
     at_rest(scenario, Stack::of(scenario)?)
 }
@@ -120,19 +120,19 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
         settled = Some(rest(&stack, &mut state, &mut scratch)?);
     }
     let strained = stack.fasten(&mut state).map_err(AssembleError::from)?;
-    // What bears something from the start presses the stack together.
+    // Elements under load press the stack together.
     if let Some(before) = settled.filter(|_| strained) {
         let found = rest(&stack, &mut state, &mut scratch)?;
         settled = Some(Settled { steps: before.steps + found.steps, ..found });
     }
     if stack.is_free() {
-        // Equilibrium is that of the places; what the scenario sets in motion starts from there.
+        // Settling solves for positions only; initial velocities of the scenario apply from here.
         state.twists = stack.model.bodies().iter().map(|body| body.twist).collect();
     }
     Ok(Standing { stack, state, scratch, settled })
 }
 
-/// Refuses bodies that stand in each other before anything has moved.
+/// Rejects bodies that overlap before anything has moved.
 fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
     let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -156,13 +156,13 @@ fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), Assemb
 /// ```
 ///
 /// # Errors
-/// When the motion cannot be read, the stack cannot be built in space, or it does not stand.
+/// If the motion cannot be read, the stack cannot be built in space, or it does not stand.
 pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
     let ground = Ground::of(scenario)?;
     run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
 }
 
-/// When (s) a run ends at the latest; refuses one that would not end in a day, or not fit into memory.
+/// Returns the latest end (s) of a run; rejects one that would not end in a day, or not fit into memory.
 pub(crate) fn affordable(
     scenario: &Scenario,
     stack: &Stack,
@@ -170,17 +170,17 @@ pub(crate) fn affordable(
 ) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
-    // A frame holds the place, the quaternion, the velocity and the spin of every body.
+    // A frame has position, quaternion, velocity and spin of every body.
     let frames = end_time * scenario.record.frame_rate + 1.0;
     check_kept((frames, stack.parts.len(), 13), (0.0, 0))?;
     Ok(end_time)
 }
 
-/// Runs a scenario in space on a given ground before an observer, who is told how far the run is at least every
-/// 0.05 s of simulated time and may stop it; what was seen until then is returned.
+/// Runs a scenario in space on a given ground with an observer, which receives the progress at least every 0.05 s of
+/// simulated time and may stop it; the results until then are returned.
 ///
 /// # Errors
-/// When the stack cannot be built in space, or does not stand.
+/// If the stack cannot be built in space, or does not stand.
 pub fn run_on(
     scenario: &Scenario,
     ground: Ground,
@@ -244,7 +244,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Every element of a device with its words and what became of it.
+    /// Returns every element of a device with its words and its fate.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
@@ -252,25 +252,25 @@ impl Run {
         elements.zip(self.stack.devices.iter().copied()).zip(&self.elements)
     }
 
-    /// Barrels that fell, in order.
+    /// Returns the barrels that fell, in order.
     pub fn fallen(&self) -> impl Iterator<Item = BodyId> + '_ {
         let fell = |body: &BodyId| self.fates[*body].fell_at.is_some();
         self.stack.of_kind(PartKind::Barrel).filter(fell)
     }
 
-    /// Where a fallen barrel came to lie, seen from where it stood.
+    /// Returns the direction of the final position of each fallen barrel from its place at rest.
     pub fn debris(&self) -> impl Iterator<Item = Heading> + '_ {
         self.fallen().map(|body| Heading::of(self.fates[body].moved))
     }
 }
 
-/// Share of its reach along the barrels that a rack has walked before it tilts, from which on it has slid: a convention.
+/// Walk of a rack along the barrels before it tilts, over its reach, above which it counts as sliding: a convention.
 const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 
-/// Judges as in the plane, by the first body that left its seat, but for what slides.
+/// Judges as in the plane, by the first body that left its seat, except for sliding.
 ///
-/// A rack slides off along the barrels where its beam has passed their ends, or tilts that way after more than half of
-/// its reach: a round beam comes down over the chime before its middle has passed it.
+/// A rack slides off along the barrels if its beam has passed their ends, or if it tilts in that direction after more
+/// than half of its reach: a round beam comes down over the chime before its middle has passed it.
 fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };
@@ -287,10 +287,10 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     collapse(time, (&part.name, part.kind, part.level), slid, stack.levels)
 }
 
-/// Most steps between two questions whether to stop.
+/// Maximum number of steps between two polls whether to stop.
 const PATIENCE: u32 = 16;
 
-/// Everything that watches a run.
+/// Combined observer of a run.
 struct Watch<'a> {
     fates: Fates<'a>,
     elements: ElementFates,
@@ -299,10 +299,10 @@ struct Watch<'a> {
     frames: Frames,
     /// Time (s) between two frames.
     every: f64,
-    /// How long (s) it goes on after a collapse.
+    /// Duration (s) of the run after a collapse.
     after_collapse: f64,
     next_look: f64,
-    /// Steps since the last look.
+    /// Number of steps since the last callback.
     steps: u32,
     observer: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
     end_time: f64,
@@ -317,7 +317,7 @@ impl Observer<Spatial> for Watch<'_> {
         scratch: &Scratch<Spatial>,
         _: &EnergyLedger<Spatial>,
     ) -> ControlFlow<()> {
-        // Until the first loss of seat, the state in which it is found included.
+        // The state in which the first loss of seat is found still counts as standing.
         let standing = self.fates.collapse().is_none();
         self.fates.observe(state, scratch);
         self.elements.observe(state, standing, scratch);

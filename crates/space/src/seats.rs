@@ -1,4 +1,4 @@
-//! What seats bear in space, and how hard their contacts press: at rest, and at their largest.
+//! Forces of seats in space, and of their contacts: at rest, and at their largest.
 
 use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
@@ -6,14 +6,14 @@ use barrelstack_dynamics::{BodyId, Scratch, Spatial, Vec2, Vec3};
 
 use crate::stack::Stack;
 
-/// How hard one contact element has pressed.
+/// Normal force of one contact element.
 #[derive(Clone, Copy, Debug, Default)]
 struct Press {
-    /// At rest (N).
+    /// Force at rest (N).
     at_rest: f64,
-    /// At its largest until the first loss of seat (N).
+    /// Largest force until the first loss of seat (N).
     peak: f64,
-    /// At its largest over the whole run (N).
+    /// Largest force over the whole run (N).
     peak_whole_run: f64,
 }
 
@@ -26,27 +26,27 @@ impl Press {
     }
 }
 
-/// Follows both through a run; sees every step.
+/// Follows the forces of joints and contacts of a run; needs every accepted step.
 #[derive(Clone, Debug)]
 pub struct Seats {
-    /// Every barrel on its rack, every rack on what is below it, and other bodies that have met; horizontal forces are
-    /// without direction.
+    /// Every barrel on its rack, every rack on its supports, and other bodies that have met; horizontal forces are
+    /// magnitudes.
     pub joints: Joints,
-    /// The forces (N) on the upper bodies of the joints in the step at hand.
+    /// The forces (N) on the upper bodies of the joints in the current step.
     forces: Vec<Vec3>,
     /// One for every contact element of every pair, pair after pair.
     presses: Vec<Press>,
-    /// In the order of the model; none in a free scene.
+    /// In the order of the model; empty for a free scene.
     pairs: Vec<Pair>,
 }
 
-/// What is known of a contact pair.
+/// Bookkeeping of a contact pair.
 #[derive(Clone, Debug)]
 struct Pair {
     bodies: [BodyId; 2],
-    /// The number of its first contact element.
+    /// Index of its first contact element.
     first: usize,
-    /// The number of its joint, once its bodies have met, and whether the contactor is the upper body.
+    /// Index of its joint, once its bodies have met, and `true` if the contactor is the upper body.
     joint: Option<(usize, bool)>,
 }
 
@@ -57,7 +57,7 @@ impl Seats {
         let below = below.map(|part| leans_on(part.kind, part.carrier, &part.supports));
         let joints = Joints::between(below, !stack.is_free());
         let (mut pairs, mut count) = (Vec::new(), 0);
-        // Nothing in a free scene has a seat, and its pairs may be more than can be listed.
+        // A free scene has no seats, and may have too many pairs to list.
         for pair in stack.model.pairs().take_while(|_| !stack.is_free()) {
             pairs.push(Pair { bodies: [pair.contactor, pair.target], first: count, joint: None });
             count += stack.model.bodies()[pair.contactor].nodes[pair.nodes].count();
@@ -74,7 +74,7 @@ impl Seats {
         seats
     }
 
-    /// Looks at an accepted step at a time (s), of a stack that had lost no seat before it or had.
+    /// Records an accepted step at a time (s); `stands` is `true` if no seat had been lost before it.
     pub fn observe(&mut self, time: f64, stands: bool, scratch: &Scratch<Spatial>) {
         if self.pairs.is_empty() {
             return;
@@ -102,28 +102,28 @@ impl Seats {
         }
     }
 
-    /// The joints of a stack with their names, such as "R1 on ground".
+    /// Returns the joints of a stack with their names, such as "R1 on ground".
     pub fn named(&self, stack: &Stack) -> impl Iterator<Item = (String, &Joint)> {
         let named = move |joint: &Joint| joint.named(|body| &stack.parts[body].name);
         self.joints.listed().into_iter().map(move |joint| (named(joint), joint))
     }
 
-    /// The contact elements of a body.
+    /// Returns the contact elements of a body.
     fn of(&self, body: BodyId) -> impl Iterator<Item = &Press> {
         let ends = self.pairs.iter().skip(1).map(|pair| pair.first).chain([self.presses.len()]);
         let own = self.pairs.iter().zip(ends).filter(move |(pair, _)| pair.bodies.contains(&body));
         own.flat_map(|(pair, end)| &self.presses[pair.first..end])
     }
 
-    /// Largest contact force on a body in a span of the run over the largest at rest: as every element stands for the
-    /// same length of boundary, that of stresses; none where nothing pressed at rest.
+    /// Returns the largest contact force on a body in a span of the run over the largest at rest, which equals that
+    /// of stresses, since every element has the same tributary length; `None` without load at rest.
     pub fn amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let most = |of: &dyn Fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
         let at_rest = most(&|press| press.at_rest);
         (at_rest > 0.0).then(|| most(&|press| press.peak_in(span)) / at_rest)
     }
 
-    /// The same of the sums over the elements that press at rest.
+    /// Returns the ratio of the sums over the elements loaded at rest, likewise.
     pub fn mean_amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let sum = |of: &dyn Fn(&Press) -> f64| {
             self.of(body).filter(|press| press.at_rest > 0.0).map(of).sum::<f64>()

@@ -1,4 +1,4 @@
-//! From a scenario to a stack that can move in space.
+//! Assembles the stack of a scenario in space.
 
 use std::collections::BTreeMap;
 
@@ -18,11 +18,11 @@ use crate::rack::Heights;
 /// A stack in space, or the bodies of a free scene there.
 #[derive(Clone, Debug)]
 pub struct Stack {
-    /// What moves.
+    /// The model.
     pub model: Model<Spatial>,
     /// One part for every body, in the same order; the ground comes first.
     pub parts: Vec<Part>,
-    /// The time step (s), the shorter of those of the same stack across its barrels and along them; impacts divide it.
+    /// Time step (s), the smaller of those of the same stack across its barrels and along them; impacts divide it.
     pub step: f64,
     /// Height (m) from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
@@ -30,32 +30,32 @@ pub struct Stack {
     pub levels: u32,
     /// Radius (m) of a barrel at its widest, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
-    /// How far (m) a rack may move on the barrels below, across and along them, before nothing holds it there, as in
-    /// the plane of each.
+    /// Displacement (m) of a rack on the barrels below, across and along them, beyond which it is no longer
+    /// supported, as in the plane of each.
     pub reach: [f64; 2],
     /// Vertical force (N) that the staves of a barrel bear between its racks; zero for a free scene.
     pub stave_capacity: f64,
-    /// Elements of devices that are not fit yet: that is done on the stack at rest.
+    /// Elements of devices that are fitted once the stack is at rest.
     pub(crate) loose: Vec<Loose>,
-    /// What is said of the device of every element of the model.
+    /// The device of every element of the model.
     pub(crate) devices: Vec<&'static Words>,
 }
 
 impl Stack {
-    /// The body that the motion moves.
+    /// The body driven by the ground motion.
     pub const GROUND: BodyId = 0;
 
-    /// Whether it is a free scene, in which nothing has a seat.
+    /// Returns `true` if it is a free scene, which has no seats.
     pub fn is_free(&self) -> bool {
         self.levels == 0
     }
 
-    /// Bodies of a kind, in order.
+    /// Returns the bodies of a kind, in order.
     pub fn of_kind(&self, kind: PartKind) -> impl Iterator<Item = BodyId> + '_ {
         self.parts.iter().enumerate().filter(move |(_, part)| part.kind == kind).map(|(i, _)| i)
     }
 
-    /// Builds the stack of a scenario, or its free scene, not yet at rest.
+    /// Builds the stack of a scenario, or its free scene, without settling it.
     ///
     /// ```
     /// use barrelstack::Scenario;
@@ -69,7 +69,7 @@ impl Stack {
     /// ```
     ///
     /// # Errors
-    /// When something that the scenario asks for is not known in space, with its field, or the stack cannot be built.
+    /// If the scenario has a feature that is not supported in space, with its field, or the stack cannot be built.
     pub fn of(scenario: &Scenario) -> Result<Self, RunFailure> {
         if let Scene::Spatial(scene) = &scenario.scene {
             return crate::free::assemble(scenario, scene);
@@ -109,7 +109,7 @@ impl Stack {
     }
 }
 
-/// The stack of a scenario that looks at one in space.
+/// Returns the stack of a scenario that has one in space.
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
@@ -122,7 +122,7 @@ fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     }
 }
 
-/// The scenario with its stack as a plane shows it.
+/// Returns the scenario with its stack as a plane shows it.
 pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     let mut plane = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut plane.scene {
@@ -131,21 +131,21 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     plane
 }
 
-/// What is fast in space, where barrels hit the floor on their rims and light racks are thrown about on their own
+/// Fast contacts in space, where barrels hit the floor on their rims and light racks are thrown about on their own
 /// barrels.
 const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 
-/// How a stack is stepped, and how far its racks may slide: as in its planes.
+/// Time stepping of a stack, and reach of its racks: as in its planes.
 struct Pace {
     /// The time step (s).
     step: f64,
-    /// By how much impacts divide it.
+    /// Number of substeps during impacts.
     substeps: f64,
-    /// How deep (m) the contacts of a law, by its name, are followed with whole steps.
+    /// Penetration (m) that whole steps resolve, by the name of the law.
     depths: BTreeMap<String, f64>,
     /// [`Substepping::resting_allowance`], the smaller one of the planes.
     resting_allowance: f64,
-    /// How far (m) a rack may move on the barrels below, across and along them.
+    /// Reach (m) of a rack on the barrels below, across and along them.
     reach: [f64; 2],
 }
 
@@ -161,11 +161,11 @@ impl Pace {
                 let own = time_step(&cut, &plane)?;
                 let divided = plane.model.substepping();
                 step = step.min(own);
-                // Impacts are as short as in that of the planes which divides its steps the most.
+                // Substeps are as short as in the plane that divides its steps the most.
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // The planes number their laws otherwise where one shows several seats as one.
+                // The planes number their laws differently where one shows several seats as one.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);
@@ -178,7 +178,7 @@ impl Pace {
         Ok(Self { step, substeps, depths, resting_allowance, reach })
     }
 
-    /// When impacts divide the steps of a model with some laws, and by how much.
+    /// Returns the substepping of a model with given laws.
     fn substepping(&self, laws: &[Interface<Spatial>]) -> Substepping<f64> {
         let depth = |law: &Interface<Spatial>| self.depths.get(&law.name).copied();
         let depths = laws.iter().map(|law| depth(law).unwrap_or(f64::INFINITY));
@@ -191,8 +191,8 @@ impl Pace {
     }
 }
 
-/// The planes that are cut through a stack, each with the bodies that differ in it: across the barrels through every
-/// row, along them through every column.
+/// Returns the plane sections of a stack, each with its own overrides: across the barrels through every row, along
+/// them through every column.
 fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
     let rack = &spec.rack;
     let (count, per_rack) = match view {

@@ -1,4 +1,4 @@
-//! The time step of a free scene in space: from its contacts and its spins.
+//! Time step of a free scene in space, from its contacts and its spins.
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{Method, Scenario};
@@ -6,22 +6,22 @@ use barrelstack::step::round_down;
 use barrelstack_dynamics::solid::Hull;
 use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
 
-/// Share of the critical time step that is taken, as in the plane.
+/// Fraction of the critical time step, as in the plane.
 const SHARE: f64 = 0.3;
 
-/// Share of the time in which dampers stop a body, as in the plane.
+/// Fraction of the time in which dampers stop a body, as in the plane.
 const DAMPING_SHARE: f64 = 0.33;
 
-/// Penetration (m) at which laws that stiffen with penetration are measured, as in the plane.
+/// Penetration (m) at which nonlinear laws are linearized, as in the plane.
 const REFERENCE: f64 = 0.01;
 
-/// Longest step (s) where nothing asks for a shorter one.
+/// Maximum step (s) if nothing requires a shorter one.
 const LONGEST: f64 = 1e-3;
 
-/// Largest turn (rad) in a step of what spins from the start: a tumbling block keeps its energy to 3e-9 by it.
+/// Maximum rotation (rad) per step of bodies with an initial spin: a tumbling block then keeps its energy to 3e-9.
 const TURN: f64 = 5e-3;
 
-/// The step (s) that a scenario asks for, or the one that its contacts and spins suggest.
+/// Returns the step (s) that a scenario sets, or the one that its contacts and spins suggest.
 pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f64, RunFailure> {
     let rate = fastest(model, |pair| {
         let law = &model.interfaces()[pair.interface];
@@ -49,10 +49,10 @@ fn adapts(method: Method) -> bool {
     matches!(method, Method::BogackiShampine { .. })
 }
 
-/// The largest rate that a constant of the contacts of a pair gives a free body: it is moved, and turned by the
+/// Returns the largest rate due to a constant of the contacts of a pair on a free body, in translation and with the
 /// longest lever.
 ///
-/// A body is held from below and above, so each counts twice.
+/// A body may be held from below and above, so each counts twice.
 fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
     let mut most = 0.0_f64;
     for pair in model.pairs() {
@@ -65,7 +65,7 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     most
 }
 
-/// How many contacts of a solid bear at a time.
+/// Returns the number of contacts of a solid that bear at once.
 fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     match nodes {
         Nodes::Whole(whole) => match whole.hull {
@@ -76,7 +76,7 @@ fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     }
 }
 
-/// Square of the longest lever about a principal axis over the moment of inertia about it (1/kg), where that is most.
+/// Returns the largest ratio, over the principal axes, of the squared longest lever to the moment of inertia (1/kg).
 fn turned(body: &Body<Spatial>) -> f64 {
     let upright = Rotation3::identity();
     let mut most: Vec3 = Vec3::default();
@@ -99,7 +99,7 @@ fn turned(body: &Body<Spatial>) -> f64 {
     x.max(y).max(z)
 }
 
-/// Half the box (m) about a solid.
+/// Returns half the bounding box (m) of a solid.
 fn reach(hull: &Hull) -> Vec3 {
     match hull {
         Hull::Capsule(tube) => Vec3::new(tube.half_length + tube.radius, tube.radius, tube.radius),

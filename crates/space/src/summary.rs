@@ -1,4 +1,4 @@
-//! The summary of a run in space: one JSON document, the same numbers in print.
+//! Summary of a run in space: one JSON document, the same numbers in print.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
@@ -183,12 +183,12 @@ described! {
     }
 }
 
-/// How many cases fall this way first.
+/// Returns the number of cases whose first body falls in a direction.
 fn first(cases: &[Case], way: Heading) -> u32 {
     count(cases, |case| usize::from(case.first == Some(way)))
 }
 
-/// How many fallen barrels of all cases came to lie this way.
+/// Returns the number of fallen barrels of all cases in a direction.
 fn debris(cases: &[Case], way: Heading) -> u32 {
     count(cases, |case| case.debris.iter().filter(|lies| **lies == way).count())
 }
@@ -198,19 +198,19 @@ fn count(cases: &[Case], of: impl Fn(&Case) -> usize) -> u32 {
 }
 
 impl Directions {
-    /// Variants whose first body leaves its seat across the barrels, and along them.
+    /// Returns the number of variants whose first body leaves its seat across the barrels, and along them.
     pub fn first(&self) -> [u32; 2] {
         [self.first_right + self.first_left, self.first_away + self.first_near]
     }
 
-    /// Fallen barrels across the barrels, and along them.
+    /// Returns the number of fallen barrels across the barrels, and along them.
     pub fn debris(&self) -> [u32; 2] {
         [self.debris_right + self.debris_left, self.debris_away + self.debris_near]
     }
 }
 
 impl Summary {
-    /// Sums up a run, of a scenario as it is stated.
+    /// Summarizes a run of a scenario as stated.
     pub fn of(run: &Run, stated: &Scenario) -> Self {
         let sound = !matches!(run.outcome, Outcome::Invalid { .. });
         let motion = |ground: &barrelstack::Ground| ground.motion.as_ref().map(MotionSummary::of);
@@ -224,7 +224,7 @@ impl Summary {
             unfinished: None,
             directions: None,
             outcome: outcome(run, sound),
-            // Numbers of a run that broke down look like results and are none.
+            // Numbers of a run that broke down look like results but are invalid.
             bodies: if sound { bodies(run) } else { Vec::new() },
             demands: demands_in(Span::UntilLoss),
             demands_whole_run: demands_in(Span::WholeRun),
@@ -244,15 +244,15 @@ impl Summary {
         }
     }
 
-    /// The summary as JSON text, indented.
+    /// Returns the summary as indented JSON text.
     pub fn to_json(&self) -> String {
-        // Only maps with keys that are not text could fail, and there is none.
+        // Serialization can only fail for maps with non-text keys, and there are none.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
 
 fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
-    // What had happened until a stop stands with the bodies.
+    // Events before a stop are listed with the bodies.
     let ended = sound && run.outcome != Outcome::Interrupted;
     let mut summary = OutcomeInSpace {
         kind: run.outcome.kind(),
@@ -312,7 +312,7 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
             peak_tilt: (part.kind == PartKind::Rack).then_some(fate.until_loss.tilt),
-            // The ground, which comes first, is left out.
+            // The ground, which comes first, is omitted.
             stress_amplification: run.seats.amplification(at + 1, Span::UntilLoss),
             mean_stress_amplification: run.seats.mean_amplification(at + 1, Span::UntilLoss),
         })

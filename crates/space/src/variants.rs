@@ -1,4 +1,4 @@
-//! A stack in space and its variants: the same draws, shares and words as in a plane, and directions besides.
+//! Variants of a stack in space: the same draws, shares and words as in a plane, and directions.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -21,30 +21,30 @@ use crate::run::{Run, affordable, run_on};
 use crate::stack::Stack;
 use crate::summary::{Directions, Summary};
 
-/// What became of one variant in space.
+/// Result of one variant in space.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What a case of a plane tells, too; without trails.
+    /// Results common with a case of a plane; without trails.
     pub result: CaseResult,
-    /// In which direction the first body left its seat.
+    /// Direction in which the first body left its seat.
     pub first: Option<Heading>,
-    /// Where its fallen barrels came to lie, each seen from where it stood.
+    /// Directions of its fallen barrels, from their places at rest.
     pub debris: Vec<Heading>,
 }
 
-/// What became of a scenario in space.
+/// Result of a scenario in space.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The run that is shown.
     pub run: Run,
-    /// Its summary, with what all variants say.
+    /// Its summary, with the statistics of all variants.
     pub summary: Summary,
-    /// The case as it is stated, and its variants, those that were stopped among them; empty where none were run.
+    /// The case as stated, and its variants, including those that were stopped; empty if none were run.
     pub cases: Vec<Case>,
 }
 
 impl Case {
-    /// Of a run.
+    /// Creates the result of a run.
     pub fn of(run: &Run) -> Self {
         let sound = !matches!(run.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = run.stack.of_kind(PartKind::Barrel).collect();
@@ -85,15 +85,15 @@ impl Case {
         Self { result, first: run.heading, debris: run.debris().collect() }
     }
 
-    /// Of a scenario that could not be run: it collapses where the stack falls under its own weight, and has no verdict
-    /// otherwise.
+    /// Creates the result of a scenario that could not be run: a collapse if the stack falls under its own weight, no
+    /// verdict otherwise.
     pub fn refused(scenario: &Scenario, failure: &RunFailure) -> Self {
         let result = fallen_at_rest(scenario, failure)
             .unwrap_or_else(|| CaseResult::failed(failure.to_string()));
         Self { result, first: None, debris: Vec::new() }
     }
 
-    /// The way of the first body and those of fallen barrels; none without a verdict.
+    /// Returns the directions of the first body and of fallen barrels; `None` without a verdict.
     pub fn ways(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some((self.first, self.debris.as_slice()))
@@ -103,7 +103,7 @@ impl Case {
 fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResult> {
     let RunFailure::Settle(restless) = failure else { return None };
     let levels = scenario.stack().filter(|_| restless.falls())?.levels;
-    // As it was built, before it fell.
+    // As built, before it fell.
     let stack = Stack::of(scenario).ok()?;
     let name = restless.error.body.as_str();
     let first = stack.parts.iter().find(|part| part.name == name);
@@ -117,7 +117,7 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
-/// The demands in a span of the run: displacements are horizontal, whatever their direction.
+/// Returns the demands in a span of the run: displacements are horizontal, in any direction.
 pub fn demands(run: &Run, span: Span) -> Demands {
     let Run { stack, fates, seats, .. } = run;
     let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
@@ -156,20 +156,20 @@ pub fn demands(run: &Run, span: Span) -> Demands {
     }
 }
 
-/// Runs the case as it is stated and all its variants on all cores, before an observer, who hears how many of how many
-/// are done, and may stop them; those that were not done then are interrupted.
+/// Runs the case as stated and all its variants on all cores; the observer receives the number of finished cases and
+/// the total, and may stop them. Unfinished cases are returned as interrupted.
 ///
-/// The first is the case as it is stated, those after it the variants by their numbers.
-/// All stand as the scenario turns the stack: in space no component has to be taken for another.
+/// The first result is the case as stated, followed by the variants by number. All keep the azimuth of the scenario:
+/// in space no components are exchanged.
 ///
 /// # Errors
-/// When the motion cannot be read, or the stack as it is stated cannot be built or does not stand.
+/// If the motion cannot be read, or the stack as stated cannot be built or does not stand.
 pub fn run_all(
     scenario: &Scenario,
     observer: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Case>, RunFailure> {
     let plane = plane(scenario)?;
-    // What cannot be run is told before the work.
+    // Fail early: validate motion, stack and memory before running variants.
     let ground = Ground::of(&plane.scenario)?;
     affordable(&plane.scenario, &Stack::of(&plane.scenario)?, &ground)?;
     let numbers = plane.numbers();
@@ -204,17 +204,17 @@ pub fn run_all(
     Ok(pool::map(&numbers, work, &|_| ()))
 }
 
-/// The scenario with its records at hand, whose variants are those of space.
+/// Returns the scenario with its records in memory, with the variants of space.
 fn plane(scenario: &Scenario) -> Result<Plane, RunFailure> {
     let mut all = planes(scenario)?;
     Ok(all.swap_remove(0))
 }
 
-/// Runs all variants of a scenario in space and then, with everything that can be seen, the run to be shown, before
-/// an observer, who may stop it: what was seen until then is returned.
+/// Runs all variants of a scenario in space and then the run to be shown, with all results. The observer may stop it;
+/// the results until then are returned.
 ///
 /// # Errors
-/// As [`run_all`], and when the run that is shown cannot be built or does not stand.
+/// As [`run_all`], and if the run that is shown cannot be built or does not stand.
 pub fn answer(
     scenario: &Scenario,
     asked: Asked,
@@ -225,7 +225,7 @@ pub fn answer(
     let observer = Mutex::new(observer);
     let tell = |reached: Advance| match observer.lock() {
         Ok(mut observer) => observer(reached),
-        // Another thread has panicked; this work is of no use any more.
+        // Another thread has panicked; this work is no longer needed.
         Err(_) => ControlFlow::Break(()),
     };
     let varied = !matches!(asked, Asked::Alone(_)) && plane.count() > 0;

@@ -1,4 +1,4 @@
-//! What is said of a stack in space, in sentences: those of a plane, and directions besides.
+//! Sentences about a stack in space: those of a plane, and directions.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::Outcome;
@@ -12,10 +12,10 @@ use crate::fate::Heading;
 use crate::run::Run;
 use crate::summary::Summary;
 
-/// The answer in one sentence.
+/// Returns the answer in one sentence.
 pub fn headline(run: &Run, summary: &Summary) -> String {
     if let Some(spread) = &summary.ensemble {
-        // A single spread is told without its plane.
+        // With a single spread the sentence does not name the plane.
         return of_variants(&[(View::Transverse, spread)]);
     }
     let barrels = summary.outcome.barrels;
@@ -39,7 +39,7 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// The kind of the verdict.
+/// Returns the kind of the verdict.
 pub fn tone(run: &Run, summary: &Summary) -> Tone {
     if let Some(spread) = &summary.ensemble {
         return of_spread(&[(View::Transverse, spread)]);
@@ -52,7 +52,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// What a direction is, behind a verb.
+/// Returns the words for a direction after a verb.
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
@@ -62,7 +62,7 @@ pub fn toward(heading: Heading) -> &'static str {
     }
 }
 
-/// How a body leaves its seat.
+/// Returns the words for a loss of seat.
 pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     match loss {
         Loss::Displaced => format!("{name} leaves its cradle"),
@@ -72,7 +72,7 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     }
 }
 
-/// The sentences that back the headline.
+/// Returns the sentences that support the headline.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(directions) = &summary.directions {
@@ -106,10 +106,10 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     sentences
 }
 
-/// Most bodies of a free scene that are told one by one; files tell all.
+/// Maximum number of bodies of a free scene listed individually in the console; files list all.
 const MOST_TOLD: usize = 10;
 
-/// The demands that are told in print; the page tells all.
+/// Demands shown in the console; the page shows all.
 const TOLD: [&str; 5] = [
     "top_drift_ratio",
     "stress_amplification",
@@ -118,7 +118,7 @@ const TOLD: [&str; 5] = [
     "rack_walk_peak",
 ];
 
-/// The rows of the summary for people: name and value.
+/// Returns the rows of the summary for people: name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));

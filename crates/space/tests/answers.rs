@@ -1,4 +1,4 @@
-//! Devices and seats in space against their closed forms, across the barrels, along them and askew.
+//! Devices and seats in space against their closed forms, across the barrels, along them and at an angle.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -20,27 +20,28 @@ const RACK: f64 = 400.0;
 /// Angle (degrees) of the supports of a cradle.
 const CRADLE: f64 = 28.0;
 
-/// A push (g) along the first component for a time (s).
+/// Returns a push (g) along the first component for a time (s).
 fn pulse(amplitude: f64, seconds: f64) -> String {
     format!(
         "[motion.pulse]\nkind = \"rectangular\"\namplitude = \"{amplitude} g\"\nperiod = \"{seconds} s\""
     )
 }
 
-/// A push (g) that grows and fades along the first component within sixteen seconds, so slowly that nothing rings.
+/// Returns a push (g) that grows and fades along the first component within sixteen seconds, too slowly for
+/// vibrations.
 fn growing(amplitude: f64) -> String {
     format!(
         "[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{amplitude} g\"\nperiod = \"16 s\""
     )
 }
 
-/// The largest force (N) in any element.
+/// Returns the largest force (N) in any element.
 fn largest(run: &Run) -> f64 {
     run.elements.iter().map(|element| element.peak.0.abs()).fold(0.0, f64::max)
 }
 
-/// A stack on a rack so wide and so heavy, and on contacts so stiff, that nothing but what the device does gives;
-/// turned so that the push comes at an angle (degrees) from across its barrels toward along them.
+/// Returns a stack on a rack so wide and so heavy, and on contacts so stiff, that only the device deforms; rotated so
+/// that the push comes at an angle (degrees) from across its barrels toward along them.
 fn stack(settings: &[&str], motion: &str, seconds: f64, angle: f64) -> Scenario {
     let text = format!(
         "schema = 1\n[stack]\nview = \"spatial\"\nazimuth = \"{} deg\"\nlevels = 1\ncolumns = 2\n\
@@ -56,7 +57,7 @@ fn stack(settings: &[&str], motion: &str, seconds: f64, angle: f64) -> Scenario 
     Scenario::parse("device.toml", &text, &settings).unwrap()
 }
 
-/// Where a body is (m) over the ground, with the times (s).
+/// Returns the displacements of a body (m) relative to the ground, with the times (s).
 fn ways(run: &Run, name: &str) -> Vec<(f64, Vec3)> {
     let body = run.stack.parts.iter().position(|part| part.name == name).unwrap();
     let at = |pose: &[f64; 7]| Vec3::new(pose[0], pose[1], pose[2]);
@@ -65,7 +66,7 @@ fn ways(run: &Run, name: &str) -> Vec<(f64, Vec3)> {
     frames.map(|(time, poses)| (*time, at(&poses[body]) - at(&poses[0]) - rest)).collect()
 }
 
-/// The period (s) with which a quantity crosses zero after a time (s).
+/// Returns the period (s) of the zero crossings of a quantity after a time (s).
 fn period(ways: &[(f64, f64)], after: f64) -> f64 {
     let crossings: Vec<f64> = ways
         .windows(2)
@@ -76,7 +77,7 @@ fn period(ways: &[(f64, f64)], after: f64) -> f64 {
     2.0 * (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64
 }
 
-/// A value beside the exact one, within a share.
+/// Asserts that a value is within a relative tolerance of the exact one.
 fn near(what: &str, found: f64, exact: f64, share: f64) {
     let off = found / exact - 1.0;
     println!("{what}: {found:.6} for {exact:.6}, {off:e} off");
@@ -98,7 +99,7 @@ fn dishes_swing_as_pendulums_in_every_direction() {
 
 #[test]
 fn a_sheet_slides_as_the_block_of_newmark_whatever_the_direction() {
-    // Against the ground it ends a v/2 (a − μg)/(μg) further back.
+    // Relative to the ground it ends a v/2 (a − μg)/(μg) further back.
     let (push, seconds, friction) = (0.15, 0.4, 0.05);
     let exact = 0.5 * (push - friction) * GRAVITY * seconds * seconds * push / friction;
     let settings =
@@ -117,7 +118,7 @@ fn a_sheet_slides_as_the_block_of_newmark_whatever_the_direction() {
 
 #[test]
 fn stops_of_a_platform_on_springs_hold_it_both_ways() {
-    // Without friction it swings on its springs as one mass, whatever turns it.
+    // Without friction it swings on its springs as one mass, at any rotation.
     let spring = 1e5;
     let aboard = 60.0 + RACK + 2.0 * BARREL;
     let settings = [
@@ -149,7 +150,7 @@ fn a_stack_glides_between_ties_to_walls_on_all_four_sides() {
         "stack.tie.levels=1",
         "stack.tie.slack='0.02 m'",
         "stack.tie.stiffness='40 kN/m'",
-        // So far that a tie does not turn as the stack moves to a side.
+        // So far that the rotation of a tie is negligible as the stack moves sideways.
         "stack.tie.distance='20 m'",
     ];
     for (angle, axis) in [(0.0, Vec3::new(1.0, 0.0, 0.0)), (90.0, Vec3::new(0.0, 1.0, 0.0))] {
@@ -185,7 +186,7 @@ fn a_tuned_mass_splits_the_frequency_of_its_platform_both_ways() {
     let root = (0.25 * sum * sum - whole * own).sqrt();
     for axis in [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)] {
         for square in [0.5 * sum - root, 0.5 * sum + root] {
-            // By itself a mode is seen in what the other one, orthogonal in the masses, does not move.
+            // Each mode is isolated in a quantity that the other one, orthogonal in the masses, does not affect.
             let shape = own / (own - square);
             let mode: Vec<(f64, f64)> = platform
                 .iter()
@@ -221,7 +222,7 @@ fn barrels_sink_into_pads_by_their_weight() {
     let barrelstack::scenario::Scene::Stack { stack: spec, .. } = &scenario.scene else {
         panic!("a stack")
     };
-    // Where a support of 15 mm touches the stave, from the middle of the arc of the stave.
+    // The point where a support of 15 mm touches the stave, from the middle of the arc of the stave.
     let (half, [head, bilge]) =
         (0.5 * spec.barrel.length, [spec.barrel.head_diameter, spec.barrel.bilge_diameter]);
     let rise = 0.5 * (bilge - head);
@@ -275,8 +276,8 @@ fn hooks_and_saddles_bear_what_a_rack_without_friction_is_pushed_with() {
     }
 }
 
-/// What hooks bear over what the rack of the second level is pushed with along the barrels: as it would tip, the tube
-/// ahead bears more than the one behind, on staves that slope away under both.
+/// Returns the force on hooks over the push on the rack of the second level along the barrels: because of the
+/// overturning moment the leading tube bears more than the trailing one, on staves that slope away under both.
 fn on_a_slope(run: &Run) -> f64 {
     let bodies = run.stack.model.bodies();
     let named = |name: &str| bodies.iter().find(|body| body.name == name).unwrap();
@@ -287,7 +288,7 @@ fn on_a_slope(run: &Run) -> f64 {
         panic!("tubes on barrels")
     };
     let place = rack.pose.orientation.matrix().apply(rack.surfaces[0].offset);
-    // Of all that is pushed, over the middles of the tubes.
+    // Of the whole push, above the middles of the tubes.
     let center =
         (RACK * rack.pose.position.z + 2.0 * BARREL * load.pose.position.z) / (RACK + 2.0 * BARREL);
     let height = center - (rack.pose.position.z + place.z);
@@ -310,7 +311,7 @@ fn a_saddle_lets_a_rack_go_along_and_a_hook_lets_it_go_across() {
             "stack.pad.friction=2",
         ];
         let run = run(&stack(&settings, &pulse(0.05, 0.2), 0.6, angle)).unwrap();
-        // It stays behind as the ground goes, on level rounds: v t.
+        // It lags behind the ground, on level rounds: v t.
         let (time, way) = *ways(&run, "R2").last().unwrap();
         let gone = 0.05 * GRAVITY * 0.2 * (time - 0.1);
         println!("{holds}: {} m of {gone} m, {:.1} N", way.length(), largest(&run));
@@ -329,7 +330,7 @@ fn barrels_roll_out_over_chocks_from_the_tangent_of_their_angle() {
         "stack.chock.angle='40 deg'",
         "stack.rack.cradle.angle='20 deg'",
         "interface.barrel-rack.friction.coefficient=0",
-        // As hard as a penalty can be, so that nothing sinks in.
+        // As stiff as a penalty can be, so that penetration is negligible.
         "interface.fallen-barrel-rack.law=hertz",
         "interface.fallen-barrel-rack.stiffness='1e11 N/m^1.5'",
         "interface.fallen-barrel-rack.friction.coefficient=0",
@@ -394,7 +395,7 @@ fn seats_bear_weight_and_push_whatever_the_direction() {
     // Measured 5.2e-9 and 4.9e-9 off.
     near("still", demands(&still, Span::UntilLoss).stress_amplification.unwrap(), 1.0, 1e-7);
     near("still", demands(&still, Span::UntilLoss).mean_stress_amplification.unwrap(), 1.0, 1e-7);
-    // A barrel that is pushed to a side leans on its supports there.
+    // A barrel pushed to a side leans on its supports there.
     let most = summary.demands.stress_amplification.unwrap();
     println!("{most}");
     assert!(most > 1.1); // measured 1.60

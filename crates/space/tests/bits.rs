@@ -1,7 +1,7 @@
-//! A run in space has the bits that are kept of it, and is as much work.
+//! A run in space has the recorded bits and the recorded amount of work.
 //!
-//! Who changes bits on purpose raises `ensemble::VERSION`, since studies keep cases in space, writes the new bits here
-//! and says so in CHANGELOG.md under *Results change*.
+//! An intended change of bits requires a new `ensemble::VERSION`, since studies keep cases in space, the new bits
+//! here, and an entry in CHANGELOG.md under *Results change*.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -11,7 +11,7 @@ use barrelstack_space::run::run;
 
 use common::soft_demo;
 
-/// FNV-1a over the bits of all frames.
+/// Returns the FNV-1a hash of the bits of all frames.
 fn hash(frames: &[Vec<[f64; 7]>]) -> u64 {
     let bytes = frames.iter().flatten().flatten().flat_map(|number| number.to_bits().to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -28,7 +28,7 @@ fn a_collapse_in_space_has_the_bits_that_are_kept_and_is_as_much_work() {
     assert!(!fallen.is_empty(), "nothing falls, so impacts are not looked at");
     let work = (run.work.steps, run.work.evaluations, run.work.contact_evaluations);
     println!("{fallen:?} {work:?} {:016x}", hash(&run.frames.poses));
-    // A pair that sleeps is no evaluation: before pairs slept by their true distances there were twice as many.
+    // A skipped pair is no evaluation: before pairs were skipped by their true distances there were twice as many.
     assert_eq!(work, (40_965, 40_966, 6_012_016));
     if cfg!(target_arch = "x86_64") {
         assert_eq!(hash(&run.frames.poses), 0x8b07_acff_b27b_d091, "other bits: see above");

@@ -1,5 +1,5 @@
-//! Devices in space: what straps bear at rest, that idle devices change nothing, that all go on the demo, also in the
-//! mirror, and that straps hold or tear.
+//! Devices in space: tensions of straps at rest, no effect of idle devices, installation of all devices on the demo
+//! and its mirror image, and straps that hold or tear.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -19,7 +19,7 @@ fn demo(changes: &[&str]) -> Scenario {
     soft_demo(&all)
 }
 
-/// The force upward (N) on a body from all that touches it.
+/// Returns the upward force (N) on a body from all its contacts.
 fn borne(standing: &Standing, body: usize) -> f64 {
     let forces = standing.scratch.pair_forces.iter();
     forces
@@ -31,7 +31,7 @@ fn borne(standing: &Standing, body: usize) -> f64 {
         .sum()
 }
 
-/// Tensions (N) of all straps at a place, by name.
+/// Returns the tensions (N) of all straps at a place, by name.
 fn tensions(standing: &Standing) -> Vec<(String, f64)> {
     let told = |element: &Element<Spatial>| {
         (element.link().name.clone(), element.load(&standing.state).force)
@@ -59,12 +59,12 @@ fn seats_bear_the_weight_and_what_the_straps_pull() {
         let (count, pull) = own.fold((0, 0.0), |(count, sum), (_, force)| (count + 1, sum + force));
         assert_eq!(count, if part.level > 1 { 2 } else { 0 }, "{}", part.name);
         if part.level == 3 {
-            // Nothing lies on the top barrels, so their cradles bear all.
+            // Nothing lies on the top barrels, so their cradles bear the whole force.
             let weight = 9.80665 * standing.stack.model.bodies()[body].mass;
             let seat = borne(&standing, body);
             println!("{}: seat {seat:.1} N, straps {pull:.1} N, weight {weight:.1} N", part.name);
             worst = worst.max((seat / (weight + pull) - 1.0).abs());
-            // The stack gives under the straps, which keep most of what they were put on with.
+            // The stack settles under the straps, which keep most of their pretension.
             assert!(pull > 2.0 * 1500.0 && pull < 2.0 * 2000.0, "{pull}"); // measured 3772
         }
     }
@@ -72,7 +72,7 @@ fn seats_bear_the_weight_and_what_the_straps_pull() {
     assert!(worst < 1e-6, "{worst:e}"); // measured 4e-11
 }
 
-/// All that tells one run from another.
+/// Returns all numbers that distinguish two runs.
 fn bits(run: &Run) -> Vec<u64> {
     let poses = run.frames.poses.iter().flatten().flatten();
     poses.map(|value| value.to_bits()).collect()
@@ -80,8 +80,8 @@ fn bits(run: &Run) -> Vec<u64> {
 
 #[test]
 fn every_idle_device_changes_no_bit_and_every_other_one_does() {
-    // Long enough for the top barrels to be thrown against their lids, with stops so soft that impacts are stepped as
-    // without them.
+    // Long enough for the top barrels to be thrown against their lids, with stops so soft that impacts do not change
+    // the steps.
     let common = [
         "stack.levels=3",
         "run.duration='9 s'",
@@ -151,7 +151,7 @@ fn straps_hold_what_would_fall_and_tear_where_they_are_weak() {
     println!("{peak:.0} N, books {missing:e}");
     assert!(peak > 5e3, "{peak}"); // measured 5416
     assert!(missing < 1e-8, "{missing:e}"); // measured 2e-10
-    // Straps that tear a little above the tension in which they stand do so, the books told of it.
+    // Straps with a strength slightly above their tension at rest tear, and the energy balance includes it.
     let weak = of(&[&strapped[..], &["stack.strap.strength='5.1 kN'"]].concat());
     let torn = weak.elements.iter().filter(|fate| fate.broken_at.is_some()).count();
     let missing = weak.energy.unwrap().residual_ratio();
@@ -163,7 +163,7 @@ fn straps_hold_what_would_fall_and_tear_where_they_are_weak() {
 
 #[test]
 fn a_mirrored_stack_has_its_straps_on_the_other_side() {
-    // A rack that lies a little to one side tells the mirror from the stack.
+    // A rack with a small offset distinguishes the mirror image from the stack.
     let changes = [
         "stack.levels=2",
         "stack.override=[{kind=\"rack\",level=2,column=1,offset_x=\"1 cm\"}]",
@@ -172,7 +172,7 @@ fn a_mirrored_stack_has_its_straps_on_the_other_side() {
     ];
     let of = |more: &[&str]| stand(&demo(&[&changes, more].concat())).unwrap();
     let (one, other) = (of(&[]), of(&["stack.mirror=true"]));
-    // Each tie of the one is found in the other where a mirror shows it.
+    // Each tie of one has its mirror image in the other.
     let ends = |standing: &Standing| -> Vec<[f64; 3]> {
         let elements = standing.stack.model.elements().iter();
         let end = |(body, point): (usize, barrelstack_dynamics::Vec3)| {

@@ -1,4 +1,4 @@
-//! Free scenes in space from a file end where closed forms say.
+//! Free scenes in space from a file, against closed forms.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -33,10 +33,10 @@ fn assert_near(found: f64, exact: f64, relative: f64) {
 fn a_ball_thrown_along_the_floor_goes_on_at_five_sevenths() {
     let run = ran("rolling-ball", &[]);
     let end = run.last.twists[1];
-    // measured 9e-6, which is how much it sinks in
+    // measured 9e-6, which is the penetration
     assert_near(end.linear.length(), 5.0 / 7.0, 3e-5);
     assert_near(end.angular.length(), 5.0 / 7.0 / 0.3, 3e-5);
-    // It goes on in the direction in which it was thrown, and turns about the level axis across that.
+    // It continues in the initial direction, and turns about the horizontal axis perpendicular to it.
     let aside = end.linear.dot(Vec3::new(-0.8, 0.6, 0.0)).abs();
     // measured 3e-13
     assert!(aside < 1e-10, "{aside}");
@@ -123,7 +123,7 @@ fn ground_that_shakes_drags_a_ball_by_two_sevenths() {
     assert_near(run.fates[1].moved.x, -5.0 / 7.0 * ground, 3e-5);
 }
 
-/// Two balls of one body on the floor beside a wall, which one of them strikes.
+/// Two balls of one body on the floor beside a wall that one of them hits.
 const DUMBBELL: &str = r#"
 schema = 1
 kind = "free-spatial"
@@ -192,7 +192,7 @@ fn what_is_not_there_is_told_at_its_field() {
     let (field, told) = refused(&["body.ball.position=['0 m', '0 m', '0.2 m']"]);
     assert_eq!(field, "body.ground.position");
     assert!(told.contains("overlap"), "{told}");
-    // A plane knows no bodies of space.
+    // A plane does not support bodies in space.
     let error = Scenario::builtin("rolling-ball", &[]).unwrap().run().unwrap_err();
     assert_eq!(error.fields(), ["kind"]);
 }

@@ -1,4 +1,4 @@
-//! The ground in space: which way its components point, and how the stack is turned under them.
+//! Ground motion in space: directions of its components, and rotation of the stack.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -12,8 +12,8 @@ use barrelstack_space::Ground;
 
 use common::soft_demo;
 
-/// Ground (m/s) that goes east by a pulse and north by half of it, and what is said of it; `first` is the component
-/// that shakes the stack across its barrels.
+/// Returns a ground velocity (m/s) that is a pulse to the east and half of it to the north, and the warnings; `first`
+/// is the component across the barrels.
 fn peak(first: &str, azimuth: &str, names: [&str; 2]) -> (Vec3, Vec<String>) {
     let pulse = |size: f64| -> Vec<f64> {
         (0..400).map(|k| if (100..200).contains(&k) { size } else { 0.0 }).collect()
@@ -54,7 +54,7 @@ fn a_stack_that_is_turned_against_the_clock_sees_the_ground_turn_with_it() {
     let (straight, _) = peak("E", "0 deg", ["E", "N"]);
     let (left, _) = peak("E", "90 deg", ["E", "N"]);
     let (right, _) = peak("E", "-90 deg", ["E", "N"]);
-    // What was to the right is near, what was away is to the right; and the other way.
+    // Right becomes near, away becomes right; and vice versa.
     assert!(close(left, [straight.y, -straight.x]), "{left:?}");
     assert!(close(right, [-straight.y, straight.x]), "{right:?}");
 }

@@ -1,4 +1,4 @@
-//! A stack of right cylinders that is shaken across them does in space what it does in the plane.
+//! A stack of right cylinders that is shaken across them moves in space as in the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -11,14 +11,14 @@ use barrelstack_space::{Ground, run};
 
 use common::soft_demo;
 
-/// How far (m) the top barrels go in the plane, how far from there they are in space, at most and in the first three
-/// seconds, and how far they leave the plane.
+/// Returns the displacement (m) of the top barrels in the plane, its largest difference in space over the run and
+/// over the first three seconds, and the displacement out of the plane.
 fn apart(view: [&str; 2]) -> [f64; 4] {
     let scenario = |view: &str| {
         let changes = [
             &format!("stack.view={view}"),
             "stack.levels=3",
-            // Right cylinders but for half a millimeter.
+            // Right cylinders except for half a millimeter.
             "stack.barrel={ head_diameter = \"0.645 m\", bilge_diameter = \"0.646 m\" }",
             "run.duration='6 s'",
             "record.frame_rate='50 Hz'",
@@ -72,9 +72,9 @@ fn right_cylinders_in_space_go_where_those_of_the_plane_go() {
     );
     assert!(way > 0.2, "{way}"); // measured 0.25
     assert!(aside < 1e-12, "{aside:e}"); // measured 7e-15
-    // Measured 2.2e-4 of 0.25 m, 1.8e-7 m in the first three seconds. The same stack drawn out, with the same masses
-    // and from the same start, is the same to 5e-11 m (`extruded` of the dynamics); here a rack of tubes has its mass
-    // elsewhere, its beams have rounder ends, and settling takes another way to what friction holds at rest.
+    // Measured 2.2e-4 of 0.25 m, 1.8e-7 m in the first three seconds. The same stack extruded, with the same masses
+    // and from the same start, agrees to 5e-11 m (`extruded` of the dynamics); here a rack of tubes has another mass
+    // distribution, its beams have rounder ends, and settling takes another path to the friction at rest.
     assert!(off < 1e-3, "{off:e} of {way:e}");
     assert!(early < 1e-6, "{early:e}"); // measured 1.8e-7
 }

@@ -1,4 +1,4 @@
-//! Stacks in space come to rest on seats that bear their weight, stay there, and keep their books when shaken.
+//! Stacks in space come to rest on seats that bear their weight, stay there, and conserve energy when shaken.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -18,7 +18,7 @@ fn demo(changes: &[&str]) -> Scenario {
     soft_demo(&all)
 }
 
-/// The force upward (N) on a body from all bodies of some parts.
+/// Returns the upward force (N) on a body from all bodies of some parts.
 fn borne(standing: &Standing, body: usize, by: impl Fn(usize) -> bool) -> f64 {
     let forces = standing.scratch.pair_forces.iter();
     forces
@@ -87,7 +87,7 @@ fn racks_side_by_side_and_one_behind_the_other_stand_each_on_its_own() {
         let force = borne(&standing, rack, |other| part.supports.contains(&other));
         let expected = weight + 9.80665 * bodies[rack].mass;
         assert!(!top || (force / expected - 1.0).abs() < 1e-6, "{force} N of {expected} N");
-        // Supports are the barrels of the rack below, which stand where its own do.
+        // Supports are the barrels of the rack below, which stand at its place.
         for barrel in &part.supports {
             let below = standing.state.poses[*barrel].position;
             let here = standing.state.poses[rack].position;
@@ -113,7 +113,7 @@ fn a_row_that_differs_asks_for_steps_of_its_own_and_stands_where_it_was_put() {
     let moved = |body: usize| {
         standing.state.poses[body].position - regular.model.bodies()[body].pose.position
     };
-    // It comes to rest in its cradle 8.5 mm aside.
+    // It comes to rest in its cradle at an offset of 8.5 mm.
     assert!((moved(light).y - 0.01).abs() < 3e-3, "{:?}", moved(light));
     assert!(moved(beside).y.abs() < 1e-3, "{:?}", moved(beside));
 }
@@ -146,7 +146,7 @@ fn what_has_come_to_rest_stays() {
 
 #[test]
 fn a_stack_that_is_shaken_keeps_its_books() {
-    // While it stands, and with all that fell at rest.
+    // While it stands, and after all has fallen and come to rest.
     for (end, most) in [("8.5 s", 1e-7), ("25 s", 1e-5)] {
         let duration = format!("run.duration='{end}'");
         let run = run::run(&demo(&["stack.levels=2", &duration])).unwrap();
@@ -177,7 +177,7 @@ fn what_is_not_known_in_space_is_refused_with_its_field() {
     }
     let two = demo(&["stack.columns=4", "stack.gap='1 cm'"]);
     assert_eq!(Stack::of(&two).unwrap_err().fields(), ["stack.gap"]);
-    // And what works in a plane refuses a stack in space.
+    // Functions of a plane reject a stack in space.
     let error = demo(&[]).run().unwrap_err();
     assert_eq!(error.fields(), ["stack.view"], "{error}");
 }

@@ -1,4 +1,4 @@
-//! A stack and its ground that are turned together do the same, turned.
+//! Rotating a stack together with its ground motion rotates the result.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -11,7 +11,7 @@ use barrelstack_space::{Ground, Stack};
 
 use common::soft_demo;
 
-/// Ground that is turned about the vertical.
+/// Ground motion rotated about the vertical.
 struct Turned(Ground, Quaternion);
 
 impl Drive<Spatial> for Turned {
@@ -22,18 +22,18 @@ impl Drive<Spatial> for Turned {
     }
 }
 
-/// Where the bodies of a stack of two levels are (m) after seven seconds, turned back, relative to where they were
-/// built.
+/// Returns the displacements (m) of the bodies of a stack of two levels after seven seconds, rotated back, relative
+/// to their positions as built.
 ///
-/// It starts as it is built: seats with friction rest in many ways, and the search for one may end in another one,
-/// some hundredths of a millimeter beside, where rounding differs.
+/// It starts as built: seats with friction have many states of rest, and rounding may lead settling to another one,
+/// some hundredths of a millimeter away.
 fn ways(angle: f64) -> Vec<Vec3> {
     let changes = ["stack.view=spatial", "stack.levels=2", "stack.columns_along=2"];
     let scenario = soft_demo(&changes.map(str::to_owned));
     let stack = Stack::of(&scenario).unwrap();
     let turn = Quaternion::turn(Vec3::new(0.0, 0.0, angle));
     let mut bodies = stack.model.bodies().to_vec();
-    // The half-space stays, so that no direction of its own may count.
+    // The half-space is not rotated, so that it must be isotropic.
     for body in &mut bodies[1..] {
         body.pose.position = turn.matrix().apply(body.pose.position);
         body.pose.orientation = turn.after(body.pose.orientation);

@@ -1,4 +1,4 @@
-//! Variants in space: drawn as in the plane, the same when mirrored, and with the directions in which they fall.
+//! Variants in space: drawn as in the plane, equal when mirrored, and with directions of falls.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -41,20 +41,20 @@ fn a_variant_in_space_has_the_places_across_and_the_masses_of_the_one_in_the_pla
             assert!(a.offset_y != 0.0 && a.offset_y.abs() <= 1e-3);
             assert_eq!((a.row, b.row), (Some(1), None));
         }
-        // And it reads back.
+        // It also reads back.
         let text = space.variant(number).to_resolved_toml();
         assert_eq!(Scenario::from_str(&text).unwrap(), space.variant(number));
     }
 }
 
-/// How far (m) the bodies of the demo go in five seconds, and how far from there those of another stack end which stand
-/// in their places on the other side; `back` turns the way of one into that of the other.
+/// Returns the displacement (m) of the bodies of the demo in five seconds, and its difference from that of another
+/// stack whose bodies stand in their places on the other side; `back` maps one displacement to the other.
 fn beside_the_other_side(change: &str, back: impl Fn(Vec3) -> Vec3) -> [f64; 2] {
     let one = run(&demo(&["run.duration='5 s'"])).unwrap();
     let other = run(&demo(&["run.duration='5 s'", change])).unwrap();
     let (mut way, mut worst) = (0.0_f64, 0.0_f64);
     for (part, fate) in one.stack.parts.iter().zip(&one.fates).skip(1) {
-        // What stood at the left stands at the right.
+        // The left body corresponds to the right one.
         let swapped = |other: &barrelstack_space::stack::Part| {
             let column =
                 if other.kind == PartKind::Barrel { 3 - other.column } else { other.column };
@@ -73,7 +73,7 @@ fn a_stack_that_is_turned_by_half_a_turn_does_the_same_to_the_other_side() {
     let turn = |way: Vec3| Vec3::new(-way.x, -way.y, way.z);
     let [way, worst] = beside_the_other_side("stack.azimuth='180 deg'", turn);
     assert!(way > 0.01 && worst < 1e-11, "{worst:e} of {way}"); // measured 3e-14 of 0.041
-    // And what falls, falls to the other side.
+    // A fall goes to the other side, too.
     let falls = |azimuth: &str| {
         run(&demo(&["stack.levels=2", "run.duration='9.2 s'", azimuth])).unwrap().heading
     };
@@ -84,7 +84,8 @@ fn a_stack_that_is_turned_by_half_a_turn_does_the_same_to_the_other_side() {
 #[test]
 fn a_stack_that_is_its_own_mirror_image_does_the_same_when_mirrored() {
     let [way, worst] = beside_the_other_side("stack.mirror=true", |way| way);
-    // Measured 6e-14 of 0.041, since contacts are added up in another order; with the laws of the barrels of the other side some centimeters.
+    // Measured 6e-14 of 0.041, since contacts are summed in another order; with the laws of the barrels of the other
+    // side some centimeters.
     assert!(way > 0.01 && worst < 1e-11, "{worst:e} of {way}");
 }
 
@@ -115,8 +116,8 @@ fn a_stack_in_space_stands_as_high_as_in_the_planes() {
         let assembly = barrelstack::assemble::assemble(&plane).unwrap();
         let apart = standing.stack.height - assembly.height;
         println!("{}: {apart:e} m", view.name());
-        // Along the barrels rails are flat and touch with an inner corner; across them the height of the stack counts
-        // the circle above the rails and not the bilge.
+        // Along the barrels rails are flat and touch with an inner corner; across them the height of the stack
+        // includes the circle above the rails and not the bilge.
         assert!(apart.abs() < 0.03, "{apart}");
     }
 }

@@ -1,7 +1,7 @@
 //! Isolators in space: a platform under every bottom rack on a bearing at each of its corners, flat or in a dish.
 //!
-//! Springs and stops act at the middles of its four sides, so that they hold it from turning as well; stops stand on
-//! all four, so a corner of the way is further than its stroke.
+//! Springs and stops act at the middles of its four sides, so that they resist its rotation as well; with stops on
+//! all four, the corner of the range is further than the stroke.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Isolators, Path};
@@ -15,7 +15,7 @@ use crate::builder::{Builder, TRIBUTARY};
 use crate::part::Part;
 use crate::stack::Stack;
 
-/// Lifts the stack and puts the platforms under it.
+/// Raises the stack and installs the platforms under it.
 pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     let Some(law) = builder.laws.bearing else { return };
     builder.raise(Isolators::BEARING + Isolators::PLATE);
@@ -39,7 +39,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
             }
         }
         for (side, end) in builder.sides(half.x, half.y) {
-            // The ends to the left and right hold along the barrels, those near and far across them.
+            // The ends to the left and right guide along the barrels, those near and far across them.
             let across = end.x == 0.0;
             let axis = if across { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
             let link = Link {
@@ -53,7 +53,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     }
 }
 
-/// A platform of half sides (m) about its center (m), on which a rack stands.
+/// Adds a platform of half sides (m) about its center (m), on which a rack stands.
 fn platform(
     device: &Isolators,
     builder: &mut Builder<'_>,
@@ -76,7 +76,7 @@ fn platform(
     platform
 }
 
-/// A bearing of a platform on a place (m) of the ground.
+/// Adds a bearing of a platform at a position (m) on the ground.
 fn bear(
     device: &Isolators,
     builder: &mut Builder<'_>,

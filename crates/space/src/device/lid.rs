@@ -1,4 +1,4 @@
-//! Lids in space: as in both planes, and round, so that a barrel is let go of when it is out from under its lid to any
+//! Lids in space: as in both planes, and round, so that a barrel is released when it is out from under its lid to any
 //! side.
 
 use barrelstack::assemble::{PartKind, Similitude};
@@ -8,7 +8,7 @@ use barrelstack_dynamics::{Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// One on every barrel of its levels.
+/// Installs one over every barrel of its levels.
 pub(super) fn place(device: &Lids, builder: &mut Builder<'_>) {
     for barrel in
         builder.on_levels_from(PartKind::Barrel, lowest(device.levels, builder.spec.levels))

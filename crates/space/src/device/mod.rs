@@ -1,7 +1,7 @@
-//! Devices on a stack in space: where each of them is made fast, a file beside this one.
+//! Devices on a stack in space: their attachment, one file each.
 //!
-//! What a device is, bears, costs and is called is that of the plane; what acts in both planes acts both ways here.
-//! Chocks come with the racks ([`tubes`](crate::rack::tubes)), pads with the laws of contact.
+//! The definition, loads, cost and words of a device are those of the plane; what acts in both planes acts in both
+//! directions here. Chocks come with the racks ([`tubes`](crate::rack::tubes)), pads with the contact laws.
 
 mod isolator;
 mod lid;
@@ -19,13 +19,13 @@ use barrelstack_dynamics::{
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// An element that is not fit yet to the stack at rest.
+/// An element that is not fitted to the stack at rest yet.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// How much longer (m) it will be than the way between its ends; negative under pretension.
+    /// Excess (m) of its length over the distance of its ends; negative under pretension.
     give: f64,
-    /// Whether it is a guide on a body that turns about its axis.
+    /// `true` for a guide on a body that turns about its axis.
     about_axis: bool,
     words: &'static Words,
 }
@@ -35,7 +35,7 @@ impl Loose {
         Self { element: element.into(), give, about_axis: false, words }
     }
 
-    /// As the stack stands.
+    /// Fits the element to the stack as it stands.
     fn tighten(self, state: &State<Spatial>) -> Element<Spatial> {
         let Self { mut element, give, about_axis, .. } = self;
         element.fit(state, give);
@@ -46,7 +46,7 @@ impl Loose {
     }
 }
 
-/// Puts all devices on a stack, in their order.
+/// Installs all devices on a stack, in their order.
 pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     let Devices { strap, walking_stop, chock: _, lid, pad: _, isolator, tie, tuned_mass } =
         &builder.spec.devices;
@@ -60,32 +60,32 @@ pub(crate) fn place(builder: &mut Builder<'_>) -> Result<(), AssembleError> {
 }
 
 impl Builder<'_> {
-    /// How a body is turned.
+    /// Returns the rotation of a body.
     fn turned(&self, body: BodyId) -> Rotation3 {
         self.bodies[body].pose.orientation.matrix()
     }
 
-    /// What lies at a place (m) of the stack, in the frame of a body.
+    /// Transforms a position (m) in the stack to the frame of a body.
     fn within(&self, body: BodyId, place: Vec3) -> Vec3 {
         self.turned(body).unapply(place - self.bodies[body].pose.position)
     }
 
-    /// Draws a line through places (m) of the stack on a body.
+    /// Draws a line through positions (m) in the stack on a body.
     fn draw(&mut self, body: BodyId, line: &[Vec3]) {
         let line = line.iter().map(|place| self.within(body, *place)).collect();
         self.parts[body].lines.push(line);
     }
 
-    /// Bodies of a kind from a level on, from the ground up.
+    /// Returns the bodies of a kind at or above a level, from the ground up.
     fn on_levels_from(&self, kind: PartKind, lowest: u32) -> Vec<BodyId> {
         let on = |id: &BodyId| self.parts[*id].kind == kind && self.parts[*id].level >= lowest;
         (0..self.parts.len()).filter(on).collect()
     }
 
-    /// The left and the right end of what reaches `across` (m) from its middle, and the near and the far one of what
-    /// reaches `along`: the names of the sides, and where they are.
+    /// Returns names and positions of the left and right ends at `±across` (m), and of the near and far ends at
+    /// `±along` (m).
     ///
-    /// In the mirror left and right change places, in the order of sums, too.
+    /// Mirroring swaps left and right, and with them the order of summation.
     fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
         let [left, right] =
             [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));
@@ -94,7 +94,7 @@ impl Builder<'_> {
         if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
     }
 
-    /// The rack beside one, so many columns and rows further on its level.
+    /// Returns the rack at an offset of columns and rows from another, on its level.
     fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
         let at = |id: BodyId| {
             let part = &self.parts[id];
@@ -107,7 +107,7 @@ impl Builder<'_> {
 }
 
 impl Stack {
-    /// Fits the elements to the stack as it stands in `state`; says whether some bear something from the start.
+    /// Fits the elements to the stack as it stands in `state`; returns `true` if some are under load.
     pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

@@ -1,9 +1,10 @@
-//! Straps in space: those of both planes, each where it is plumb on the stack as drawn.
+//! Straps in space: those of both planes, each at a position where it is vertical on the stack as drawn.
 //!
-//! A strap over a barrel lies on its round at half its length, as in the plane across the barrels: made fast at the
+//! A strap over a barrel lies on its round at half its length, as in the plane across the barrels: attached at the
 //! ends of the horizontal diameter, and from there straight down to the rack.
-//! Where levels are tied together every rack has one strap down each of its four sides, at its middle: those to the
-//! left and right are the ones that the plane across the barrels has, those nearest and farthest the ones along them.
+//! Where levels are tied together every rack has one strap down the middle of each of its four sides: those to the
+//! left and right are those of the plane across the barrels, those at the near and far sides those of the plane along
+//! them.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Straps, Ties, lowest};
@@ -12,7 +13,7 @@ use barrelstack_dynamics::{BodyId, Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// From the ground up, those on the left first.
+/// Installs the straps from the ground up, those on the left first.
 pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     if !device.is_on() {
         return Ok(());
@@ -30,7 +31,7 @@ pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), As
                 }
             }
             PartKind::Rack => {
-                // The lowest of the strapped levels is tied to nothing below it.
+                // The lowest of the strapped levels has no strap to the level below.
                 let tied = device.ties == Ties::LevelsTogether && part.level > lowest;
                 let below = builder.parts.iter().position(|other| {
                     other.kind == PartKind::Rack
@@ -48,7 +49,7 @@ pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), As
     Ok(())
 }
 
-/// One from a side of the upper body straight down to the lower one.
+/// Adds one from a side of the upper body straight down to the lower one.
 fn strap(
     device: &Straps,
     builder: &mut Builder<'_>,

@@ -1,5 +1,5 @@
-//! Ties in space: from the middles of the four sides of a rack, those to the left and right as in the plane across the
-//! barrels, those at the near and the far side as in the plane along them, whose left is near.
+//! Ties in space: from the middles of the four sides of a rack; those to the left and right as in the plane across
+//! the barrels, those at the near and far sides as in the plane along them, whose left is near.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
@@ -13,7 +13,7 @@ use crate::stack::Stack;
 struct End {
     name: &'static str,
     on: Side,
-    /// How many columns and rows further the rack beside it is.
+    /// Offset in columns and rows to the rack beside it.
     beside: [i64; 2],
 }
 
@@ -24,7 +24,7 @@ const ENDS: [End; 4] = [
     End { name: "away", on: Side::Right, beside: [0, 1] },
 ];
 
-/// From the ground up.
+/// Installs the ties from the ground up.
 pub(super) fn place(device: &AnchorTies, builder: &mut Builder<'_>) -> Result<(), AssembleError> {
     if !device.is_on() {
         return Ok(());
@@ -52,12 +52,12 @@ fn tie(device: &AnchorTies, builder: &mut Builder<'_>, rack: BodyId, end: &End) 
     let reach = if end.beside[0] == 0 { builder.reach_along() } else { builder.parts[rack].size };
     let from = builder.bodies[rack].pose.position + out * reach;
     let (other, to, name) = match (device.to, builder.beside(rack, end.beside)) {
-        // Each neighbor is met once.
+        // Each pair of neighbors is visited once.
         (Anchor::Neighbors, Some(next)) if end.on == Side::Right => {
             let to = builder.bodies[next].pose.position - out * reach;
             (next, to, builder.parts[next].name.clone())
         }
-        // Between racks there is no wall.
+        // There is no wall between racks.
         (Anchor::Neighbors, _) | (Anchor::Wall, Some(_)) => return,
         (Anchor::Wall, None) => {
             (Stack::GROUND, from + out * device.distance, format!("wall {}", end.name))

@@ -1,8 +1,9 @@
 //! Stops in space that keep racks from walking on the barrels below.
 //!
-//! A hook is met along the axis of its barrel, which turns under it, at the height of the rack: it is off once the rack
-//! is further from that axis, upward or around the barrel, than at rest by its lip.
-//! A saddle is met across the barrel, wherever along it the rack lies, and is off once the rack has risen by its lip.
+//! A hook acts along the axis of its barrel, which turns under it, at the height of the rack: it disengages once the
+//! rack is further from that axis, upward or around the barrel, than at rest by its lip.
+//! A saddle acts across the barrel, wherever along it the rack lies, and disengages once the rack has risen by its
+//! lip.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Holds, WalkingStops, lowest};
@@ -12,7 +13,7 @@ use super::Loose;
 use crate::builder::Builder;
 use crate::rack::Heights;
 
-/// Between racks and each of the barrels below.
+/// Installs stops between racks and each of the barrels below.
 pub(super) fn place(device: &WalkingStops, builder: &mut Builder<'_>) {
     if !device.is_on() {
         return;
@@ -44,7 +45,7 @@ fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyI
     let guide = device.guide(link, axis, Similitude::FULL);
     let hook = Loose { about_axis: true, ..Loose::new(guide, 0.0, WalkingStops::WORDS) };
     builder.loose.push(hook);
-    // From the rack over both ends of the barrel.
+    // Drawn from the rack over both ends of the barrel.
     for side in [-1.0, 1.0] {
         let at = |y: f64, z: f64| over + Vec3::new(0.0, side * y, z);
         let end = 0.5 * builder.spec.barrel.length + device.gap;
@@ -67,7 +68,7 @@ fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [Bod
     let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, size);
     for side in [-1.0, 1.0] {
         let at = |x: f64, z: f64| top + Vec3::new(side * x, 0.0, z);
-        // On the round, as far aside as a saddle reaches.
+        // On the round, at the lateral reach of a saddle.
         let foot = 0.7 * size + device.gap;
         builder.draw(rack, &[at(foot, 0.0), at(foot, -device.lip.max(0.25 * size))]);
     }

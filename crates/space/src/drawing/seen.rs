@@ -1,4 +1,4 @@
-//! What is seen of a body from a direction: its solids as outlines, and lines that show how it has turned.
+//! Drawing of a body from a direction: outlines of its solids, and lines that show its rotation.
 
 use std::f64::consts::TAU;
 
@@ -8,33 +8,33 @@ use barrelstack_report::{Point, Polyline, Role, SceneBody};
 
 use crate::part::Part;
 
-/// How many steps of direction there are to a right angle.
+/// Number of steps of direction per right angle.
 const STEPS: f64 = 10.0;
 
-/// How a body is seen.
+/// View of a body.
 pub(super) struct Seen {
-    /// What in the body is right and up on its drawing.
+    /// Right and up axes of its drawing, in the body frame.
     axes: [Vec3; 2],
-    /// How the drawing is turned on the page (rad).
+    /// Rotation of the drawing on the page (rad).
     pub(super) angle: f64,
     kind: PartKind,
 }
 
 impl Seen {
-    /// Of what in the body is right and up on the page.
+    /// Creates the view from the right and up axes of the page in the body frame.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
         let toward = page[0].cross(page[1]);
         let axis = Vec3::new(1.0, 0.0, 0.0);
         let stepped = |value: f64| (value * STEPS).round() / STEPS;
         let (from, mut right) = if kind == PartKind::Barrel {
-            // A body of revolution looks alike whatever it has turned about its axis.
+            // A body of revolution looks the same at any rotation about its axis.
             let tilt =
                 stepped(math::asin(toward.dot(axis).clamp(-1.0, 1.0)) / (0.25 * TAU)) * 0.25 * TAU;
             let side = toward - axis * toward.dot(axis);
             let around = side.unit_or(Vec3::new(0.0, 0.0, 1.0));
             let (sin, cos) = math::sin_cos(tilt);
             let from = axis * sin + around * cos;
-            // Seen at its head, what shows is how far it has rolled.
+            // In a view of its head, the drawing shows its rolling.
             let head = sin.abs() > 0.999;
             let from = if head { axis * tilt.signum() } else { from };
             (from, if head { Vec3::new(0.0, 1.0, 0.0) } else { axis })
@@ -50,7 +50,7 @@ impl Seen {
         Self { axes: [right, up], angle, kind }
     }
 
-    /// What tells two drawings of one body apart.
+    /// Returns a key that distinguishes the drawings of one body.
     #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
     pub(super) fn key(&self) -> [i32; 3] {
         let from = self.axes[0].cross(self.axes[1]);
@@ -62,7 +62,7 @@ impl Seen {
         }
     }
 
-    /// The body as it is seen so.
+    /// Returns the drawing of a body in this view.
     pub(super) fn draw(&self, part: &Part, body: &Body<Spatial>) -> SceneBody {
         let name = &part.name;
         let [right, up] = self.axes;
@@ -101,10 +101,10 @@ impl Seen {
                         rings.flat_map(ring).map(|p| flat(place(p))).collect(),
                     )));
                     if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
-                        // As the plane draws it.
+                        // As in the plane.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
                     } else if self.kind == PartKind::Barrel {
-                        // Hoops, as far as they are on this side.
+                        // Hoops, on the visible side.
                         for x in [0.28, 0.6, -0.6, -0.28, 0.94, -0.94].map(|share| share * half) {
                             let near = |point: &Vec3| point.y * from.y + point.z * from.z >= -1e-9;
                             let mut hoop: Vec<Point> =
@@ -121,7 +121,7 @@ impl Seen {
                         [x + ball.radius * math::cos(angle), z + ball.radius * math::sin(angle)]
                     });
                     outlines.push(Polyline::closed(rim.collect()));
-                    // Great circles, as far as they are on this side, show how it turns.
+                    // Great circles, on the visible side, show the rotation.
                     for [one, other] in [[0, 1], [1, 2], [2, 0]] {
                         let axes = [
                             Vec3::new(1.0, 0.0, 0.0),
@@ -133,7 +133,7 @@ impl Seen {
                             (axes[one] * cos + axes[other] * sin) * ball.radius
                         };
                         let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
-                        // The half in sight is one stretch: it starts where the one before is hidden.
+                        // The visible half is one stretch: it starts after a hidden point.
                         let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
                         let start = start.unwrap_or(0);
                         let seen = (0..=32).map(|at| (start + at) % 32).take_while(near);
@@ -164,7 +164,7 @@ impl Seen {
     }
 }
 
-/// The convex outline of points, against the clock.
+/// Returns the convex hull of points, counterclockwise.
 fn hull(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let left = |a: Point, b: Point, c: Point| {

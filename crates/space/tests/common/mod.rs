@@ -19,9 +19,9 @@ const SOFT: [&str; 12] = [
     "interface.fallen-rack-ground.friction.coefficient=0.4",
 ];
 
-/// The demo on soft seats, with further changes.
+/// Returns the demo on soft seats, with further changes.
 pub(crate) fn soft_demo(changes: &[String]) -> Scenario {
-    // A change of the law of barrels on racks states all of it.
+    // A change of the law of barrels on racks replaces all of it.
     let own = changes.iter().any(|change| change.starts_with("interface.barrel-rack."));
     let kept = |change: &&&str| !(own && change.starts_with("interface.barrel-rack."));
     let soft = SOFT.iter().filter(kept).map(|&change| change.to_owned());
