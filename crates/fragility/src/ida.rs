@@ -34,8 +34,8 @@ impl Ida {
     /// Returns the demand at an intensity.
     ///
     /// Linear between runs, and from rest (zero at zero) to the first. Between a run that stood
-    /// and one that collapsed, in either order, collapse begins at their geometric mean, and
-    /// the demand of the standing run holds up to it. Above the last run the demand is infinite if that
+    /// and one that collapsed, in either order, the change is placed at their geometric mean, and
+    /// the demand of the standing run is used on its side. Above the last run the demand is infinite if that
     /// collapsed, since analyses end there, and `None`, unknown, if it stood.
     pub fn demand(&self, intensity: f64) -> Option<f64> {
         let after = self.points.partition_point(|(x, _)| *x < intensity);

@@ -31,7 +31,7 @@ pub struct Index {
 /// Intervals are the delete-one jackknife of the blocks with Student's t, with one degree of freedom fewer than blocks;
 /// for the total index on the linear or the logarithmic scale, whichever is wider.
 /// If an input changes the result in at most half of the blocks, its changes are rare events, and the interval also
-/// covers the index that would follow if unobserved blocks changed it by the full range of the results.
+/// covers the index that would follow if changes that the blocks may have missed were as large as the range of results.
 /// Bounds are clamped to 0 to 1.
 /// Simulated coverage is in `tests/claims.rs`: 89 % and more for results of two values, counts and continuous ones,
 /// from 16 to 256 blocks.

@@ -184,7 +184,7 @@ pub(crate) fn assemble(
     out
 }
 
-/// Writes the file up to its body, with its policy and with style sheets before and after the common one.
+/// Returns the file up to its body, with its policy and with style sheets before and after the common one.
 fn head(title: &str, policy: &str, before: &str, after: &str) -> String {
     let title = escape::html(title);
     let palette = palette_css();

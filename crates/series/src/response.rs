@@ -181,7 +181,7 @@ impl Bank {
     }
 }
 
-/// Returns the larger magnitude; branch-free, so that it vectorizes.
+/// Returns the larger magnitude; simple enough to be vectorized over several oscillators.
 #[inline]
 pub fn larger(peak: f64, value: f64) -> f64 {
     if value.abs() > peak { value.abs() } else { peak }

@@ -202,7 +202,7 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
 }
 
 /// Aligns a horizontal component with the first channel of the separate vertical file, if both state their
-/// start; returns both, with a warning if they should not be combined.
+/// start; returns both, with a warning if their combination is questionable.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -264,7 +264,7 @@ fn scaled_by_both(
 /// Returns the requested processing; by default that of the record's stage, with its pads removed.
 ///
 /// Pads are half a minute of stillness before the first arrival, which a stack at rest does not need;
-/// the ends are tapered after cutting them.
+/// the ends are closed after cutting them, so that velocity and displacement end at zero.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {
         (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),

@@ -117,7 +117,7 @@ fn tabulated(
     exact: f64,
     bracket: (f64, f64),
 ) -> Problem {
-    // Below the border of being safe again the block overturns; above the other borders, too.
+    // The block overturns below the border of being safe again, and above the other borders.
     let falls_below = which == BORDERS[1];
     setting(
         format!("pulses/{}-{ratio}-{which}", form.name()),
