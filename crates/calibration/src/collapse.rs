@@ -30,8 +30,7 @@ pub use likelihood::Errors;
 /// Settings of a calibration from collapses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Factor that bounds every parameter relative to its value in the scenario; the prior is uniform in
-    /// its logarithm.
+    /// Factor that bounds every parameter relative to its value in the scenario; the prior is uniform in its logarithm.
     pub within: f64,
     /// Standard deviation (m) of the position of each rack and each barrel when a stack is built.
     pub placement: f64,
@@ -41,8 +40,7 @@ pub struct Settings {
     pub simulations: usize,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Vector unit of the simulations; the widest of the machine if `None`. The result does not
-    /// depend on it.
+    /// Vector unit of the simulations; the widest of the machine if `None`. The result does not depend on it.
     pub lanes: Option<Width>,
 }
 

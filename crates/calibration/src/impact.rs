@@ -50,8 +50,7 @@ pub fn impact(mass: f64, stiffness: f64, damping: f64, gravity: f64, speed: f64)
     let (mut state, mut time) = ((0.0, speed), 0.0);
     loop {
         let next = advance(state, step);
-        // NaN ends the approach as well, and so does creep into a strong damper, whose speed never
-        // quite vanishes.
+        // NaN ends the approach as well, and so does creep into a strong damper, whose speed never quite vanishes.
         if next.1.is_nan() || next.1 <= CREEP * omega * next.0 {
             break;
         }

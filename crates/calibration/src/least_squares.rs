@@ -10,8 +10,7 @@ pub type Evaluate<'a> = dyn Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + 'a;
 /// Largest number of steps before a fit counts as not converged.
 const MOST_STEPS: usize = 30;
 
-/// Largest change of a parameter in one step, in its own units: parameters are logarithms or scaled to
-/// be about 1.
+/// Largest change of a parameter in one step, in its own units: parameters are logarithms or scaled to be about 1.
 const LONGEST: f64 = 0.5;
 
 /// Result of a fit.

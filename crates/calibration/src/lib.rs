@@ -11,8 +11,7 @@
 //! In simulated records, the intervals of [`response`] covered the truth in only about 90 %.
 //!
 //! Files are CSV with a header whose columns carry their unit, such as `penetration (mm),force (kN)`.
-//! Intervals cover the scatter in the file; values given as exact (a mass, the model itself) are
-//! not included.
+//! Intervals cover the scatter in the file; values given as exact (a mass, the model itself) are not included.
 
 // Results must be bit-identical on every machine, so transcendental functions are those of `libm`.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

@@ -10,8 +10,7 @@ use super::statistics::line;
 use super::{CalibrateError, Calibration, Estimate, Table};
 
 /// Smallest difference of the information criteria by which the other law is mentioned; a
-/// difference of ten leaves the worse of two models essentially no support (Burnham and Anderson
-/// 2002).
+/// difference of ten leaves the worse of two models essentially no support (Burnham and Anderson 2002).
 const CLEARLY: f64 = 10.0;
 
 /// Fits `F = k (δ − δ₀)` to a press test with the columns `penetration` and `force`.
@@ -22,8 +21,7 @@ const CLEARLY: f64 = 10.0;
 /// `interface` names the pair in the lines for a scenario, such as "barrel-rack".
 ///
 /// # Errors
-/// If the table lacks a column, has fewer than three rows, or its force does not grow with
-/// penetration.
+/// If the table lacks a column, has fewer than three rows, or its force does not grow with penetration.
 pub fn stiffness(
     table: &Table,
     nodes: u32,

@@ -18,8 +18,7 @@ use barrelstack_report::FigureKind;
 
 /// Returns in how many of 100 campaigns the interval covers each true value.
 ///
-/// Seeds are 1 to 100; a 95 % interval covers 95 on average, and 90 or more with a probability of
-/// 0.99.
+/// Seeds are 1 to 100; a 95 % interval covers 95 on average, and 90 or more with a probability of 0.99.
 fn coverage(
     truth: &[(&str, f64)],
     mut campaign: impl FnMut(&mut Random) -> Calibration,

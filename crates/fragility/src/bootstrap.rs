@@ -80,8 +80,7 @@ pub(crate) fn drawn(
 /// independent cases that follow the curve.
 ///
 /// # Errors
-/// As [`fit`] for the data themselves, or if fewer than half of the samples determine a
-/// curve.
+/// As [`fit`] for the data themselves, or if fewer than half of the samples determine a curve.
 pub fn simulate(
     stripes: &[Stripe],
     dispersion: Dispersion,

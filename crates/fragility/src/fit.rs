@@ -111,8 +111,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Returns the log-likelihood of counts, with their binomial coefficients (Baker 2015,
-    /// eq. 9).
+    /// Returns the log-likelihood of counts, with their binomial coefficients (Baker 2015, eq. 9).
     pub fn ln_likelihood_of(&self, stripes: &[Stripe]) -> f64 {
         let coefficients: f64 =
             stripes.iter().map(|s| ln_choose(s.cases, s.failures.min(s.cases))).sum();

@@ -9,8 +9,7 @@ use crate::math::{chi_square_above, exp, ln, normal, normal_quantile};
 /// Goodness of fit of counts to a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goodness {
-    /// Twice the logarithm of the likelihood ratio of the raw fractions to the curve, over all
-    /// stripes.
+    /// Twice the logarithm of the likelihood ratio of the raw fractions to the curve, over all stripes.
     pub deviance: f64,
     /// Sum of squared residuals over their binomial variance, over the pooled groups.
     pub pearson: f64,
@@ -119,8 +118,7 @@ pub fn goodness_by_simulation(
 /// Test of capacities against a lognormal distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normality {
-    /// Largest distance of the empirical distribution of the capacities from the fitted one (Lilliefors
-    /// 1967).
+    /// Largest distance of the empirical distribution of the capacities from the fitted one (Lilliefors 1967).
     pub distance: f64,
     /// The probability of a distance at least as large if capacities are lognormal.
     pub p: f64,

@@ -148,8 +148,7 @@ impl Hazard {
         Some(x0 * exp(ln(x1 / x0) * ln(rate / r0) / ln(r1 / r0)))
     }
 
-    /// Integrates an effect over the rate density of intensity, between two intensities within
-    /// the table.
+    /// Integrates an effect over the rate density of intensity, between two intensities within the table.
     fn integral(&self, from: f64, to: f64, of: &impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for pair in self.rows.windows(2) {
@@ -199,8 +198,7 @@ impl Hazard {
         }
     }
 
-    /// Deaggregates the rate: its parts between the given intensities, without those outside of the
-    /// table.
+    /// Deaggregates the rate: its parts between the given intensities, without those outside of the table.
     pub fn contributions(
         &self,
         edges: &[f64],

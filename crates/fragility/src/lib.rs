@@ -38,8 +38,7 @@
 //!
 //! # Random numbers
 //!
-//! Resampling takes uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator
-//! and the seed.
+//! Resampling takes uniform random numbers from the caller (`FnMut() -> f64`), who chooses the generator and the seed.
 
 // Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]

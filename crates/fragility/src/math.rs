@@ -1,5 +1,4 @@
-//! Transcendental functions with the same bits on every platform, and the distributions built on
-//! them.
+//! Transcendental functions with the same bits on every platform, and the distributions built on them.
 
 use special::{Beta, Gamma};
 use std::f64::consts::FRAC_1_SQRT_2;

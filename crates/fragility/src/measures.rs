@@ -53,15 +53,13 @@ fn sufficiency(cases: &[(f64, bool)], second: &[f64], alone: &Fit) -> Option<f64
         .collect();
     let b = 1.0 / alone.curve.dispersion;
     let both = Likelihood { terms, slope: Some(1) };
-    // Without a maximum the two measures separate failures from survivals completely: the likelihood then
-    // tends to one.
+    // Without a maximum the two measures separate failures from survivals completely: the likelihood then tends to one.
     let highest =
         both.top([-b * ln(alone.curve.median), b, 0.0]).map_or(0.0, |top| top.shape.value);
     Some(chi_square_above(2.0 * (highest - alone.ln_likelihood), 1))
 }
 
-/// Returns the standardized residuals of the linear regression of `y` on `x`; `None` if
-/// they vanish.
+/// Returns the standardized residuals of the linear regression of `y` on `x`; `None` if they vanish.
 fn residuals(x: &[f64], y: &[f64]) -> Option<Vec<f64>> {
     let line = Line::through(x, y)?;
     let rest: Vec<f64> = x.iter().zip(y).map(|(x, y)| y - line.at(*x)).collect();

@@ -13,8 +13,7 @@ pub struct Fall {
     pub from: Stripe,
     /// The stripe with the low fraction, at the higher intensity.
     pub to: Stripe,
-    /// The probability of a fall at least as clear if failure never becomes less likely, for independent
-    /// cases.
+    /// The probability of a fall at least as clear if failure never becomes less likely, for independent cases.
     pub p: f64,
 }
 
@@ -132,8 +131,7 @@ pub fn monotony(
     Monotony { stripes: sorted, isotonic: chances, deviance: observed, p, falls }
 }
 
-/// Returns the pair of stripes, the first of the lower intensity, with the largest fall; of several, the
-/// closest pair.
+/// Returns the pair of stripes, the first of the lower intensity, with the largest fall; of several, the closest pair.
 fn steepest(stripes: &[Stripe]) -> Option<(Stripe, Stripe)> {
     let mut found: Option<(f64, Stripe, Stripe)> = None;
     for (i, from) in stripes.iter().enumerate() {

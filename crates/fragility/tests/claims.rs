@@ -1,5 +1,4 @@
-//! Coverage of intervals and rate of false claims without an effect: simulated, side by side with the previous
-//! rules.
+//! Coverage of intervals and rate of false claims without an effect: simulated, side by side with the previous rules.
 //!
 //! `cargo test --release -p barrelstack-fragility --test claims -- --nocapture` prints the tables of
 //! `validation/statistics.md`.

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::ops::{Add, Neg};
 
-/// Exponents of length, mass, time and angle, **in halves**, which includes the Hertz stiffness
-/// (N/m^1.5).
+/// Exponents of length, mass, time and angle, **in halves**, which includes the Hertz stiffness (N/m^1.5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i8,

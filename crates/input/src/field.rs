@@ -1,7 +1,6 @@
 //! Definition of the fields of input files: name, kind, default and help.
 //!
-//! The reader, the writer, the reference and the JSON Schema are derived from it, so that they cannot
-//! disagree.
+//! The reader, the writer, the reference and the JSON Schema are derived from it, so that they cannot disagree.
 
 use std::fmt;
 

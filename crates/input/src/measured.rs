@@ -208,8 +208,7 @@ impl Table {
         self.rows.iter().map(value).collect()
     }
 
-    /// Returns the cells of a required column, each a number (SI), the `word` that replaces one, or
-    /// empty.
+    /// Returns the cells of a required column, each a number (SI), the `word` that replaces one, or empty.
     ///
     /// # Errors
     /// As [`Table::required`], for cells with any other content.

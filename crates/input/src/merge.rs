@@ -34,8 +34,7 @@ pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>)
 }
 
 /// Prepares a key: removes mutually exclusive fields and the fields of a replaced variant, and expands a
-/// name to its table if a table is merged into it. Returns the section of the
-/// key.
+/// name to its table if a table is merged into it. Returns the section of the key.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,
@@ -148,8 +147,7 @@ fn apply_override(
     set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
 }
 
-/// Returns the definition of the field at a path, for the variants that the table selects; `None` if there
-/// is none.
+/// Returns the definition of the field at a path, for the variants that the table selects; `None` if there is none.
 pub fn field_at(
     table: Option<&Table>,
     section: &'static Section,

@@ -89,8 +89,7 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or
-    /// malformed.
+    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         match Self::readings(text, &[])?.as_slice() {
             [one] => Ok(*one),
@@ -119,8 +118,7 @@ impl Quantity {
         units.iter().map(reading).collect()
     }
 
-    /// Parses a quantity of one of the dimensions `wanted`; `gal` is a US gallon or a cm/s², whichever
-    /// fits.
+    /// Parses a quantity of one of the dimensions `wanted`; `gal` is a US gallon or a cm/s², whichever fits.
     ///
     /// ```
     /// use barrelstack_input::{Dimension, Quantity};
@@ -209,8 +207,7 @@ pub fn shorten(text: &str) -> String {
     }
 }
 
-/// A decimal number as digits and a power of ten, so that conversion by a decimal unit is
-/// exact.
+/// A decimal number as digits and a power of ten, so that conversion by a decimal unit is exact.
 struct Decimal<'a> {
     negative: bool,
     /// All digits in order, without the point; empty for zero.

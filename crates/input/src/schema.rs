@@ -4,8 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::field::{Default, Field, Kind, Range, Section};
 
-/// Returns the schema (JSON Schema 2020-12) of a file with a top-level section, for completion and checking in
-/// editors.
+/// Returns the schema (JSON Schema 2020-12) of a file with a top-level section, for completion and checking in editors.
 ///
 /// It contains names, types, choices and ranges of plain numbers. It requires no field, since other files
 /// and overrides may supply any; the reader alone checks ranges and dimensions of quantities, and consistency
@@ -44,8 +43,7 @@ fn section(section: &'static Section) -> Value {
     let Some(variants) = &section.variants else {
         return object(section.help, section.fields.iter());
     };
-    // One alternative for each variant; a file that extends another may omit the selecting
-    // field.
+    // One alternative for each variant; a file that extends another may omit the selecting field.
     let alternatives: Vec<Value> = variants
         .list
         .iter()

@@ -140,8 +140,7 @@ impl UnitError {
     }
 }
 
-/// Parses a unit expression; one with `gal` has two readings, a US gallon and a
-/// cm/s².
+/// Parses a unit expression; one with `gal` has two readings, a US gallon and a cm/s².
 pub(crate) fn readings(text: &str) -> Result<Vec<Unit>, UnitError> {
     if text.len() > 200 {
         return Err(UnitError::Malformed("it is too long"));

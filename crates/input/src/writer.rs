@@ -39,8 +39,7 @@ impl Writer {
         writer
     }
 
-    /// Ends the table; with debug assertions, checks that every defined field has been written or
-    /// omitted.
+    /// Ends the table; with debug assertions, checks that every defined field has been written or omitted.
     pub fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);

@@ -16,8 +16,7 @@ pub struct Document {
     pub blocks: Vec<Block>,
     /// Provenance: pairs of name and value, shown at the end.
     pub provenance: Vec<(String, String)>,
-    /// Technical terms with their meanings: explained where they occur, and those that occur are listed at the
-    /// end.
+    /// Technical terms with their meanings: explained where they occur, and those that occur are listed at the end.
     pub words: Vec<Word>,
     /// Limits that the reader must know before trusting the result; shown right after the first player.
     pub warnings: Vec<String>,

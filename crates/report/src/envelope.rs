@@ -152,8 +152,7 @@ impl Envelope {
         runs
     }
 
-    /// Draws the key of the shapes and the scale of stress: side by side on a page, one below the other
-    /// on a phone.
+    /// Draws the key of the shapes and the scale of stress: side by side on a page, one below the other on a phone.
     fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest during shaking");

@@ -1,5 +1,4 @@
-//! Documents, figures and a player for moving rigid bodies: HTML, Markdown, PDF, SVG, PNG, GIF, CSV
-//! and VTK.
+//! Documents, figures and a player for moving rigid bodies: HTML, Markdown, PDF, SVG, PNG, GIF, CSV and VTK.
 //!
 //! A [`Document`] is data: a verdict, [`Block`]s in reading order, warnings, provenance.
 //! [`html`] turns it into one page that needs no network, [`markdown`] into text with figures

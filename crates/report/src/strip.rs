@@ -60,8 +60,7 @@ impl View {
         Self { extent, scale, width, height, names }
     }
 
-    /// Returns the position of the scene's origin (px): centered across if the window is narrower than the
-    /// panel.
+    /// Returns the position of the scene's origin (px): centered across if the window is narrower than the panel.
     fn origin(&self) -> [f64; 2] {
         let (extent, scale) = (&self.extent, self.scale);
         [

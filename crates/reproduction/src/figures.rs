@@ -93,8 +93,7 @@ fn named(run: &Run, body: usize) -> String {
     }
 }
 
-/// Distance of an arrow's end from the center of a barrel, over the radius: within the circle, clear
-/// of the number.
+/// Distance of an arrow's end from the center of a barrel, over the radius: within the circle, clear of the number.
 const ARROW_END: f64 = 0.5;
 
 /// Start and end (m) of an arrow to the ground, relative to the barrel above: the rack there is too flat for it.

@@ -175,8 +175,7 @@ pub(super) fn jobs(subject: Subject, factors: &[Factor]) -> impl Iterator<Item =
 }
 
 impl Study {
-    /// Combines factors with the summaries of their runs, which `next` returns in the order of the
-    /// jobs.
+    /// Combines factors with the summaries of their runs, which `next` returns in the order of the jobs.
     pub(super) fn new(
         subject: Subject,
         base: Summary,

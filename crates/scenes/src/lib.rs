@@ -1,5 +1,4 @@
-//! Scenes, ground motions and closed forms, shared by the tests of the dynamics and the
-//! validation.
+//! Scenes, ground motions and closed forms, shared by the tests of the dynamics and the validation.
 
 pub mod drive;
 pub mod scene;

@@ -11,8 +11,7 @@ pub fn rocking_rate(radius: f64) -> f64 {
     (0.75 * GRAVITY / radius).sqrt()
 }
 
-/// Returns η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is conserved
-/// (Housner 1963).
+/// Returns η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is conserved (Housner 1963).
 pub fn housner_restitution(alpha: f64) -> f64 {
     1.0 - 1.5 * sin(alpha) * sin(alpha)
 }

@@ -26,8 +26,7 @@ impl Condition {
     }
 }
 
-/// Mean, standard deviation and covariance of the logarithm of spectral accelerations at a list of
-/// periods.
+/// Mean, standard deviation and covariance of the logarithm of spectral accelerations at a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelectionTarget {
     periods: Vec<f64>,

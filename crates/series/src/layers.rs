@@ -1,8 +1,7 @@
 //! A motion at several steps, and oscillators that each run at the coarsest sufficient step.
 //!
 //! For searches, which evaluate spectra thousands of times; their results are checked by the exact recursion of
-//! [`crate::response`]. Peaks differ from it by at most 0.6 % for 20 steps per period, and by 0.3 % for
-//! 40.
+//! [`crate::response`]. Peaks differ from it by at most 0.6 % for 20 steps per period, and by 0.3 % for 40.
 
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};

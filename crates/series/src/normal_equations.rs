@@ -3,8 +3,7 @@
 /// Ridge relative to the largest diagonal entry, which regularizes correlated unknowns.
 const RIDGE: f64 = 1e-4;
 
-/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many conditions on few wavelets, solved by Cholesky
-/// factorization.
+/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many conditions on few wavelets, solved by Cholesky factorization.
 pub struct System {
     size: usize,
     normal: Vec<f64>,

@@ -1,7 +1,6 @@
 //! A number type that counts operations, to compare the work of a step with earlier versions.
 //!
-//! Counts are independent of the machine, its load and the compiler: they are the instruction counts of the
-//! physics.
+//! Counts are independent of the machine, its load and the compiler: they are the instruction counts of the physics.
 
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};

@@ -1,5 +1,4 @@
-//! Independent integrator for one rocking block: Housner's equation between impacts, restitution
-//! at impacts.
+//! Independent integrator for one rocking block: Housner's equation between impacts, restitution at impacts.
 //!
 //! It shares no code with the contact: classical Runge–Kutta steps, with the times of uplift and
 //! impact by bisection.

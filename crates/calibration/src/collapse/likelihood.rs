@@ -16,8 +16,7 @@ pub struct Errors {
     /// departs more and more from that of any model. Falls of the eight barrels two seconds after the loss of seat
     /// shift by half a second when one contact parameter changes by 10 %.
     pub growth: f64,
-    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that
-    /// is not modeled.
+    /// Probability that a mode, a barrel or a time differs from the simulated one for a reason that is not modeled.
     pub other: f64,
 }
 

@@ -54,8 +54,7 @@ pub(super) struct Observed {
 }
 
 impl Observed {
-    /// Reads every row of a table; `margin` (s) is added to the last time of a row without an end of
-    /// observation.
+    /// Reads every row of a table; `margin` (s) is added to the last time of a row without an end of observation.
     pub(super) fn read(
         table: &Table,
         margin: f64,

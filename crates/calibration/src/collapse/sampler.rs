@@ -17,8 +17,7 @@ const FIRST: f64 = 0.3;
 /// Number of rounds after the first.
 const ROUNDS: usize = 5;
 
-/// Fraction of a later round that is still sampled from the whole box, which bounds the
-/// weights.
+/// Fraction of a later round that is still sampled from the whole box, which bounds the weights.
 const WIDE: f64 = 0.2;
 
 /// Smallest effective number of samples of a proposal or a result; the likelihood is raised to a power

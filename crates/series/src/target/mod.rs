@@ -50,8 +50,7 @@ pub enum NCh2745Soil {
 #[derive(Clone, Debug, PartialEq)]
 pub enum TargetSpectrum {
     /// ASCE/SEI 7-16, section 11.4.6: design spectrum of two ordinates and the long-period
-    /// transition; other dampings by the factor `B_M` of table 17.5-1, except on the peak ground
-    /// acceleration.
+    /// transition; other dampings by the factor `B_M` of table 17.5-1, except on the peak ground acceleration.
     Asce7 {
         /// `S_DS` (g).
         sds: f64,

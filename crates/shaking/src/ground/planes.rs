@@ -4,8 +4,7 @@ use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// Returns the motion of the other horizontal component of the record, with the same factor; `None` if there is
-/// none.
+/// Returns the motion of the other horizontal component of the record, with the same factor; `None` if there is none.
 ///
 /// # Errors
 /// If the record cannot be read, or cannot be scaled accordingly.

@@ -44,8 +44,7 @@ named! {
 pub struct RecordMotion {
     /// Source of the samples.
     pub source: RecordSource,
-    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the
-    /// first.
+    /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`; `None` for the first.
     pub component: Option<String>,
     /// Vertical component.
     pub vertical: Vertical,

@@ -52,8 +52,7 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn first_fall() -> Problem {
     setting("consensus/a-bodies", "scene A (±20°) from bodies", SOURCE)
-        // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half
-        // of it.
+        // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half of it.
         .asks("first fall of a barrel", "s", absolute(1.82, 0.18))
         .by(move |_| match bodies(20.0, 3.0)? {
             [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(

@@ -28,8 +28,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// A stack of one level on a rack so wide and heavy, and with contacts so stiff, that only the device
-/// deforms.
+/// A stack of one level on a rack so wide and heavy, and with contacts so stiff, that only the device deforms.
 fn scenario(settings: &[String], motion: &str, seconds: f64) -> Result<Scenario, Failure> {
     let text = format!(
         "schema = 1\n[stack]\nlevels = 1\ncolumns = 2\nrack = {{ width = \"8 m\", mass = \"400 kg\" }}\n\

@@ -1,5 +1,4 @@
-//! Fragility fits against known numbers, the coverage of their bands, and hazard against its
-//! closed form.
+//! Fragility fits against known numbers, the coverage of their bands, and hazard against its closed form.
 
 use barrelstack_dynamics::math::exp;
 use barrelstack_fragility::{

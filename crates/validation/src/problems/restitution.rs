@@ -47,8 +47,7 @@ pub(super) fn problems() -> Vec<Problem> {
     list
 }
 
-/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must conserve
-/// energy.
+/// Five equal discs in a row that touch, the first of which is struck: an elastic contact must conserve energy.
 fn newtons_cradle() -> Problem {
     setting(
         "restitution/newtons-cradle",

@@ -17,8 +17,7 @@ use crate::spatial::{floor, free, gravity_on_slope, ground_of, solid, yaw};
 use crate::swing::run_crossings;
 use crate::{Failure, Problem};
 
-/// A barrel of 225 liters by its fill: name, mass (kg), moments of inertia (kg·m²) about its axis and
-/// across.
+/// A barrel of 225 liters by its fill: name, mass (kg), moments of inertia (kg·m²) about its axis and across.
 const FILLS: [(&str, f64, f64, f64); 3] =
     [("frozen", 269.0, 14.1, 22.6), ("fluid", 269.0, 4.0, 8.5), ("empty", 48.0, 3.9, 6.0)];
 
