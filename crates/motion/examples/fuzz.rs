@@ -1,4 +1,4 @@
-//! Feeds damaged files to every reader and watches time and memory.
+//! Feeds damaged files to every reader and monitors time and memory.
 //!
 //! `cargo xtask fuzz` runs it in release.
 //! Execution `k` of a reader is the same on every machine: it depends on the reader's name and `k` only.
@@ -27,16 +27,16 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Most memory that one execution may take (MB).
+/// Memory limit of one execution (MB).
 const MOST_MEGABYTES: f64 = 256.0;
-/// Longest that one execution may take (s); a hang is far above, a busy machine far below.
+/// Time limit of one execution (s); a hang is far above, a busy machine far below.
 const LONGEST: f64 = 10.0;
-/// Damaged copies of each file of one megabyte.
+/// Number of damaged copies of each file of one megabyte.
 const DAMAGED: u32 = 4;
 
 const USAGE: &str = "usage: fuzz [--executions N] [--reader NAME] [--first K]";
 
-/// What one reader was seen to do.
+/// Counts of the results of one reader.
 #[derive(Default)]
 struct Seen {
     executions: u64,
@@ -45,7 +45,7 @@ struct Seen {
     megabytes: f64,
 }
 
-/// The execution that is going on, for the watch on time: its number and when it began (ms).
+/// The current execution, for the time limit: its number and its start (ms).
 static NOW: AtomicU64 = AtomicU64::new(u64::MAX);
 static SINCE: AtomicU64 = AtomicU64::new(0);
 
@@ -110,7 +110,7 @@ fn report(name: &str, seen: &Seen, time: Duration) {
     );
 }
 
-/// The seed of one execution.
+/// Returns the seed of one execution.
 fn seed(reader: Reader, k: u64) -> u64 {
     let name = reader.name().bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -158,9 +158,9 @@ fn large(
     Ok(())
 }
 
-/// One execution of the reader, and now and then of the sniffers on the same bytes.
+/// Executes the reader once, and sometimes the sniffers on the same bytes.
 ///
-/// A fault comes back as a sentence that says where its input is.
+/// A fault is returned as a sentence that locates its input.
 fn execute(
     reader: Reader,
     k: u64,
@@ -212,7 +212,7 @@ fn execute(
     ))
 }
 
-/// Ends the program where one execution does not end.
+/// Terminates the program if an execution hangs.
 fn watch(start: Instant) {
     std::thread::spawn(move || {
         loop {

@@ -1,4 +1,4 @@
-//! Channels of one record on one clock: whole steps cut, parts of a step shifted, one common span.
+//! Alignment of the channels of a record: whole steps are cut, fractions of a step shifted, to one common span.
 
 use crate::error::MotionError;
 use crate::math::{self, PI};
@@ -7,17 +7,17 @@ use crate::sampled::integrate;
 use crate::site::Site;
 use crate::utc::Utc;
 
-/// Samples to each side that a shift by part of a step takes into account.
+/// Number of samples to each side in the interpolation of a fractional shift.
 const REACH: usize = 32;
-/// Shifts of less than this share of a step are left alone; clocks are not that good.
+/// Shifts of less than this share of a step are ignored; clocks are less accurate.
 const NEGLECTED: f64 = 0.01;
 
 impl Record {
-    /// Channels that begin at different instants are cut to their common span, and what differs by
-    /// part of a step is shifted; what was done stands in the notes.
+    /// Cuts channels that begin at different instants to their common span, and shifts by remaining fractions of a
+    /// step; the notes state what was done.
     ///
-    /// A shift by part of a step is an interpolation by the sinc function under a squared cosine of 32
-    /// samples to each side, exact to 1e-4 below eight tenths of the Nyquist frequency.
+    /// A fractional shift is an interpolation by the sinc function under a squared cosine of 32 samples to each
+    /// side, exact to 1e-4 below eight tenths of the Nyquist frequency.
     /// Channels of unknown start stay as they are.
     ///
     /// # Errors
@@ -27,7 +27,7 @@ impl Record {
         self.align_some(&all)
     }
 
-    /// As [`Record::align`] for the channels of each station and sensor by themselves.
+    /// Aligns, as [`Record::align`], the channels of each station and sensor separately.
     pub(crate) fn align_each_site(&mut self) -> Result<(), MotionError> {
         let mut sites: Vec<(Site, Vec<usize>)> = Vec::new();
         for (place, channel) in self.channels.iter().enumerate() {
@@ -101,8 +101,8 @@ impl Record {
     }
 }
 
-/// Lets a channel begin `late` seconds later and last `length` seconds; gives the share of a step by
-/// which it was interpolated.
+/// Makes a channel begin `late` seconds later and last `length` seconds; returns the fraction of a step by which
+/// it was interpolated.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();
@@ -128,8 +128,8 @@ fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -
     shifted
 }
 
-/// Values at `k + part` for every `k` of a range; beyond the ends nothing is known, and the weights
-/// within make up for it.
+/// Returns values at `k + part` for every `k` of a range; beyond the ends there are no samples, and the weights
+/// inside are normalized to compensate.
 fn interpolated(values: &[f64], range: std::ops::Range<usize>, part: f64) -> Vec<f64> {
     let reach = REACH as f64;
     // Weight of the sample `j - REACH` away.
@@ -174,7 +174,7 @@ mod tests {
                 assert!(worst < limit, "{share} of Nyquist, {part}: {worst:e}");
             }
         }
-        // A constant stays one up to the ends.
+        // A constant stays constant up to the ends.
         let flat = interpolated(&[2.0; 40], 0..40, 0.3);
         assert!(flat.iter().all(|v| (v - 2.0).abs() < 1e-12));
     }

@@ -1,4 +1,4 @@
-//! Archives as they are downloaded: the files inside zip, tar and tar.gz, and archives in them.
+//! Archives as downloaded: the files inside zip, tar and tar.gz, and nested archives.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::format::{LARGEST_UNPACKED, Source, shorten, zip};
 #[cfg(not(target_family = "wasm"))]
 mod tape;
 
-/// The page does without tar, to stay small.
+/// The page omits tar, to stay small.
 #[cfg(target_family = "wasm")]
 mod tape {
     pub(super) fn is_tar(_: &[u8]) -> bool {
@@ -24,13 +24,13 @@ mod tape {
     }
 }
 
-/// Most files of one archive.
+/// Maximum number of files in an archive.
 const MOST: usize = 50_000;
-/// Most bytes of a tar archive once its gzip is undone.
+/// Maximum size (bytes) of a decompressed tar archive.
 const LARGEST_TAR: u64 = 256 << 20;
-/// Deepest archive within an archive.
+/// Maximum depth of nested archives.
 const DEEPEST: usize = 2;
-/// Endings of archives, in small letters.
+/// Extensions of archives, in lower case.
 const ENDINGS: [&str; 4] = [".zip", ".tar", ".tgz", ".tar.gz"];
 
 /// An archive whose files can be read one by one.
@@ -55,14 +55,14 @@ enum Kind {
 }
 
 impl Archive {
-    /// Whether a name ends as those of archives do: `.zip`, `.tar`, `.tgz` or `.tar.gz`.
+    /// `true` if a name has the extension of an archive: `.zip`, `.tar`, `.tgz` or `.tar.gz`.
     pub fn is_named(name: &str) -> bool {
         let lower = name.to_ascii_lowercase();
         ENDINGS.iter().any(|ending| lower.ends_with(ending))
     }
 
-    /// Opens bytes that are a zip, tar or tar.gz archive; `None` for all others, a NumPy archive among
-    /// them. `name` is used in messages only.
+    /// Opens bytes that are a zip, tar or tar.gz archive; `None` for all others, including NumPy archives. `name` is
+    /// used in messages only.
     ///
     /// # Errors
     /// If gzip around a tar archive is damaged or unpacks to more than 256 MB.
@@ -80,7 +80,7 @@ impl Archive {
         }
         let inside = || flate2::read::MultiGzDecoder::new(bytes.as_slice());
         let mut head = Vec::new();
-        // What is damaged so early is refused as a gzip file of one record.
+        // A file damaged this early is refused as a gzip file of one record.
         if inside().take(512).read_to_end(&mut head).is_err() || !tape::is_tar(&head) {
             return Ok(None);
         }
@@ -96,21 +96,21 @@ impl Archive {
         archive(all, Kind::Tar)
     }
 
-    /// The archive and the name inside, of a path such as `folder/records.zip/a.AT2`; `None` where no
-    /// folder of the path ends as archives do.
+    /// Splits a path such as `folder/records.zip/a.AT2` into the archive and the name inside; `None` if no folder of
+    /// the path has the extension of an archive.
     pub fn path_inside(path: &Path) -> Option<(PathBuf, String)> {
         let outer = path.ancestors().skip(1).filter(|folder| {
             folder.file_name().is_some_and(|name| Self::is_named(&name.to_string_lossy()))
         });
-        // The outermost: what lies within is an archive in an archive.
+        // The outermost: further ones are nested archives.
         let archive = outer.last()?;
         let inner = path.strip_prefix(archive).ok()?;
         Some((archive.to_owned(), inner.to_string_lossy().replace('\\', "/")))
     }
 
-    /// Names of all files, sorted; those in archives inside as `inner.zip/name`.
+    /// Returns the names of all files, sorted; those in nested archives as `inner.zip/name`.
     ///
-    /// Folders, hidden files and what one system adds about its own files are left out.
+    /// Folders, hidden files and metadata files of operating systems are left out.
     ///
     /// # Errors
     /// If the archive is damaged.
@@ -142,7 +142,7 @@ impl Archive {
         Ok(())
     }
 
-    /// The bytes of one file by its name, as [`Archive::names`] gives it.
+    /// Returns the bytes of a file by its name from [`Archive::names`].
     ///
     /// # Errors
     /// If there is no such file, or it is damaged, encrypted, or has more than 12 MB.
@@ -197,7 +197,7 @@ impl Archive {
         if found.len() as u64 > limit { Err(too_large()) } else { Ok(found) }
     }
 
-    /// Calls `take` with name and bytes of every file until it says that it has enough.
+    /// Calls `take` with name and bytes of every file until it returns `true`.
     fn each_of_tar(&self, mut take: impl FnMut(&str, &[u8]) -> bool) -> Result<(), ReadError> {
         tape::each_file(&self.bytes, |name, bytes| match bytes {
             Some(bytes) => Ok(take(name, bytes)),

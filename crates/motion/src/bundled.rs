@@ -1,14 +1,14 @@
-//! Motions that come with the crate, with the notices their owners ask for in their headers.
+//! Bundled motions, with the notices required by their owners in their headers.
 
 use crate::format::{ReadOptions, read};
 use crate::record::Record;
 
-/// Names that [`bundled`] knows.
+/// Names that [`bundled`] accepts.
 pub const BUNDLED: &[&str] = &["napa-college-2014"];
 
 const NAPA_COLLEGE: &[u8] = include_bytes!("../records/napa-college-2014.txt");
 
-/// A bundled record by name.
+/// Returns a bundled record by name.
 ///
 /// `napa-college-2014` is the South Napa earthquake of 24 August 2014, M 6.0, at Napa College
 /// (CE.68150): E (PGA 0.373 g), N (0.339 g) and up (0.215 g), 200 Hz, 35 s.

@@ -1,4 +1,4 @@
-//! A record as a whole, changed: processed, scaled, matched; every step in its notes.
+//! Operations on whole records: processing, scaling, matching; every step is added to the notes.
 
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
@@ -11,7 +11,7 @@ use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 
 impl Channel {
-    /// The channel as a sampled motion, with the velocity it starts with.
+    /// Returns the channel as a sampled motion, with its initial velocity.
     ///
     /// # Errors
     /// As [`Sampled::new`].
@@ -22,7 +22,7 @@ impl Channel {
 }
 
 impl Record {
-    /// All channels after a chain, every step of it in the notes.
+    /// Processes all channels by a chain, and adds every step to the notes.
     ///
     /// ```
     /// use barrelstack_motion::{Processing, bundled};
@@ -48,14 +48,14 @@ impl Record {
             for step in done.steps {
                 out.notes.push(format!("{}: {step}", channel.name));
             }
-            // What the header stated is true of other numbers.
+            // Stated peaks of the header do not apply to other numbers.
             channel.peaks.clear();
         }
         out.stage = Stage::Corrected;
         Ok(out)
     }
 
-    /// All channels times one factor; what it is for belongs in the notes.
+    /// Multiplies all channels by one factor; the purpose belongs in the notes.
     #[must_use]
     pub fn multiplied(&self, factor: f64) -> Self {
         let mut out = self.clone();
@@ -69,9 +69,9 @@ impl Record {
         out
     }
 
-    /// One channel (from 0) matched to a target, which the notes call `named`; all others take its first scaling only.
+    /// Matches one channel (from 0) to a target, which the notes call `named`; all others take its first scaling only.
     ///
-    /// `nearly` takes the best motion where the tolerance is not reached.
+    /// `nearly` accepts the best motion where the tolerance is not reached.
     ///
     /// # Errors
     /// As [`GroundMotion::match_spectrum`], and if there is no such channel.

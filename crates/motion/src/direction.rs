@@ -1,6 +1,6 @@
-//! What a component's name says about where it points.
+//! Directions of components, parsed from their names.
 
-/// Whether a component lies in the ground plane.
+/// Orientation of a component relative to the ground plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Orientation {
     /// In the ground plane.
@@ -14,24 +14,24 @@ pub enum Orientation {
 pub struct Direction {
     /// Azimuth of the positive direction, degrees clockwise from north, 0 to below 360.
     pub azimuth: Option<f64>,
-    /// Horizontal or vertical, when the name tells.
+    /// Horizontal or vertical, if the name states it.
     pub orientation: Option<Orientation>,
-    /// The name says the positive direction is down.
+    /// `true` if the name states that the positive direction is down.
     pub downward: bool,
 }
 
 impl Direction {
-    /// A horizontal direction of known azimuth (degrees clockwise from north).
+    /// Returns a horizontal direction of known azimuth (degrees clockwise from north).
     pub fn horizontal(azimuth: f64) -> Self {
         Self { azimuth: Some(azimuth.rem_euclid(360.0)), ..Self::some_horizontal() }
     }
 
-    /// A horizontal direction whose azimuth is unknown.
+    /// Returns a horizontal direction of unknown azimuth.
     pub fn some_horizontal() -> Self {
         Self { azimuth: None, orientation: Some(Orientation::Horizontal), downward: false }
     }
 
-    /// The vertical, positive upward.
+    /// Returns the vertical, positive upward.
     pub fn up() -> Self {
         Self { azimuth: None, orientation: Some(Orientation::Vertical), downward: false }
     }
@@ -40,9 +40,9 @@ impl Direction {
         Self { downward: true, ..Self::up() }
     }
 
-    /// Reads names such as `360`, `90 Deg`, `N28W`, `E-W`, `UP`, `HNZ`, `L`.
+    /// Parses names such as `360`, `90 Deg`, `N28W`, `E-W`, `UP`, `HNZ`, `L`.
     ///
-    /// A name that says nothing gives the default: all unknown.
+    /// A name without a direction gives the default: all unknown.
     ///
     /// ```
     /// use barrelstack_motion::{Direction, Orientation};
@@ -77,8 +77,8 @@ impl Direction {
         bearing(text).or_else(|| seed_channel(text)).unwrap_or_default()
     }
 
-    /// What a name says, or else the code of the direction in headers of CSMIP and COSMOS: an azimuth, or
-    /// a number from 400 on, of which those from 700 on are relative to a structure.
+    /// Parses a name, or else the code of the direction in headers of CSMIP and COSMOS: an azimuth, or a number from
+    /// 400 on, of which those from 700 on are relative to a structure.
     pub(crate) fn of_name_or_code(name: &str, code: Option<f64>) -> Self {
         let stated = Self::parse(name);
         if stated != Self::default() {
@@ -94,14 +94,14 @@ impl Direction {
     }
 }
 
-/// A quadrant bearing such as `N28W`.
+/// Parses a quadrant bearing such as `N28W`.
 fn bearing(text: &str) -> Option<Direction> {
     let south = match text.chars().next()? {
         'N' => false,
         'S' => true,
         _ => return None,
     };
-    // `W` is written `O` in Spanish.
+    // West is `O` in Spanish.
     let west = match text.chars().last()? {
         'E' => false,
         'W' | 'O' => true,
@@ -119,7 +119,7 @@ fn bearing(text: &str) -> Option<Direction> {
     }))
 }
 
-/// A three-letter channel code whose last letter is the direction, such as `HNE`.
+/// Parses a three-letter channel code whose last letter is the direction, such as `HNE`.
 fn seed_channel(text: &str) -> Option<Direction> {
     let [band, instrument, direction] = text.as_bytes() else { return None };
     if !band.is_ascii_uppercase() || !matches!(instrument, b'N' | b'L' | b'G' | b'H') {

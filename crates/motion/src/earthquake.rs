@@ -7,14 +7,14 @@ use crate::site::Site;
 /// Mean radius of the Earth (km).
 const EARTH: f64 = 6371.0;
 
-/// Magnitude and place of the earthquake that a header states; what it does not state is empty.
+/// Magnitude and place of an earthquake, as stated in a header; unstated fields are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Earthquake {
-    /// Number or name among those of its agency.
+    /// Identifier in the catalog of its agency.
     pub id: String,
-    /// Magnitude; of several the moment magnitude.
+    /// Magnitude; of several, the moment magnitude.
     pub magnitude: Option<f64>,
-    /// Scale of the magnitude as the header writes it, such as `Mw`; empty where it does not.
+    /// Scale of the magnitude as written in the header, such as `Mw`; empty if not stated.
     pub scale: String,
     /// Latitude of the epicenter (degrees, positive north).
     pub latitude: Option<f64>,
@@ -22,12 +22,12 @@ pub struct Earthquake {
     pub longitude: Option<f64>,
     /// Depth (km).
     pub depth: Option<f64>,
-    /// Epicentral distance that the header states (km).
+    /// Epicentral distance stated in the header (km).
     pub epicentral_distance: Option<f64>,
 }
 
 impl Earthquake {
-    /// The first of several magnitudes that is one, with its scale; 0 and −999 stand for none.
+    /// Returns the first valid one of several magnitudes, with its scale; 0 and −999 mean unknown.
     pub(crate) fn of_magnitude<'a>(
         stated: impl IntoIterator<Item = (&'a str, Option<f64>)>,
     ) -> Self {
@@ -38,7 +38,7 @@ impl Earthquake {
         Self { magnitude, scale: scale.to_owned(), ..Self::default() }
     }
 
-    /// The same with an epicenter (degrees) and a depth (km), where they are possible.
+    /// Adds an epicenter (degrees) and a depth (km), if they are valid.
     pub(crate) fn at(self, epicenter: Option<(f64, f64)>, depth: Option<f64>) -> Self {
         let Site { latitude, longitude, .. } = Site::default().at(epicenter);
         let depth = depth.filter(|depth| (0.0..1000.0).contains(depth));
@@ -47,8 +47,8 @@ impl Earthquake {
 }
 
 impl Record {
-    /// Epicentral distance (km): as the header states it, else along the great circle from the epicenter to
-    /// the station, where it states both.
+    /// Returns the epicentral distance (km): as stated in the header, else along the great circle from the epicenter
+    /// to the station, if both are stated.
     pub fn epicentral_distance(&self) -> Option<f64> {
         let quake = &self.earthquake;
         let stated =
@@ -61,7 +61,7 @@ impl Record {
     }
 }
 
-/// Distance (km) between two points (degrees) on a sphere.
+/// Returns the distance (km) between two points (degrees) on a sphere.
 fn great_circle(from: (f64, f64), to: (f64, f64)) -> f64 {
     let radians = math::PI / 180.0;
     let half = |angle: f64| math::powi(math::sin(0.5 * radians * angle), 2);

@@ -1,41 +1,40 @@
-//! What can go wrong between a file and a usable ground motion, as sentences with a next move.
+//! Errors between a file and a usable ground motion, as sentences with a remedy.
 
 pub use barrelstack_series::MotionError;
 
-/// Why a file was refused.
+/// Reason for the refusal of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
     /// No reader recognizes the bytes.
     Unrecognized,
     /// The file is sound but holds something other than an acceleration history.
     NotAcceleration,
-    /// The file contradicts itself or its format: cut, overflown, counted wrong, not a number.
+    /// The file contradicts itself or its format: truncated, overflowed, miscounted, not a number.
     Damaged,
-    /// The archive holds several records, of which one must be named.
+    /// The archive has several records, of which one must be named.
     SeveralRecords,
-    /// The file does not say something that must be known and was not given by the caller.
+    /// The file lacks required information that the caller did not give.
     Missing(Given),
-    /// The channel is of another instrument than an accelerometer; the caller may have it
-    /// differentiated.
+    /// The channel is of another instrument than an accelerometer; the caller may request differentiation.
     OtherInstrument,
-    /// Something that the caller gave is out of its range; the file was not looked at.
+    /// An option is out of range; the file was not read.
     Options,
 }
 
-/// What a caller may have to say of a file.
+/// Information that a caller may have to supply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Given {
     /// The unit of acceleration.
     Unit,
     /// The step.
     Step,
-    /// The sensitivity, as the file holds counts.
+    /// The sensitivity, since the file has counts.
     Sensitivity,
-    /// One of both, as the file may hold accelerations or counts.
+    /// Either of both, since the file may have accelerations or counts.
     UnitOrSensitivity,
 }
 
-/// A file that could not be read: where, what was expected, what was found and what to do.
+/// Error of reading a file: its place, the expectation, the finding, and the remedy.
 ///
 /// The fields are those of [`ReadFailure`], reached directly: `error.line`, `error.refusal`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -68,15 +67,15 @@ pub struct ReadFailure {
     pub column: Option<usize>,
     /// The kind of refusal, for programs.
     pub refusal: Refusal,
-    /// What the reader expected there.
+    /// The expectation of the reader.
     pub expected: String,
-    /// What stands there.
+    /// The finding there.
     pub found: String,
-    /// The next move.
+    /// The remedy.
     pub remedy: String,
 }
 
-/// `, line 5, column 3`, as far as it is known.
+/// Formats `, line 5, column 3`, as far as known.
 fn place(line: Option<usize>, column: Option<usize>) -> String {
     let part =
         |what: &str, of: Option<usize>| of.map_or_else(String::new, |n| format!(", {what} {n}"));

@@ -1,24 +1,24 @@
-//! Two horizontals turned to where they matter: across and along a fault, or where the ground was fastest.
+//! Rotation of two horizontals: across and along a fault, or to the direction of the largest velocity.
 
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 use crate::rotd::rotated_peak;
 use crate::select::Component;
 
-/// Two horizontals turned.
+/// Two rotated horizontals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// Across the fault, or along the fastest direction.
+    /// Across the fault, or along the direction of the largest velocity.
     pub first: Channel,
-    /// Along the fault, or across the fastest direction.
+    /// Along the fault, or across the direction of the largest velocity.
     pub second: Channel,
-    /// What was done, one sentence.
+    /// Description of the rotation, one sentence.
     pub note: String,
 }
 
 impl Record {
-    /// The motion across (fault-normal) and along (fault-parallel) a fault of a strike (degrees
-    /// clockwise from north), positive at 90 degrees clockwise from the strike and along it.
+    /// Returns the motion across (fault-normal) and along (fault-parallel) a fault of a strike (degrees clockwise
+    /// from north), positive at 90 degrees clockwise from the strike and along it.
     ///
     /// # Errors
     /// If the strike is not finite or there are not two horizontals of known azimuth.
@@ -36,7 +36,7 @@ impl Record {
         })
     }
 
-    /// The motion along the horizontal direction of the largest velocity, and across it.
+    /// Returns the motion along the horizontal direction of the largest velocity, and across it.
     ///
     /// # Errors
     /// If there are not two horizontals of known azimuth.
@@ -57,11 +57,11 @@ impl Record {
         })
     }
 
-    /// The motion along an azimuth (degrees) under a name of its own.
+    /// Returns the motion along an azimuth (degrees) under a given name.
     fn named_along(&self, azimuth: f64, name: &str) -> Result<Channel, MotionError> {
         let mut channel = self.component(&Component::Azimuth(azimuth.rem_euclid(360.0)))?;
         name.clone_into(&mut channel.name);
-        // What the header stated is true of another direction or name.
+        // Stated peaks of the header do not apply to another direction.
         channel.peaks.clear();
         Ok(channel)
     }

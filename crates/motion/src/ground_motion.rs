@@ -1,4 +1,4 @@
-//! A ground motion ready to drive a model: a horizontal and perhaps a vertical component.
+//! A ground motion ready to drive a model: a horizontal and optionally a vertical component.
 
 use crate::error::MotionError;
 use crate::history::History;
@@ -6,7 +6,7 @@ use crate::intensity::IntensityMeasure;
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 
-/// A motion with everything that was done to it.
+/// A motion with its provenance.
 ///
 /// ```
 /// use barrelstack_motion::{GroundMotion, IntensityMeasure, Pulse};
@@ -24,20 +24,20 @@ pub struct GroundMotion {
     pub vertical: Option<History>,
     /// Name for tables and plots.
     pub name: String,
-    /// Time after which nothing shakes (s).
+    /// Time (s) at which the motion ends.
     pub duration: f64,
-    /// Every processing and scaling step, one sentence each, in the order done.
+    /// Every processing and scaling step, one sentence each, in order.
     pub provenance: Vec<String>,
 }
 
 impl GroundMotion {
-    /// A motion of the given components.
+    /// Creates a motion from components.
     pub fn new(name: impl Into<String>, horizontal: History, vertical: Option<History>) -> Self {
         let duration = horizontal.duration().max(vertical.as_ref().map_or(0.0, History::duration));
         Self { horizontal, vertical, name: name.into(), duration, provenance: Vec::new() }
     }
 
-    /// A horizontal motion given by a formula.
+    /// Creates a horizontal motion from a formula.
     ///
     /// # Errors
     /// If a parameter of the pulse is out of range.
@@ -48,7 +48,7 @@ impl GroundMotion {
         Ok(motion)
     }
 
-    /// A horizontal motion of equally spaced accelerations (m/s²), integrated from rest.
+    /// Creates a horizontal motion from equally spaced accelerations (m/s²), integrated from rest.
     ///
     /// # Errors
     /// As [`Sampled::new`].
@@ -60,14 +60,14 @@ impl GroundMotion {
         Ok(Self::new(name, History::Sampled(Sampled::new(time_step, acceleration)?), None))
     }
 
-    /// All components times `factor`.
+    /// Multiplies all components by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let step = format!("scaled by {factor:.6} (one factor for all components)");
         self.changed(|history| history.scaled(factor), step)
     }
 
-    /// The motion for a model `length_scale` times the size under the same gravity: time times
+    /// Returns the motion for a model of `length_scale` times the size under the same gravity: time times
     /// `√length_scale`, displacement times `length_scale`, velocity times `√length_scale`,
     /// acceleration unchanged.
     #[must_use]
@@ -79,7 +79,7 @@ impl GroundMotion {
         self.changed(|history| history.froude(length_scale), step)
     }
 
-    /// All components changed alike, with what was done.
+    /// Applies a change to all components, and adds its description.
     fn changed(&self, change: impl Fn(&History) -> History, step: String) -> Self {
         let horizontal = change(&self.horizontal);
         let vertical = self.vertical.as_ref().map(change);
@@ -87,11 +87,11 @@ impl GroundMotion {
         Self { provenance, ..Self::new(self.name.clone(), horizontal, vertical) }
     }
 
-    /// The motion whose horizontal component has the given intensity (SI units); the vertical
+    /// Scales the motion so that its horizontal component has a given intensity (SI units); the vertical
     /// component takes the same factor.
     ///
     /// # Errors
-    /// If the measure does not grow with amplitude, is zero here, or the target is not above zero.
+    /// If the measure does not grow with amplitude, is zero here, or the target is not positive.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
         let factor = self.scale_factor(measure, target)?;
         let step = format!(
@@ -102,7 +102,7 @@ impl GroundMotion {
         Ok(self.changed(|history| history.scaled(factor), step))
     }
 
-    /// The factor that brings the horizontal component to the given intensity (SI units).
+    /// Returns the factor that brings the horizontal component to a given intensity (SI units).
     ///
     /// # Errors
     /// As [`GroundMotion::scale_to`].
@@ -116,7 +116,7 @@ impl GroundMotion {
         })
     }
 
-    /// An intensity measure of the horizontal component (SI units).
+    /// Returns an intensity measure of the horizontal component (SI units).
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -124,23 +124,23 @@ impl GroundMotion {
         measure.of_history(&self.horizontal)
     }
 
-    /// The time (s) from which on the acceleration of no component exceeds a limit (m/s²).
+    /// Returns the time (s) after which the acceleration of no component exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         let vertical = self.vertical.as_ref().map_or(0.0, |vertical| vertical.calm_from(limit));
         self.horizontal.calm_from(limit).max(vertical)
     }
 
-    /// Peak ground acceleration of the horizontal component (m/s²).
+    /// Returns the peak ground acceleration of the horizontal component (m/s²).
     pub fn pga(&self) -> f64 {
         self.horizontal.pga()
     }
 
-    /// Peak ground velocity of the horizontal component (m/s).
+    /// Returns the peak ground velocity of the horizontal component (m/s).
     pub fn pgv(&self) -> f64 {
         self.horizontal.pgv()
     }
 
-    /// Peak ground displacement of the horizontal component (m).
+    /// Returns the peak ground displacement of the horizontal component (m).
     pub fn pgd(&self) -> f64 {
         self.horizontal.pgd()
     }

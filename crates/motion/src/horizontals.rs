@@ -1,4 +1,4 @@
-//! A measure of two horizontals as one number.
+//! Measures of two horizontals, combined to one number.
 
 use std::str::FromStr;
 
@@ -8,7 +8,7 @@ use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
 use crate::sampled::{Sampled, running_trapezoid};
 
-/// How the measures of two horizontals become one number.
+/// Combination of the measures of two horizontals to one number.
 ///
 /// Parses from and prints as `rotd50`, `rotd100` and `geomean`.
 ///
@@ -31,11 +31,11 @@ pub enum Horizontals {
 }
 
 impl Horizontals {
-    /// The measure of two components of one step (SI units).
+    /// Returns the measure of two components with one step (SI units).
     ///
-    /// Over directions the longer one is cut to the shorter; the geometric mean takes each whole.
-    /// Peaks and spectral accelerations are taken from the convex hull of the two responses, all
-    /// other measures from the motion turned degree by degree.
+    /// Over directions the longer one is cut to the shorter; the geometric mean uses each in full.
+    /// Peaks and spectral accelerations are computed from the convex hull of the two responses, all other measures from
+    /// the motion rotated degree by degree.
     ///
     /// # Errors
     /// If the steps differ, or a parameter of the measure is out of range.
@@ -54,7 +54,7 @@ impl Horizontals {
             (_, IntensityMeasure::Pga) => rotated_peak(first.acceleration(), second.acceleration()),
             (_, IntensityMeasure::Pgv) => rotated_peak(first.velocity(), second.velocity()),
             (_, IntensityMeasure::Pgd) => {
-                // By trapezoids, as the measure of one component is.
+                // By trapezoids, like the measure of one component.
                 let along = |one: &Sampled| running_trapezoid(one.time_step(), one.velocity());
                 rotated_peak(&along(first), &along(second))
             }
@@ -81,11 +81,10 @@ impl Horizontals {
         }
     }
 
-    /// The one factor for both components that brings the measure to `target` (SI units).
+    /// Returns the common factor of both components that brings the measure to `target` (SI units).
     ///
     /// # Errors
-    /// As [`Horizontals::of`]; if the measure does not grow with the motion or is zero, or the
-    /// target is not above zero.
+    /// As [`Horizontals::of`]; if the measure does not grow with the motion or is zero, or the target is not positive.
     pub fn scale_factor(
         self,
         measure: IntensityMeasure,
@@ -99,7 +98,7 @@ impl Horizontals {
     }
 }
 
-/// The measure along every direction, in ascending order.
+/// Returns the measure along every direction, sorted ascending.
 fn turned(
     measure: IntensityMeasure,
     first: &Sampled,

@@ -1,4 +1,4 @@
-//! What metadata say of an instrument: sensitivity, quantity, direction; from `StationXML` or by hand.
+//! Metadata of instruments: sensitivity, quantity, direction; from `StationXML` or given by the caller.
 
 use crate::direction::Direction;
 use crate::error::MotionError;
@@ -7,34 +7,34 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// Metadata of one channel of a station; an empty code stands for any.
+/// Metadata of one channel of a station; an empty code matches any.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Instrument {
     /// Network code.
     pub network: String,
     /// Station code.
     pub station: String,
-    /// Location code; none for any, empty for the empty one.
+    /// Location code; `None` matches any, an empty one the empty code.
     pub location: Option<String>,
     /// Channel code, such as `HNE`.
     pub channel: String,
-    /// From when and until when this holds.
+    /// Start and end of validity.
     pub epoch: (Option<Utc>, Option<Utc>),
-    /// Counts to one m/s², or to one m/s or m as the quantity says; below zero where positive counts
-    /// mean motion against [`Instrument::direction`].
+    /// Counts per m/s², or per m/s or m for another quantity; negative if positive counts mean motion against
+    /// [`Instrument::direction`].
     pub sensitivity: f64,
-    /// Quantity that the instrument measures, where that is known.
+    /// Quantity that the instrument measures, if known.
     pub quantity: Option<Quantity>,
-    /// Input unit of an instrument that measures no motion, such as `Pa`; such a channel is refused.
+    /// Input unit of an instrument that does not measure motion, such as `Pa`; such a channel is refused.
     pub other_unit: Option<String>,
-    /// Where it points, where that is known.
+    /// Its direction, if known.
     pub direction: Option<Direction>,
     /// Latitude, longitude (degrees) and elevation (m), where known.
     pub place: [Option<f64>; 3],
 }
 
 impl Instrument {
-    /// Whether this describes a channel that begins at `start`.
+    /// `true` if this describes a channel that begins at `start`.
     pub(crate) fn describes(&self, seed: &SeedName, start: Option<Utc>) -> bool {
         let fits = |mine: &str, theirs: &str| mine.is_empty() || mine.eq_ignore_ascii_case(theirs);
         let (from, until) = self.epoch;
@@ -47,7 +47,7 @@ impl Instrument {
             })
     }
 
-    /// What is known about a place that a waveform file does not tell.
+    /// Fills in the place of a site where the waveform file does not state it.
     pub(crate) fn complete(&self, site: &mut Site) {
         let [latitude, longitude, elevation] = self.place;
         site.latitude = site.latitude.or(latitude);
@@ -66,8 +66,7 @@ pub(crate) struct SeedName {
 }
 
 impl SeedName {
-    /// What the second letter of the channel code says is measured, if it is no acceleration
-    /// (SEED 2.4, appendix A).
+    /// Returns the quantity by the second letter of the channel code, if it is not acceleration (SEED 2.4, appendix A).
     pub(crate) fn other_quantity(&self) -> Option<(Quantity, &'static str)> {
         let [_, instrument, _] = self.channel.as_bytes() else { return None };
         match instrument {
@@ -79,17 +78,17 @@ impl SeedName {
     }
 }
 
-/// Largest deviation of a dip from level or plumb (degrees) that counts as either.
+/// Largest deviation of a dip from horizontal or vertical (degrees) that counts as either.
 const LARGEST_TILT: f64 = 5.0;
 
 /// Reads the channels of a `StationXML` file that have a sensitivity, in file order.
 ///
-/// Sensitivities in g, gal, cm/s², mm/s², nm/s² and the like are converted to counts to one m/s² (those of
-/// velocity and displacement to one m/s or m); a channel with another input unit, such as Pa, keeps it in
+/// Sensitivities in g, gal, cm/s², mm/s², nm/s² and similar units are converted to counts per m/s² (those of
+/// velocity and displacement to counts per m/s or m); a channel with another input unit, such as Pa, keeps it in
 /// [`Instrument::other_unit`].
 ///
 /// # Errors
-/// If the text is no XML.
+/// If the text is not XML.
 pub fn station_xml(text: &str) -> Result<Vec<Instrument>, MotionError> {
     let document = roxmltree::Document::parse(text).map_err(|error| {
         MotionError::parameter("StationXML", "an XML document", error.to_string())
@@ -146,7 +145,7 @@ fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument
     })
 }
 
-/// Rates of a series by central differences of fourth order, of first order next to the ends.
+/// Differentiates a series by central differences of fourth order, of first order next to the ends.
 pub(crate) fn differentiated(values: &[f64], time_step: f64) -> Vec<f64> {
     let n = values.len();
     let slope = |a: usize, b: usize| (values[b] - values[a]) / ((b - a) as f64 * time_step);
@@ -166,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_wave_is_differentiated() {
-        // Thirty samples to a wave: measured 1.3e-4 of its largest rate.
+        // Thirty samples per wave: measured 1.3e-4 of its largest rate.
         let w = 2.0;
         let step = std::f64::consts::TAU / w / 30.0;
         let values: Vec<f64> = (0..200).map(|k| sin(w * step * f64::from(k))).collect();

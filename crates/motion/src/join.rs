@@ -1,24 +1,23 @@
-//! Joining files: parts of one record that overlap in time, and components that lie in files of
-//! their own.
+//! Joining of files: parts of one record that overlap in time, and components in separate files.
 
 use crate::error::MotionError;
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 
-/// Shortest overlap that is looked for (s).
+/// Shortest overlap (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
 /// Largest share of the motion that may differ inside an overlap.
 const LARGEST_MISFIT: f64 = 0.05;
 
 impl Record {
-    /// One record of several files that hold one component each, or several, on one clock
+    /// Gathers one record from several files of one component each, or several, on one clock
     /// ([`Record::align`]).
     ///
-    /// Channel names that occur twice get the file's name in front.
+    /// Repeated channel names get the file's name as a prefix.
     ///
     /// # Errors
     /// If there is no record, the steps differ, the files are of different stations, sensors, events,
-    /// publishers or stages, or have no span in common.
+    /// publishers or stages, or have no common span.
     pub fn gather(records: &[Self]) -> Result<Self, MotionError> {
         if let Some((first, rest)) = records.split_first()
             && let Some(what) = rest.iter().find_map(|record| first.unlike(record))
@@ -29,10 +28,10 @@ impl Record {
         Self::gather_mixed(records)
     }
 
-    /// As [`Record::gather`] whatever the files are of; their channels may then be combined.
+    /// Gathers files as [`Record::gather`] regardless of their origin; their channels may then be combined.
     ///
     /// # Errors
-    /// If there is no record, the steps differ, or the files have no span in common.
+    /// If there is no record, the steps differ, or the files have no common span.
     pub fn gather_mixed(records: &[Self]) -> Result<Self, MotionError> {
         let Some((first, rest)) = records.split_first() else {
             return Err(MotionError::parameter("records to gather", "at least 1", 0));
@@ -78,8 +77,8 @@ impl Record {
         Ok(gathered)
     }
 
-    /// Ends all channels together, as a file with a column for each has them; the longer ones lose their last
-    /// samples, which the notes tell.
+    /// Cuts all channels to the shortest, as a file with one column per channel has them; the notes list the samples
+    /// cut from longer ones.
     pub fn cut_to_shortest(&mut self) {
         let shortest = self.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
         for channel in &mut self.channels {
@@ -94,7 +93,7 @@ impl Record {
         }
     }
 
-    /// Why two files hold no components of one record, if they tell.
+    /// Returns the reason why two files are not components of one record, if they state one.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);
@@ -103,7 +102,7 @@ impl Record {
                 return Some(format!("{files} are of {what}"));
             }
         }
-        // Files of the user's own making may stand beside those of a publisher.
+        // Files made by the user may be combined with those of a publisher.
         let own = |record: &Self| ["barrelstack", "columns"].contains(&record.format);
         if names_differ(one.format, other.format) && !own(one) && !own(other) {
             return Some(format!("{files} have the formats {} and {}", one.format, other.format));
@@ -117,11 +116,11 @@ impl Record {
             .then(|| format!("{files} are {} and {}", stages.0, stages.1))
     }
 
-    /// Parts of one long record joined where they overlap.
+    /// Joins parts of one long record where they overlap.
     ///
     /// The overlap is found by sliding the start of the later part along the earlier one; the later
     /// part is shifted to the baseline of the earlier one.
-    /// Nothing is joined that does not repeat: parts without an overlap of a second are refused.
+    /// Only repeated samples are joined: parts without an overlap of a second are refused.
     ///
     /// # Errors
     /// If there is no part, channels or steps differ, or a pair of parts does not overlap.
@@ -138,10 +137,10 @@ impl Record {
     }
 }
 
-/// Whether two texts name different things; an empty one names nothing.
+/// `true` if two texts name different things; an empty one matches any.
 ///
-/// Case, blanks and punctuation are ignored, and characters outside ASCII where a letter or digit within it is left:
-/// formats replace commas, parentheses and accents.
+/// Case, blanks and punctuation are ignored, and characters outside of ASCII if a letter or digit remains: formats
+/// replace commas, parentheses and accents.
 pub(crate) fn names_differ(one: &str, other: &str) -> bool {
     let letters = |name: &str| {
         let kept = name.chars().filter(char::is_ascii_alphanumeric);
@@ -156,7 +155,7 @@ pub(crate) fn names_differ(one: &str, other: &str) -> bool {
 
 const ONE_STEP: &str = "give files of one step";
 
-/// That two channels have one step; else what is to be done.
+/// Checks that two channels have one step; the error includes the remedy.
 pub(crate) fn require_step(
     one: &Channel,
     other: &Channel,
@@ -176,8 +175,8 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
     let refuse =
         |what: String| MotionError::mismatch(what, "give the parts of one record in order of time");
     let mut overlap = None;
-    // Channels of plain columns are named after their files: where no name is shared, the order in
-    // the file tells which belong together.
+    // Channels of plain columns are named after their files: if no name is shared, channels are matched by their order
+    // in the file.
     let shares = |channel: &Channel| part.channels.iter().any(|other| other.name == channel.name);
     let by_order =
         joined.channels.len() == part.channels.len() && !joined.channels.iter().any(shares);
@@ -221,7 +220,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let offset = math::mean(tail) - math::mean(head);
         let seconds = found as f64 * mine.time_step;
         mine.acceleration.extend(theirs.acceleration[found..].iter().map(|a| a + offset));
-        // Stated peaks belong to the parts.
+        // Stated peaks apply to the parts.
         mine.peaks.clear();
         joined.notes.push(format!(
             "channel {name}: {} joined where its first {seconds:.2} s repeat the end of the part \
@@ -234,13 +233,13 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// Number of samples at the end of `first` that `second` repeats at its start.
+/// Returns the number of samples at the end of `first` that `second` repeats at its start.
 fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     let (a, b) = (&first.acceleration, &second.acceleration);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let shortest = (SHORTEST_OVERLAP / first.time_step).ceil().min(1e9) as usize;
     let longest = a.len().min(b.len());
-    // The probe must move, or anything quiet would match it.
+    // The probe must contain motion, or any quiet part would match it.
     let probe_length = shortest.max(200).min(longest);
     let mut best: Option<(f64, usize)> = None;
     for samples in (shortest..=longest).rev() {
@@ -254,7 +253,7 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     best.map(|(_, samples)| samples)
 }
 
-/// Root-mean-square difference of two series without their means, over the size of the motion.
+/// Returns the root-mean-square difference of two series without their means, over the size of the motion.
 fn misfit(one: &[f64], other: &[f64]) -> f64 {
     let (mean_one, mean_other) = (math::mean(one), math::mean(other));
     let (mut difference, mut size) = (0.0, 0.0);

@@ -1,9 +1,8 @@
 //! Strong ground motion: read, process, scale, synthesize and measure.
 //!
-//! A file becomes a [`Record`] (as recorded, SI, with everything the header said), a record becomes a
-//! [`GroundMotion`] (processed, scaled, ready to drive a model), and a motion answers
-//! [`History::at`] with displacement, velocity and acceleration that are exact derivatives of one
-//! another at any time.
+//! A file becomes a [`Record`] (as recorded, SI, with all data of its header), a record becomes a
+//! [`GroundMotion`] (processed, scaled, ready to drive a model), and [`History::at`] returns displacement,
+//! velocity and acceleration of a motion at any time, which are exact derivatives of one another.
 //!
 //! ```
 //! use barrelstack_motion::{IntensityMeasure, bundled};
@@ -21,18 +20,18 @@
 //!
 //! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: directions, latitudes and longitudes are
 //!   degrees, azimuths clockwise from north; sources and paths of [`BooreSource`] are km, km/s, bar and
-//!   g/cm³, as the literature has them; codes and flatfiles keep their own (PGA and Sa in g, distances in
+//!   g/cm³, as in the literature; codes and flatfiles keep their own (PGA and Sa in g, distances in
 //!   km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
-//! - Vertical components are positive upward; a channel that points down is turned when read.
+//! - Vertical components are positive upward; a downward channel is reversed when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
-//! - Before t = 0 nothing moves; after the end the acceleration is zero and the velocity is held.
+//! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is held.
 //! - Measures are trapezoids and peaks of the samples, as published values are; the displacement that
 //!   drives a model is the exact integral of its acceleration, whose peak ([`Sampled::pgd`]) lies up to
 //!   0.4 % above the published one.
-//! - Units and steps are never guessed: a file that states none needs [`ReadOptions`].
+//! - Units and steps are never guessed: a file without them needs [`ReadOptions`].
 //!
-//! # Where to look
+//! # Overview
 //!
 //! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
 //!   [`Record::gather`].
@@ -41,11 +40,11 @@
 //!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
 //!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
-//! - Archives as downloaded: [`read`] takes one record, [`Archive`] its files.
+//! - Archives as downloaded: [`read`] reads one record, [`Archive`] its files.
 //! - Many records: [`group_files`], [`measure`], [`Flatfile`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
-//! - Making: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
+//! - Synthesis: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
 //!   [`Random`].
 
 // Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
@@ -88,7 +87,7 @@ mod utc;
 mod wavelets;
 pub mod write;
 
-// Known here by their own names, as the modules beside them are.
+// Available in this crate under their own names, like the modules beside them.
 use barrelstack_series::{
     fourier, history, intensity, layers, math, normal_equations, pulse, pulse_class, random,
     response, sampled, target,

@@ -1,4 +1,4 @@
-//! What came of a match.
+//! Result of a match.
 
 use crate::ground_motion::GroundMotion;
 use crate::matching::MatchMethod;
@@ -14,7 +14,7 @@ pub struct Missed {
     pub misfit: f64,
 }
 
-/// Most ranges that are told one by one.
+/// Maximum number of ranges listed individually.
 const MOST_TOLD: usize = 5;
 
 /// A matched motion.
@@ -22,22 +22,22 @@ const MOST_TOLD: usize = 5;
 pub struct Matched {
     /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
     pub motion: GroundMotion,
-    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods to a
+    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods per
     /// decade.
     pub misfit: f64,
-    /// Ranges of periods where the spectrum is off by more than the tolerance; none if it was met.
+    /// Ranges of periods with a misfit beyond the tolerance; empty if it was met.
     pub missed: Vec<Missed>,
-    /// Rounds done.
+    /// Number of rounds.
     pub rounds: usize,
-    /// The method asked for.
+    /// The requested method.
     pub chosen: MatchMethod,
-    /// The method that began: the one asked for, or the frequency domain where wavelets alone
+    /// The method of the first rounds: the requested one, or the frequency domain if wavelets alone
     /// stalled.
     pub first: MatchMethod,
 }
 
 impl Matched {
-    /// The missed ranges, for a sentence: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
+    /// Describes the missed ranges: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
     pub fn missed_in_words(&self) -> String {
         let words = |missed: &Missed| {
             let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
@@ -56,7 +56,7 @@ impl Matched {
         told.join(", ")
     }
 
-    /// Where it was matched, for a sentence: "matched in …".
+    /// Describes the domain of the match: "matched in …".
     pub fn domain(&self) -> &'static str {
         match (self.first, self.chosen) {
             (MatchMethod::Time, _) => "the time domain",

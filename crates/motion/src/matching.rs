@@ -1,4 +1,4 @@
-//! Changing a motion until its response spectrum follows a target, in frequency or in time.
+//! Spectral matching of a motion, in the frequency or in the time domain.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -13,21 +13,20 @@ use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 use crate::wavelets;
 
-/// How a motion is matched.
+/// Method of matching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchMethod {
-    /// Fourier amplitudes are multiplied by target over spectrum again and again, phases kept.
+    /// Fourier amplitudes are multiplied by target over spectrum repeatedly, phases kept.
     ///
-    /// Simple and quick to come near; changes the character of the motion everywhere.
-    /// Amplitudes alone stall at 5 to 9 %: what is left then is taken out by wavelets.
+    /// Simple and fast at first; changes the character of the motion everywhere.
+    /// Amplitudes alone stall at 5 to 9 %: wavelets remove the remaining misfit.
     Frequency,
     /// Wavelets are added at the times of the peak responses
     /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
     /// Keeps the character of the motion; slower.
-    /// Where it stalls, rounds follow that go from the best motion and keep all other extrema below the
-    /// target; if that fails too, the match begins anew with the frequency domain first, and the
-    /// provenance says so.
+    /// If it stalls, further rounds start from the best motion and keep all other extrema below the target; if that
+    /// fails too, the match restarts with the frequency domain first, which the provenance states.
     Time,
 }
 
@@ -42,7 +41,7 @@ pub struct Matching {
     pub longest: f64,
     /// Largest relative misfit accepted at any matched period.
     pub tolerance: f64,
-    /// Most rounds of one method in a row; the methods take turns where one stalls.
+    /// Maximum number of consecutive rounds of one method; the methods alternate when one stalls.
     pub rounds: usize,
 }
 
@@ -59,22 +58,22 @@ impl Default for Matching {
     }
 }
 
-/// Exponents of target over spectrum in the frequency domain: one for a match, the next where it stalls.
+/// Exponents of target over spectrum in the frequency domain: one per match, the next when it stalls.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Samples of the motion times rounds after which no further match is begun: a motion of 35,000 samples has
-/// 400 rounds, which take some 6 s.
+/// Product of samples and rounds after which no further match is begun: a motion of 35,000 samples has 400 rounds,
+/// which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
-/// Steps to the shortest matched period: a peak between two samples is then missed by 1.2 % at most; with
-/// ten steps it would be 5 %, as much as a match may be off.
+/// Steps per shortest matched period: a peak between two samples is then underestimated by 1.2 % at most; with ten
+/// steps it would be 5 %, the whole tolerance of a match.
 const STEPS_A_PERIOD: f64 = 20.0;
-/// Periods to a decade at which the spectrum is matched.
+/// Matched periods per decade.
 const PER_DECADE: f64 = 60.0;
-/// Periods judged to one matched, so that nothing hides between.
+/// Judged periods per matched one, so that no misfit hides between.
 const JUDGED: usize = 3;
-/// Periods to one judged at which the result is checked in the end.
+/// Periods of the final check per judged one.
 const CHECKED: usize = 6;
-/// Share of the tolerance at which no further method is tried.
+/// Share of the tolerance below which no further method is tried.
 const CLEAR: f64 = 0.98;
 /// Rounds without gain after which a method gives up.
 pub(crate) const PATIENCE: usize = 15;
@@ -82,11 +81,10 @@ pub(crate) const PATIENCE: usize = 15;
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
 impl GroundMotion {
-    /// The motion with its horizontal component matched to a target spectrum.
+    /// Matches the horizontal component to a target spectrum.
     ///
-    /// The motion is first scaled to the target in the mean; the vertical component, if there is
-    /// one, takes that factor only.
-    /// The last step of every round closes the ends, so the result does not drift.
+    /// The motion is first scaled to the target in the mean; the vertical component, if any, takes that factor only.
+    /// The last step of every round closes the ends, so that the result does not drift.
     ///
     /// # Errors
     /// If a setting is out of range, the motion does not move, or the tolerance is not reached.
@@ -126,8 +124,8 @@ impl GroundMotion {
         })
     }
 
-    /// As [`GroundMotion::match_spectrum`], and where the tolerance is not reached the best motion that
-    /// was found, with the periods that it misses ([`Matched::missed`]).
+    /// Matches as [`GroundMotion::match_spectrum`], but returns the best motion if the tolerance is not reached, with
+    /// the periods that it misses ([`Matched::missed`]).
     ///
     /// # Errors
     /// If a setting is out of range or the motion does not move.
@@ -146,7 +144,7 @@ impl GroundMotion {
         let checked = judged_periods(settings, CHECKED * JUDGED);
         let checked_goal = goals(&checked);
         let damping = target.damping();
-        // Drift is kept out below the longest matched period.
+        // Remove drift below the longest matched period.
         let chain = Processing {
             high_pass: Some(0.25 / settings.longest),
             pads: Pads::Removed,
@@ -204,7 +202,7 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     MotionError::require((1..=10_000).contains(&rounds), "matching rounds", "1 to 10000", rounds)
 }
 
-/// The same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps to the shortest period, so that
+/// Returns the same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps per shortest period, so that
 /// wavelets and peaks are resolved.
 fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     let parts = (STEPS_A_PERIOD * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
@@ -221,7 +219,7 @@ fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     (motion.time_step() / parts, fine)
 }
 
-/// Intervals of [`PER_DECADE`] between the shortest and the longest period.
+/// Returns the number of intervals of [`PER_DECADE`] between the shortest and the longest period.
 fn intervals(settings: &Matching) -> usize {
     let decades = math::log10(settings.longest / settings.shortest);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
@@ -229,12 +227,12 @@ fn intervals(settings: &Matching) -> usize {
     count
 }
 
-/// Both ends, and between them `finer` periods to one that is matched.
+/// Returns both ends, and between them `finer` periods per matched one.
 fn judged_periods(settings: &Matching, finer: usize) -> Vec<f64> {
     math::log_space(settings.shortest, settings.longest, finer * intervals(settings))
 }
 
-/// Periods matched in one round: both ends, and between them a grid that shifts from round to round
+/// Returns the periods matched in one round: both ends, and between them a grid that shifts from round to round
 /// so that no period is left out for long.
 pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
     let count = intervals(settings);
@@ -250,7 +248,7 @@ pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
     periods
 }
 
-/// Geometric mean of target over spectrum.
+/// Returns the geometric mean of target over spectrum.
 fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
     let sum: f64 = goal.iter().zip(now).map(|(g, n)| math::ln(g / n)).sum();
     math::exp(sum / goal.len() as f64)
@@ -260,7 +258,7 @@ fn misfit_of(goal: &[f64], now: &[f64]) -> f64 {
     goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
 }
 
-/// What stays the same over the rounds.
+/// Data that do not change over the rounds.
 pub(crate) struct Work<'a> {
     pub(crate) time_step: f64,
     pub(crate) target: &'a TargetSpectrum,
@@ -273,33 +271,33 @@ pub(crate) struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Pseudo-accelerations at some periods.
+    /// Returns pseudo-accelerations at some periods.
     fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// The motion for oscillators of up to the longest matched period.
+    /// Returns the motion for oscillators of up to the longest matched period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
         Layers::new(self.time_step, acceleration, longest)
     }
 
-    /// Pseudo-accelerations at ascending periods, near enough to search by.
+    /// Returns approximate pseudo-accelerations at ascending periods, accurate enough for the search.
     fn nearly(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         self.layers(acceleration).pseudo_accelerations(periods, self.damping)
     }
 
-    /// Largest relative misfit at the judged periods, which are few enough for every round; nearly.
+    /// Returns the approximate largest misfit at the judged periods, which are few enough for every round.
     pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.judged_goal, &self.nearly(&self.judged, acceleration))
     }
 
-    /// Largest relative misfit at all periods that are checked.
+    /// Returns the largest relative misfit at all checked periods.
     pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
     }
 
-    /// Where the spectrum lies outside the tolerance.
+    /// Returns the ranges where the spectrum lies outside the tolerance.
     fn missed(&self, acceleration: &[f64], tolerance: f64) -> Vec<Missed> {
         let now = self.spectrum(&self.checked, acceleration);
         let mut ranges: Vec<Missed> = Vec::new();
@@ -324,7 +322,7 @@ impl Work<'_> {
         ranges
     }
 
-    /// How the spectrum lies about its target at every second period that is checked, nearly.
+    /// Returns the approximate fit of the spectrum to its target at every second checked period.
     pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
         let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
         let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
@@ -347,18 +345,18 @@ impl Work<'_> {
         }
     }
 
-    /// With ends that are at rest; wavelets bring no drift that a filter would have to take out.
+    /// Closes the ends; wavelets cause no drift that a filter would have to remove.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         let ends = Processing { high_pass: None, ..self.chain.clone() };
         Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Without drift, and with ends that are at rest.
+    /// Removes drift and closes the ends.
     fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// The best motion and the method that began: the chosen one, or the frequency domain where
+    /// Returns the best motion and the method of the first rounds: the chosen one, or the frequency domain if
     /// wavelets first do not meet the tolerance.
     fn alternate(
         &self,
@@ -385,7 +383,7 @@ impl Work<'_> {
         Ok((best, if began { MatchMethod::Frequency } else { settings.method }))
     }
 
-    /// Wavelets in rounds, and polished where they do not meet the tolerance.
+    /// Adds wavelets in rounds, and polishes if they do not meet the tolerance.
     fn wavelets(
         &self,
         start: &[f64],
@@ -401,7 +399,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The motion with its Fourier amplitudes changed round by round; `step` is the exponent of target over
+    /// Changes the Fourier amplitudes of the motion round by round; `step` is the exponent of target over
     /// spectrum.
     fn in_frequency(
         &self,
@@ -444,11 +442,11 @@ impl Work<'_> {
     }
 }
 
-/// How a spectrum lies about its target.
+/// Fit of a spectrum to its target.
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,
-    /// A mean of all misfits in which the largest outweigh the others.
+    /// Mean of all misfits, dominated by the largest.
     pub(crate) roughness: f64,
     /// Periods (s) of locally largest misfit, and that misfit.
     pub(crate) worst: Vec<(f64, f64)>,
@@ -458,7 +456,7 @@ pub(crate) struct Fit {
 pub(crate) struct Best {
     pub(crate) acceleration: Vec<f64>,
     pub(crate) misfit: f64,
-    /// Rounds done in all.
+    /// Total number of rounds.
     pub(crate) rounds: usize,
 }
 
@@ -467,7 +465,7 @@ impl Best {
         Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, rounds: 0 }
     }
 
-    /// Keeps a better motion; tells whether it is one.
+    /// Keeps a better motion; returns `true` if it is better.
     pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64) -> bool {
         let better = misfit < self.misfit;
         if better {

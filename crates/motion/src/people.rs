@@ -1,12 +1,12 @@
-//! What people call a record: the event with its year, the station, the component.
+//! Display names of records: the event with its year, the station, the component.
 
 use crate::record::{Channel, Record};
 
-/// Words of a few letters that are no abbreviations.
+/// Short words that are not abbreviations.
 const SHORT: [&str; 5] = ["EL", "LA", "LE", "DE", "OF"];
 
 impl Record {
-    /// The event as people say it, such as "Northridge 1994"; none where the header does not tell one.
+    /// Returns the customary name of the event, such as "Northridge 1994"; `None` if the header states none.
     ///
     /// ```
     /// let napa = barrelstack_motion::bundled("napa-college-2014").unwrap();
@@ -35,14 +35,14 @@ impl Record {
         })
     }
 
-    /// The station as people say it; none where the header does not tell one.
+    /// Returns the customary name of the station; `None` if the header states none.
     pub fn station_name(&self) -> Option<String> {
         let text = self.station.split_whitespace().collect::<Vec<_>>().join(" ");
-        // A code of a network before the name.
+        // Remove a network code before the name.
         let coded =
             text.split_once(' ').filter(|(code, _)| code.chars().any(|c| c.is_ascii_digit()));
         let name = coded.map_or(text.as_str(), |(_, name)| name);
-        // The state after it, and the town before it where the place says that itself.
+        // Remove the state after it, and the town before it if the place repeats it.
         let name = name.split_once(", ").map_or(name, |(name, _)| name);
         let name = match name.split_once(" - ") {
             Some((town, place)) if place.starts_with(town) => place,
@@ -51,15 +51,15 @@ impl Record {
         (!name.is_empty()).then(|| softened(name))
     }
 
-    /// What people call a channel of it, such as "Northridge 1994, Arleta, 360°"; the name of its file where
-    /// the header tells neither event nor station.
+    /// Returns the display name of a channel, such as "Northridge 1994, Arleta, 360°"; the name of its file if the
+    /// header states neither event nor station.
     pub fn name_of(&self, channel: &Channel) -> String {
         let file = || self.file.rsplit(['/', '\\']).next().unwrap_or(&self.file).to_owned();
         let known: Vec<String> = self.event_name().into_iter().chain(self.station_name()).collect();
         let degrees = if channel.name.parse::<f64>().is_ok() { "°" } else { "" };
         let place = if known.is_empty() { file() } else { known.join(", ") };
         let component = format!("{}{degrees}", channel.name);
-        // Where the header says nothing, some channels are named after their file.
+        // Without data in the header, some channels are named after their file.
         if component.is_empty() || (known.is_empty() && place.contains(&component)) {
             place
         } else {
@@ -68,7 +68,7 @@ impl Record {
     }
 }
 
-/// The year of a date such as 01/17/94, 2014-08-24 or 1989.
+/// Parses the year of a date such as 01/17/94, 2014-08-24 or 1989.
 fn year(word: &str) -> Option<u32> {
     let word = word.trim_matches(|c: char| !c.is_ascii_digit());
     let parts: Vec<&str> = word.split(['/', '-']).collect();
@@ -76,7 +76,7 @@ fn year(word: &str) -> Option<u32> {
     let full = |year: &u32| (1900..2100).contains(year);
     match parts.as_slice() {
         [year] | [year, _, _] | [_, _, year] if year.len() == 4 => number(year).filter(full),
-        // No instrument wrote before 1930.
+        // No instrument recorded before 1930.
         [_, _, year] if year.len() == 2 => {
             number(year).map(|year| if year < 30 { 2000 + year } else { 1900 + year })
         }
@@ -84,7 +84,7 @@ fn year(word: &str) -> Option<u32> {
     }
 }
 
-/// Words in capitals as names are written.
+/// Converts words in capitals to the case of names.
 fn softened(text: &str) -> String {
     if text.chars().any(char::is_lowercase) {
         return text.to_owned();

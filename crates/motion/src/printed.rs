@@ -1,4 +1,4 @@
-//! How the members of a closed set are printed.
+//! Printing of the members of closed sets.
 
 /// Implements `Display` for an enum without fields: each variant as its word.
 macro_rules! printed_as {

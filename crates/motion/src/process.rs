@@ -1,4 +1,4 @@
-//! From a recorded acceleration to one that can be integrated: every step chosen and written down.
+//! Processing of recorded accelerations for integration: every step is explicit and recorded.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -6,7 +6,7 @@ use crate::math::{self, PI};
 use crate::record::Stage;
 use crate::sampled::integrate;
 
-/// Which mean is taken off.
+/// Mean to remove.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanRemoval {
     /// None.
@@ -18,13 +18,13 @@ pub enum MeanRemoval {
     Whole,
 }
 
-/// What becomes of the zeros added for the filter.
+/// Treatment of the zeros added for the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pads {
-    /// They stay: they hold the filter transients that make velocity and displacement end at zero
+    /// Kept: they hold the filter transients that make velocity and displacement end at zero
     /// (Boore 2005, BSSA 95:745-750).
     Kept,
-    /// They are cut off and the ends are closed by [`Processing::close`].
+    /// Cut off, and the ends closed by [`Processing::close`].
     Removed,
 }
 
@@ -51,7 +51,7 @@ pub struct Processing {
     /// Order `n` of the Butterworth filter, applied forth and back:
     /// gain `1/(1 + (fc/f)^(2n))`, no phase, half amplitude at the corner.
     pub order: u32,
-    /// Zeros at both ends, `1.5 n/fc` seconds in all (Converse and Brady 1992), and their fate.
+    /// Treatment of the zeros at both ends, `1.5 n/fc` seconds in all (Converse and Brady 1992).
     pub pads: Pads,
     /// Adds the smallest smooth acceleration of two terms that brings the end velocity and the end
     /// displacement to zero.
@@ -59,7 +59,7 @@ pub struct Processing {
 }
 
 impl Processing {
-    /// Nothing at all: the record as published.
+    /// Returns no processing: the record as published.
     pub fn none() -> Self {
         Self {
             mean: MeanRemoval::Keep,
@@ -73,7 +73,7 @@ impl Processing {
         }
     }
 
-    /// The full chain for raw records: pre-event mean, taper of 2 %, fourth-order zero-phase
+    /// Returns the full chain for raw records: pre-event mean, taper of 2 %, fourth-order zero-phase
     /// high-pass at 0.1 Hz with pads kept, ends closed.
     pub fn raw() -> Self {
         Self {
@@ -85,13 +85,13 @@ impl Processing {
         }
     }
 
-    /// As [`Processing::raw`] with the pads removed and the ends closed: for runs that cannot afford
-    /// half a minute of quiet before the shaking.
+    /// Returns [`Processing::raw`] with the pads removed and the ends closed: for runs that cannot afford half a minute
+    /// of quiet before the shaking.
     pub fn compact() -> Self {
         Self { pads: Pads::Removed, ..Self::raw() }
     }
 
-    /// The default for a record: [`Processing::raw`] for raw ones, nothing for the others.
+    /// Returns the default for a record: [`Processing::raw`] for raw ones, nothing for the others.
     pub fn for_stage(stage: Stage) -> Self {
         match stage {
             Stage::Raw => Self::raw(),
@@ -99,7 +99,7 @@ impl Processing {
         }
     }
 
-    /// Whether the chain leaves the numbers as they are.
+    /// `true` if the chain leaves the numbers unchanged.
     pub fn is_none(&self) -> bool {
         self.mean == MeanRemoval::Keep
             && !self.detrend
@@ -140,7 +140,7 @@ impl Processing {
         MotionError::require(high < low, what, format!("below the low-pass corner, {low} Hz"), high)
     }
 
-    /// The corner of the high-pass (Hz) on a record of this length: no slower wave fits into it.
+    /// Returns the corner of the high-pass (Hz) on a record of this length: no slower wave fits into it.
     fn high_pass_used(&self, time_step: f64, samples: usize) -> Option<f64> {
         self.high_pass.map(|corner| corner.max(1.0 / (time_step * samples as f64)))
     }
@@ -174,7 +174,7 @@ impl Processing {
             }
             if self.high_pass.is_some() || self.low_pass.is_some() {
                 lead = self.filter(time_step, &mut a, &mut steps);
-                // The filter takes the mean velocity out with everything else below its corner.
+                // The filter removes the mean velocity with everything else below its corner.
                 initial_velocity = 0.0;
             }
             if self.close {
@@ -206,7 +206,7 @@ impl Processing {
         steps.push(format!("mean of {of} removed, {mean:.3e} m/s2"));
     }
 
-    /// Pads and filters; returns the time by which the record now starts later (s).
+    /// Pads and filters; returns the time by which the recorded part now starts later (s).
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
         let corner = self.high_pass_used(time_step, a.len());
         if let (Some(asked), Some(used)) = (self.high_pass, corner)
@@ -274,7 +274,7 @@ pub struct Processed {
     pub initial_velocity: f64,
     /// Time by which the recorded part starts later, because of a pad (s).
     pub lead: f64,
-    /// What is left at the end.
+    /// Residuals at the end.
     pub residuals: Residuals,
     /// Every step, one sentence each.
     pub steps: Vec<String>,
@@ -303,13 +303,13 @@ impl Residuals {
         Self { velocity: ratio(&v), displacement: ratio(&d) }
     }
 
-    /// End velocity below a thousandth of PGV and end displacement below a hundredth of PGD.
+    /// `true` for an end velocity below a thousandth of PGV and an end displacement below a hundredth of PGD.
     pub fn acceptable(&self) -> bool {
         self.velocity < 1e-3 && self.displacement < 1e-2
     }
 
     fn sentence(self) -> String {
-        // What rounding leaves at rest is nothing.
+        // Rounding errors at rest are not shown.
         let share = |value: f64| match value {
             v if v < 1e-6 => "less than 1e-6".to_owned(),
             v => format!("{v:.1e}"),
@@ -326,10 +326,10 @@ impl Residuals {
     }
 }
 
-/// Number of samples before the first arrival, at most 5 s, if there is at least half a second.
+/// Returns the number of samples before the first arrival, at most 5 s, if there is at least half a second.
 ///
-/// The arrival is where the acceleration first leaves its level of the first half second by 5 % of
-/// the peak; half a second before it is left out.
+/// The arrival is the first deviation from the level of the first half second by 5 % of the peak; half a second
+/// before it is excluded.
 fn quiet_samples(time_step: f64, a: &[f64]) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let samples = |seconds: f64| (seconds / time_step).ceil().min(1e9) as usize;
@@ -360,7 +360,7 @@ fn remove_line(a: &mut [f64]) {
     }
 }
 
-/// Half-cosine taper over a fraction of the length at each end.
+/// Applies a half-cosine taper over a fraction of the length at each end.
 pub(crate) fn taper_ends(a: &mut [f64], fraction: f64) {
     let n = a.len();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n/2")]

@@ -1,4 +1,4 @@
-//! A file as read: its channels in SI units, with everything the header said.
+//! A file as read: its channels in SI units, with all data of the header.
 
 use std::fmt;
 
@@ -13,21 +13,21 @@ use crate::site::Site;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// How far a record was processed before it was written.
+/// Stage of processing before the record was written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
     /// As recorded; velocity and displacement drift when it is integrated.
     Raw,
-    /// Filtered and baseline-corrected, by its publisher or since.
+    /// Filtered and baseline-corrected, by its publisher or later.
     Corrected,
-    /// The file does not say.
+    /// Not stated in the file.
     #[default]
     Unknown,
 }
 
 printed_as!(Stage, Raw = "raw", Corrected = "corrected", Unknown = "unknown");
 
-/// The quantity a stated peak belongs to.
+/// Quantity of a peak or of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Acceleration (m/s²).
@@ -45,10 +45,10 @@ printed_as!(
     Displacement = "displacement"
 );
 
-/// A peak stated in a header next to the peak of the numbers it describes.
+/// A peak stated in a header with the peak of the numbers it describes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatedPeak {
-    /// What it is the peak of.
+    /// Its quantity.
     pub quantity: Quantity,
     /// Absolute value stated (SI).
     pub stated: f64,
@@ -59,7 +59,7 @@ pub struct StatedPeak {
 }
 
 impl StatedPeak {
-    /// Whether the two agree within one unit of the last printed digit or 0.1 %.
+    /// `true` if the two agree within one unit of the last printed digit or 0.1 %.
     pub fn agrees(&self) -> bool {
         (self.stated - self.measured).abs() <= (1.001 * self.resolution).max(1e-3 * self.stated)
     }
@@ -70,7 +70,7 @@ impl StatedPeak {
 pub struct Channel {
     /// Name in the file, such as `360` or `N28W`.
     pub name: String,
-    /// Direction; a downward channel has been turned upward.
+    /// Direction; a downward channel has been reversed.
     pub direction: Direction,
     /// Time between samples (s).
     pub time_step: f64,
@@ -78,7 +78,7 @@ pub struct Channel {
     pub acceleration: Vec<f64>,
     /// Velocity at the first sample (m/s), stated by some corrected records; 0 otherwise.
     pub initial_velocity: f64,
-    /// Instant of the first sample, where the file states it.
+    /// Instant of the first sample, if stated in the file.
     pub start: Option<Utc>,
     /// Station, sensor and place.
     pub site: Site,
@@ -87,14 +87,13 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Notes the peak acceleration that a header states in a unit of `factor` m/s² beside the one that
-    /// was read.
+    /// Adds the peak acceleration that a header states in a unit of `factor` m/s², with the peak of the samples.
     pub(crate) fn state_peak(&mut self, stated: Option<Printed>, factor: f64) {
         let measured = math::peak(&self.acceleration);
         self.state(Quantity::Acceleration, stated, factor, measured);
     }
 
-    /// As [`Channel::state_peak`] for any quantity, whose peak `measured` is in SI.
+    /// Adds a stated peak, as [`Channel::state_peak`], of any quantity, with the peak `measured` in SI.
     pub(crate) fn state(
         &mut self,
         quantity: Quantity,
@@ -108,7 +107,7 @@ impl Channel {
         }
     }
 
-    /// A channel without stated peaks, starting from rest.
+    /// Creates a channel without stated peaks, starting from rest.
     pub fn new(
         name: impl Into<String>,
         direction: Direction,
@@ -118,7 +117,7 @@ impl Channel {
         Self { name: name.into(), direction, time_step, acceleration, ..Self::default() }
     }
 
-    /// A channel of a motion that was made, at steps of at most `time_step` (s).
+    /// Samples a synthetic motion as a channel, at steps of at most `time_step` (s).
     ///
     /// # Errors
     /// As [`History::sampled`].
@@ -134,28 +133,28 @@ impl Channel {
         Ok(Self { initial_velocity: sampled.velocity()[0], ..channel })
     }
 
-    /// Time from the first to the last sample (s).
+    /// Returns the time from the first to the last sample (s).
     pub fn duration(&self) -> f64 {
         self.time_step * self.acceleration.len().saturating_sub(1) as f64
     }
 
-    /// Peak ground acceleration (m/s²).
+    /// Returns the peak ground acceleration (m/s²).
     pub fn pga(&self) -> f64 {
         math::peak(&self.acceleration)
     }
 
-    /// Peak velocity (m/s) by plain integration from [`Channel::initial_velocity`]; of a raw record
+    /// Returns the peak velocity (m/s) by plain integration from [`Channel::initial_velocity`]; of a raw record
     /// this is drift, not ground motion.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity())
     }
 
-    /// Peak displacement (m) by plain integration, trapezoids throughout.
+    /// Returns the peak displacement (m) by plain integration, trapezoids throughout.
     pub fn pgd(&self) -> f64 {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    /// Why this can be no strong motion, if step, count or length say so.
+    /// Returns the reason why this cannot be a strong motion, by step, count or length.
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {
@@ -174,18 +173,18 @@ impl Channel {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 
-    /// Whether the channel is known to be vertical.
+    /// `true` if the channel is known to be vertical.
     pub fn is_vertical(&self) -> bool {
         self.direction.orientation == Some(Orientation::Vertical)
     }
 }
 
-/// Something the reader noticed and did not guess about.
+/// Warning of a reader about something that it did not guess.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Line, counted from 1, where there is one.
+    /// Line, counted from 1, if any.
     pub line: Option<usize>,
-    /// What was noticed.
+    /// The observation.
     pub message: String,
 }
 
@@ -201,26 +200,26 @@ impl fmt::Display for Warning {
 /// A file as read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Name of the format, as in [`crate::FORMATS`]; `samples` where it was made of samples.
+    /// Name of the format, as in [`crate::FORMATS`]; `samples` if made from samples.
     pub format: &'static str,
     /// Name of the file.
     pub file: String,
-    /// Event as the file states it; empty if it does not.
+    /// Event as stated in the file; empty if not stated.
     pub event: String,
-    /// Magnitude and place of the event, as far as the file states them.
+    /// Magnitude and place of the event, as far as stated in the file.
     pub earthquake: Earthquake,
-    /// Station as the file states it; empty if it does not.
+    /// Station as stated in the file; empty if not stated.
     pub station: String,
-    /// How far the record was processed.
+    /// Stage of processing.
     pub stage: Stage,
     /// Channels in file order.
     pub channels: Vec<Channel>,
-    /// What the reader noticed.
+    /// Warnings of the reader.
     pub warnings: Vec<Warning>,
-    /// Whether channels of different stations and sensors may be combined, because the caller wished
-    /// it; readers never set it.
+    /// `true` if channels of different stations and sensors may be combined, at the caller's request; readers never
+    /// set it.
     pub mixed: bool,
-    /// What the reader did to the numbers beyond changing units, one sentence each.
+    /// Changes of the numbers by the reader beyond units, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -229,11 +228,11 @@ impl Record {
         Self { format, file: file.to_owned(), stage, ..Self::default() }
     }
 
-    /// A record out of samples at hand: channels by name, all of one step (s) and one unit.
+    /// Creates a record from samples in memory: channels by name, all of one step (s) and one unit.
     ///
-    /// Names tell directions as those of files do ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a channel
-    /// that points down is turned upward.
-    /// Its stage is unknown, so the numbers are taken as they are; set [`Record::stage`] to [`Stage::Raw`] to
+    /// Names state directions as in files ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a downward channel is
+    /// reversed.
+    /// Its stage is unknown, so that the numbers are used unchanged; set [`Record::stage`] to [`Stage::Raw`] to
     /// have them processed by default.
     ///
     /// ```
@@ -245,7 +244,7 @@ impl Record {
     /// ```
     ///
     /// # Errors
-    /// When the step is not above zero, a channel has fewer than two samples, or holds what is no acceleration.
+    /// When the step is not positive, a channel has fewer than two samples, or a value is not an acceleration.
     pub fn of_samples(
         name: &str,
         channels: &[(&str, &[f64])],
@@ -270,10 +269,10 @@ impl Record {
         Ok(record)
     }
 
-    /// A record out of a motion that was made, at steps of at most `time_step` (s): its horizontal component `H1`, and
-    /// `UP` where it has a vertical one.
+    /// Samples a synthetic motion as a record, at steps of at most `time_step` (s): its horizontal component `H1`, and
+    /// `UP` if it has a vertical one.
     ///
-    /// Its notes are the motion's provenance, and its numbers are taken as they are.
+    /// Its notes are the motion's provenance, and its numbers are used unchanged.
     ///
     /// # Errors
     /// As [`History::sampled`].
@@ -291,7 +290,7 @@ impl Record {
         Ok(record)
     }
 
-    /// Gives all channels one start and one place; the station is filled in when reading ends.
+    /// Sets start and place of all channels; the station is filled in at the end of reading.
     pub(crate) fn place(&mut self, start: Option<Utc>, site: &Site) {
         for channel in &mut self.channels {
             channel.start = start;
@@ -299,8 +298,8 @@ impl Record {
         }
     }
 
-    /// Warns of a stated start (on a 0-based line) that could not be read, without which channels are
-    /// taken for simultaneous.
+    /// Warns of a stated start (on a 0-based line) that could not be parsed, without which channels are taken as
+    /// simultaneous.
     pub(crate) fn warn_of_start(&mut self, line: usize, stated: &str, start: Option<Utc>) {
         if start.is_none() && !stated.trim().is_empty() {
             let stated = format::quoted(stated);

@@ -1,4 +1,4 @@
-//! Two horizontals taken together: median and largest response over all directions.
+//! Median and largest response of two horizontals over all directions.
 
 use crate::direction::Direction;
 use crate::error::MotionError;
@@ -22,7 +22,7 @@ pub struct RotatedPeak {
 }
 
 impl RotatedPeak {
-    /// Azimuth of the largest (degrees clockwise from north, 0 to below 180) where those of the two
+    /// Returns the azimuth of the largest (degrees clockwise from north, 0 to below 180) if those of the two
     /// components are known.
     ///
     /// ```
@@ -35,14 +35,14 @@ impl RotatedPeak {
     /// ```
     pub fn azimuth(&self, first: &Direction, second: &Direction) -> Option<f64> {
         let (first, second) = (first.azimuth?, second.azimuth?);
-        // From the first towards the second is clockwise where the second lies to the right.
+        // From the first towards the second is clockwise if the second lies to the right.
         let clockwise = math::sin((second - first).to_radians()) > 0.0;
         let turned = if clockwise { first + self.angle } else { first - self.angle };
         Some(turned.rem_euclid(180.0))
     }
 }
 
-/// Peaks over all directions of any pair of series: accelerations, velocities, displacements or
+/// Returns peaks over all directions of any pair of series: accelerations, velocities, displacements or
 /// responses (Boore 2010, BSSA 100:1830-1835).
 pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     let hull = hull(first, second);
@@ -64,7 +64,7 @@ pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     }
 }
 
-/// Corners of the convex hull of the points (x, y): no other point can be a peak in any direction.
+/// Returns the corners of the convex hull of the points (x, y): no other point can be a peak in any direction.
 fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = first.iter().copied().zip(second.iter().copied()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -92,7 +92,7 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     corners
 }
 
-/// Pseudo-accelerations (m/s²) of two horizontals over all directions, one to a period (s).
+/// Returns pseudo-accelerations (m/s²) of two horizontals over all directions, one per period (s).
 ///
 /// Components of different length are cut to the shorter one.
 ///

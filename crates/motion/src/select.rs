@@ -1,4 +1,4 @@
-//! Choosing components of a record and making a ground motion of them.
+//! Selection of components of a record, and their conversion to a ground motion.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,11 +13,10 @@ use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
 
-/// Cosine of the angle from which on two horizontals are not perpendicular: within five degrees they
-/// are.
+/// Cosine of the smallest angle at which two horizontals count as perpendicular: within five degrees.
 const OBLIQUE: f64 = 0.09;
 
-/// A way to name one component of a record.
+/// Identifies one component of a record.
 ///
 /// Parses from `h1`, `h2`, `vertical`, `az:90`, `#3` (third channel), or a channel's name.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +29,7 @@ pub enum Component {
     Vertical,
     /// Channel by position, counted from 1.
     Number(usize),
-    /// Channel by name, whatever its case.
+    /// Channel by name, in any case.
     Name(String),
     /// Motion along an azimuth (degrees clockwise from north), rotated if no channel has it.
     Azimuth(f64),
@@ -83,10 +82,10 @@ impl FromStr for Component {
 }
 
 impl Record {
-    /// The channel that `component` names; a rotated one is a new channel.
+    /// Returns the channel that `component` identifies; a rotated one is a new channel.
     ///
     /// # Errors
-    /// If there is no such channel, or the azimuth cannot be reached.
+    /// If there is no such channel, or no motion along the azimuth can be derived.
     pub fn component(&self, component: &Component) -> Result<Channel, MotionError> {
         let missing = || MotionError::NoChannel {
             file: self.file.clone(),
@@ -117,7 +116,7 @@ impl Record {
         names.join(", ")
     }
 
-    /// The motion along an azimuth, from a channel that has it or from two horizontals.
+    /// Returns the motion along an azimuth, from a channel that has it or from two horizontals.
     fn along(&self, azimuth: f64) -> Result<Channel, MotionError> {
         let known: Vec<(&Channel, f64)> = self
             .channels
@@ -144,7 +143,7 @@ impl Record {
         })
     }
 
-    /// A ground motion of one horizontal and perhaps a vertical component, processed as told.
+    /// Converts one horizontal and optionally a vertical component to a ground motion, with the given processing.
     ///
     /// Components are cut to the shorter one.
     /// With [`Processing::none`] the record drives a model from its first sample.
@@ -199,8 +198,7 @@ impl Record {
         }
     }
 
-    /// The two horizontal channels that measures over both are about: the first two that are not
-    /// vertical.
+    /// Returns the two horizontal channels for measures over both: the first two that are not vertical.
     ///
     /// # Errors
     /// If there are not two, their directions are unknown or not perpendicular, or they are of
@@ -239,7 +237,7 @@ impl Record {
         Ok((one, two))
     }
 
-    /// The [`Record::horizontal_pair`], processed as told and cut to the shorter.
+    /// Returns the [`Record::horizontal_pair`], processed and cut to the shorter.
     ///
     /// # Errors
     /// As [`Record::horizontal_pair`]; if the steps differ or a setting is out of range.
@@ -252,8 +250,8 @@ impl Record {
         Ok((series(&first)?, series(&second)?))
     }
 
-    /// The first horizontal component with the vertical one if there is any, processed by the
-    /// default for the record's stage.
+    /// Returns the first horizontal component with the vertical one, if any, processed by the default for the record's
+    /// stage.
     ///
     /// # Errors
     /// As [`Record::ground_motion`].
@@ -278,7 +276,7 @@ fn history(
     Ok(motion)
 }
 
-/// The channel after processing, and what was done.
+/// Returns the processed channel, and the steps of processing.
 pub(crate) fn processed(
     channel: &Channel,
     processing: &Processing,
@@ -289,7 +287,7 @@ pub(crate) fn processed(
     Ok((Sampled::with_initial_velocity(channel.time_step, a, v)?, done.steps))
 }
 
-/// Same step required; the longer of two channels loses its end.
+/// Checks that the steps agree, and cuts the end of the longer channel.
 fn cut_to_shorter(
     first: &mut Channel,
     second: &mut Channel,
@@ -310,7 +308,7 @@ fn cut_to_shorter(
     Ok(())
 }
 
-/// Two horizontals of different azimuth combined to the motion along a third, by solving for north
+/// Combines two horizontals of different azimuth to the motion along a third, by solving for north
 /// and east; the two need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),

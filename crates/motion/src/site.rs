@@ -1,13 +1,13 @@
-//! Where a channel was recorded, and by which of a station's sensors.
+//! Site of a channel: station, sensor and coordinates.
 
 use crate::join::names_differ;
 
-/// The place of one channel, as far as its file tells; what it does not tell is empty.
+/// Site of one channel, as far as stated in its file; unstated fields are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Site {
-    /// Station as the file states it.
+    /// Station as stated in the file.
     pub station: String,
-    /// Sensor among those of the station: a SEED location code, or words such as `borehole`.
+    /// Sensor of the station: a SEED location code, or words such as `borehole`.
     pub sensor: String,
     /// Latitude (degrees, positive north).
     pub latitude: Option<f64>,
@@ -20,8 +20,8 @@ pub struct Site {
 }
 
 impl Site {
-    /// The same with a latitude and a longitude (degrees), where both are possible and are not the
-    /// zeros of a header that was never filled in.
+    /// Adds a latitude and a longitude (degrees), if both are valid and are not the zeros of a header that was never
+    /// filled in.
     pub(crate) fn at(mut self, position: Option<(f64, f64)>) -> Self {
         let possible = |(north, east): &(f64, f64)| {
             north.abs() <= 90.0 && east.abs() <= 360.0 && (*north != 0.0 || *east != 0.0)
@@ -33,7 +33,7 @@ impl Site {
         self
     }
 
-    /// Why two channels are not of one place, if a header says so.
+    /// Returns the reason why two channels are not at one site, if a header states one.
     pub fn differs(&self, other: &Self) -> Option<String> {
         let words =
             [("station", &self.station, &other.station), ("sensor", &self.sensor, &other.sensor)];
@@ -56,7 +56,7 @@ impl Site {
     }
 }
 
-/// Latitude and longitude (degrees) in a text such as `35.525N, 117.365W`, `37.73 N 47.80 E` or
+/// Parses latitude and longitude (degrees) in a text such as `35.525N, 117.365W`, `37.73 N 47.80 E` or
 /// `34 25 09N, 118 25 34W`.
 pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     let upper = text.to_ascii_uppercase();
@@ -69,12 +69,12 @@ pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     Some((part(['N', 'S'])?, part(['E', 'W'])?))
 }
 
-/// Degrees, or degrees, minutes and seconds, right before the end of a text.
+/// Parses degrees, or degrees, minutes and seconds, right before the end of a text.
 fn angle_before(text: &str) -> Option<f64> {
     let text = text.trim_end();
     let number = |c: char| c.is_ascii_digit() || c == '.' || c == ' ';
     let start = text.rfind(|c: char| !number(c)).map_or(0, |at| at + 1);
-    // A stray number further left, such as that of the station, is two blanks away.
+    // An unrelated number to the left, such as that of the station, is two blanks away.
     let last = text.get(start..)?.rsplit("  ").next()?;
     let parts: Vec<f64> =
         last.split_whitespace().map(|part| part.parse().ok()).collect::<Option<_>>()?;

@@ -1,4 +1,4 @@
-//! What made motions are, in sentences with units, as their provenance tells them.
+//! Descriptions of synthetic motions, in sentences with units, for their provenance.
 
 use std::fmt::{Display, Formatter, Result};
 

@@ -1,4 +1,4 @@
-//! Units of acceleration as files and users write them.
+//! Units of acceleration in files and options.
 
 use std::str::FromStr;
 
@@ -37,7 +37,7 @@ impl AccelerationUnit {
         Self::InchesPerSecondSquared,
     ];
 
-    /// m/s² to one of this unit.
+    /// Returns the SI value (m/s²) of this unit.
     pub fn factor(self) -> f64 {
         match self {
             Self::G => STANDARD_GRAVITY,
@@ -87,21 +87,21 @@ impl FromStr for AccelerationUnit {
     }
 }
 
-/// A unit of acceleration, velocity or displacement as a file writes it.
+/// A unit of acceleration, velocity or displacement in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionUnit {
-    /// Quantity that is measured in this unit.
+    /// Quantity measured in this unit.
     pub(crate) quantity: Quantity,
-    /// SI value of one of this unit.
+    /// SI value of this unit.
     pub(crate) factor: f64,
 }
 
 impl MotionUnit {
-    /// Reads `cm/s2`, `M/S**2`, `nm s^-2`, `in/sec/sec`, `m/sec`, `mm`, `g`, `%g`, `mg`, `gal`.
+    /// Parses `cm/s2`, `M/S**2`, `nm s^-2`, `in/sec/sec`, `m/sec`, `mm`, `g`, `%g`, `mg`, `gal`.
     ///
-    /// Returns `None` for anything that is no unit of acceleration, velocity or displacement.
+    /// Returns `None` for anything that is not a unit of acceleration, velocity or displacement.
     pub(crate) fn parse(text: &str) -> Option<Self> {
-        // UTF-8 that was read as Latin-1 has U+C2 before a superscript 2, a micro sign and a centred dot.
+        // UTF-8 misread as Latin-1 has U+C2 before a superscript 2, a micro sign and a centered dot.
         let plain: String = text
             .trim()
             .replace('\u{c2}', "")

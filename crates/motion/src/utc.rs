@@ -1,4 +1,4 @@
-//! Instants of universal time, as headers state them.
+//! Instants of universal time, as stated in headers.
 
 use std::fmt;
 use std::str::FromStr;
@@ -25,7 +25,7 @@ pub struct Utc {
     microseconds: i64,
 }
 
-/// The order of a date's numbers where the year does not come first.
+/// Order of the numbers of a date that does not begin with the year.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DateOrder {
     /// As in the United States.
@@ -35,8 +35,8 @@ pub(crate) enum DateOrder {
 }
 
 impl Utc {
-    /// A date of the Gregorian calendar and a time of day; nothing if there is no such instant
-    /// between the years 1900 and 2199.
+    /// Creates an instant from a date of the Gregorian calendar and a time of day; `None` if it does not exist or lies
+    /// outside of the years 1900 to 2199.
     pub fn new(
         year: i64,
         month: i64,
@@ -52,14 +52,14 @@ impl Utc {
         Self::ordinal(year, before + day, hour, minute, seconds)
     }
 
-    /// As [`Utc::new`] with the day of the year, counted from 1.
+    /// Creates an instant, as [`Utc::new`], from the day of the year, counted from 1.
     pub fn ordinal(year: i64, day: i64, hour: i64, minute: i64, seconds: f64) -> Option<Self> {
         let sound = (1900..2200).contains(&year)
             && (1..=365 + i64::from(is_leap(year))).contains(&day)
             && (0..24).contains(&hour)
             && (0..60).contains(&minute)
             && (0.0..61.0).contains(&seconds);
-        // What a damaged header states may be too large to reckon with.
+        // Numbers of a damaged header may overflow.
         if !sound {
             return None;
         }
@@ -70,12 +70,12 @@ impl Utc {
         Some(clock.later(seconds))
     }
 
-    /// Seconds from `other` to this instant.
+    /// Returns the seconds from `other` to this instant.
     pub fn since(self, other: Self) -> f64 {
         (self.microseconds - other.microseconds) as f64 * MICROSECOND
     }
 
-    /// The instant some seconds later, or earlier if negative; at most a century away.
+    /// Returns the instant some seconds later, or earlier if negative; at most a century away.
     #[must_use]
     pub fn later(self, seconds: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "at most a century of microseconds")]
@@ -83,7 +83,7 @@ impl Utc {
         Self { microseconds: self.microseconds + away }
     }
 
-    /// The first six numbers of a text such as `8/24/14, 10:20:33.0 UTC`; a year of two digits lies
+    /// Parses the first six numbers of a text such as `8/24/14, 10:20:33.0 UTC`; a year of two digits lies
     /// between 1950 and 2049.
     pub(crate) fn in_header(text: &str, order: DateOrder) -> Option<Self> {
         let mut numbers = text
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn every_day_of_three_centuries_prints_and_parses_back() {
         let mut day = Utc::new(1900, 1, 1, 23, 59, 58.25).unwrap();
-        // 300 years, 73 of them leap years: 1900 and 2100 are none.
+        // 300 years, 73 of them leap years; 1900 and 2100 are not.
         for _ in 0..300 * 365 + 73 {
             let text = day.to_string();
             assert_eq!(text.parse::<Utc>().unwrap(), day, "{text}");

@@ -1,4 +1,4 @@
-//! Time-domain matching: wavelets added where the responses peak.
+//! Time-domain matching: wavelets are added at the times of the peak responses.
 
 use crate::error::MotionError;
 use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
@@ -6,29 +6,29 @@ use crate::math::{self, TAU};
 use crate::normal_equations::System;
 use crate::response::{Bank, Step, TOGETHER};
 
-/// Share of the misfit taken out in one round; more makes peaks jump to other times.
+/// Share of the misfit removed in one round; more makes peaks jump to other times.
 const RELAXATION: f64 = 0.6;
-/// Other extrema above this share of the target are watched too, so that taking out one peak does
+/// Share of the target above which other extrema are watched, too, so that the reduction of one peak does
 /// not raise another.
 const WATCHED: f64 = 0.85;
 /// Weight of a watched extremum that is not too high.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Times a correction is solved again so that it lifts no other extremum above its goal.
+/// Maximum number of solutions of a correction until it raises no other extremum above its goal.
 const BOUNDING: usize = 5;
-/// Shares of a correction that are tried: twice the last one that helped, half of one that did not.
+/// Limits of the tried share of a correction: twice the last successful one, half of a failed one.
 const LARGEST_SHARE: f64 = 0.8;
 const SMALLEST_SHARE: f64 = 0.05;
 /// Share of the tolerance at which polishing ends.
 const POLISHED: f64 = 0.95;
-/// Share of the tolerance within which polishing leaves a peak as it is: the less is asked for, the less
-/// is disturbed.
+/// Share of the tolerance within which polishing leaves a peak unchanged: fewer demands cause fewer
+/// disturbances.
 const BAND: f64 = 0.6;
-/// Least number of lines to a period of a wavelet when oscillators answer to it.
+/// Minimum number of lines per period of a wavelet in the response of oscillators.
 const WAVELET_LINES: f64 = 40.0;
-/// Logarithm of the decay after which a free vibration counts as over.
+/// Logarithm of the decay after which a free vibration is neglected.
 const FORGOTTEN: f64 = 7.0;
-/// Ratio of two periods that are too near each other for wavelets of their own.
+/// Ratio below which two periods are too close for separate wavelets.
 const NEIGHBOR: f64 = 1.006;
 
 /// A local extremum of an oscillator's response.
@@ -46,7 +46,7 @@ struct Oscillator {
     goal: f64,
 }
 
-/// One equation: the response of an oscillator at `sample` shall change by `change`.
+/// One equation: the response of an oscillator at `sample` has to change by `change`.
 struct Demand {
     oscillator: usize,
     sample: usize,
@@ -54,7 +54,7 @@ struct Demand {
     weight: f64,
 }
 
-/// Rounds of linear systems: the responses of all wavelets at all peak times against the misfits.
+/// Solves rounds of linear systems: responses of all wavelets at all peak times against the misfits.
 pub(crate) fn match_in_time(
     work: &Work<'_>,
     start: &[f64],
@@ -63,7 +63,7 @@ pub(crate) fn match_in_time(
 ) -> Result<Vec<f64>, MotionError> {
     let mut a = start.to_vec();
     let (mut best, mut gained) = (Best::new(&a), 0);
-    // Far from the target the peaks alone lead on fastest.
+    // Far from the target, demands on the peaks alone converge fastest.
     let alone = 2 * settings.rounds / 3;
     for round in 1..=settings.rounds {
         let watching = round > alone;
@@ -84,8 +84,8 @@ pub(crate) fn match_in_time(
     Ok(best.acceleration)
 }
 
-/// Rounds that go from the best motion every time, by as much of the correction as makes it better;
-/// gives up after [`PATIENCE`] rounds that did not.
+/// Runs rounds that each start from the best motion and apply the share of the correction that improves it; gives up
+/// after [`PATIENCE`] rounds without improvement.
 pub(crate) fn polish(
     work: &Work<'_>,
     mut best: Vec<f64>,
@@ -95,10 +95,10 @@ pub(crate) fn polish(
     let mut fit = work.fit(&best);
     let (mut gained, mut share) = (0, LARGEST_SHARE);
     let target = POLISHED * settings.tolerance;
-    // Below it the exact misfit, which costs more, may be low enough.
+    // Below it, compute the exact misfit, which costs more.
     let mut promising = target;
     for round in 1..=settings.rounds {
-        // Every third round asks for all, lest the rest wander to the edge of the band.
+        // Every third round demands all peaks, so that the others do not drift to the edge of the band.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
         let mut periods = matched_periods(settings, round);
         periods.extend(
@@ -137,7 +137,7 @@ pub(crate) fn polish(
     Ok(())
 }
 
-/// The motion with the wavelets of one round added.
+/// Returns the motion with the wavelets of one round added.
 fn corrected(work: &Work<'_>, a: &[f64], periods: &[f64], watching: bool) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let mut wavelets = Vec::with_capacity(oscillators.len());
@@ -171,8 +171,8 @@ fn added(a: &[f64], wavelets: &[Wavelet], amplitudes: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// The motion with wavelets that bring every peak into the band about its goal and lift no other extremum
-/// above it: what a solution would lift is asked for as well, and the system is solved again.
+/// Returns the motion with wavelets that bring every peak into the band about its goal and raise no other extremum
+/// above it: extrema that a solution would raise become demands, and the system is solved again.
 fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -217,7 +217,7 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     added(a, &wavelets, &amplitudes)
 }
 
-/// Weighted responses at every demand to every wavelet of amplitude 1, row by row.
+/// Returns weighted responses at every demand to every wavelet of amplitude 1, row by row.
 fn rows(
     work: &Work<'_>,
     oscillators: &[Oscillator],
@@ -230,7 +230,7 @@ fn rows(
     for (group, some) in oscillators.chunks(TOGETHER).enumerate() {
         let of = |demand: &Demand| demand.oscillator / TOGETHER == group;
         let last = first + demands[first..].iter().take_while(|demand| of(demand)).count();
-        // What is asked of these oscillators, in order of time.
+        // Demands on these oscillators, in order of time.
         let mut asked: Vec<usize> = (first..last).collect();
         asked.sort_by_key(|&row| demands[row].sample);
         let group = Group::new(work, some, wavelets);
@@ -255,9 +255,9 @@ fn rows(
     rows
 }
 
-/// Oscillators that answer to wavelets together.
+/// Oscillators whose responses are computed together.
 struct Group {
-    /// Of each, the steps of 1, 2, 3, ... samples.
+    /// For each, the steps of 1, 2, 3, ... samples.
     steps: Vec<Vec<Step>>,
     free: Vec<FreeVibration>,
 }
@@ -280,8 +280,8 @@ impl Group {
         Bank::new(&steps)
     }
 
-    /// Displacement of oscillator `k`, `since` samples after a wavelet began, from the bank's state after
-    /// `whole` of the wavelet's strides.
+    /// Returns the displacement of oscillator `k`, `since` samples after the start of a wavelet, from the bank's state
+    /// after `whole` of the wavelet's strides.
     fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
         let (u, v) = (bank.u[k], bank.v[k]);
         let left = since - whole * wavelet.stride;
@@ -297,7 +297,7 @@ impl Group {
     }
 }
 
-/// The first of the largest extrema.
+/// Returns the first of the largest extrema.
 fn peak(extrema: &[Extremum]) -> Extremum {
     let first = Extremum { sample: 1, value: 0.0 };
     extrema.iter().fold(
@@ -336,7 +336,7 @@ fn demand(
     peak
 }
 
-/// Local extrema of every oscillator's response above a share of its goal, and the largest in any case.
+/// Returns local extrema of every oscillator's response above a share of its goal, and always the largest.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],
@@ -375,16 +375,16 @@ fn extrema(
     all
 }
 
-/// A tapered cosine whose oscillator answers with a peak at a given sample.
+/// A tapered cosine whose oscillator has a response peak at a given sample.
 struct Wavelet {
     first: usize,
     values: Vec<f64>,
-    /// Samples that a line may span when oscillators answer to it.
+    /// Number of samples that a line may span in the response of oscillators.
     stride: usize,
 }
 
 impl Wavelet {
-    /// `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
+    /// Creates `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
     /// `Δt = atan(√(1-ξ²)/ξ)/w'` and `γ = 1.178 f^-0.93` (Al Atik and Abrahamson 2010).
     fn new(period: f64, work: &Work<'_>, peak: usize, n: usize) -> Self {
         let Work { damping, time_step, .. } = *work;
@@ -401,7 +401,7 @@ impl Wavelet {
         )]
         let index = |t: f64| (t / time_step).clamp(0.0, (n - 1) as f64) as usize;
         let (first, last) = (index(center - reach), index(center + reach));
-        // Cosine and bell go from sample to sample by products.
+        // Cosine and Gaussian are computed recursively from sample to sample.
         let (turn_s, turn_c) = math::sin_cos(w * time_step);
         let from = first as f64 * time_step - center;
         let (mut s, mut c) = math::sin_cos(w * from);
@@ -421,18 +421,18 @@ impl Wavelet {
         Self { first, values, stride }
     }
 
-    /// Its whole strides; past the last one it is nothing.
+    /// Returns the number of its whole strides; it is zero after the last one.
     fn coarse(&self) -> usize {
         self.values.len().div_ceil(self.stride)
     }
 
-    /// Its value after a number of strides.
+    /// Returns its value after a number of strides.
     fn at(&self, strides: usize) -> f64 {
         self.values.get(strides * self.stride).copied().unwrap_or(0.0)
     }
 }
 
-/// An oscillator left alone, at any number of steps in one evaluation.
+/// Free vibration of an oscillator, for any number of steps in one evaluation.
 struct FreeVibration {
     stiffness: f64,
     decay: f64,

@@ -1,4 +1,4 @@
-//! Files that belong together, and the table of an agency beside them.
+//! Grouping of files, and an agency's table of them.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
@@ -97,7 +97,7 @@ fn components_are_grouped_by_the_names_that_networks_give_them() {
     assert_eq!(groups(&["s01.000", "s01.090", "s01.ver", "s02.000"]), [3, 1]);
     assert_eq!(groups(&["00AAA200101EW.dat", "00AAA200101NS.dat", "00AAA200101UD.dat"]), [3]);
     assert_eq!(groups(&["site-EW.csv", "site-NS.csv", "other-EW.csv"]), [1, 2]);
-    // Words that end in these letters are no components, nor are files of other kinds.
+    // Words that end in these letters are not components, nor are files of other kinds.
     assert_eq!(groups(&["NAPAE.txt", "NAPAN.txt", "news.txt"]), [1, 1, 1]);
     assert_eq!(groups(&["site_E.txt", "site_N.csv"]), [1, 1]);
 }
@@ -124,7 +124,7 @@ fn the_flatfile_of_esm_is_found_by_event_and_station() {
         (Some(6.6), Some(11.2), Some(9.5))
     );
     assert_eq!((row.vs30, row.strike), (Some(400.0), Some(120.0)));
-    // Two networks have this code: neither is taken, unless the record names one.
+    // Two networks have this code: neither is used, unless the record names one.
     station(&mut record, "1234");
     assert_eq!(flatfile.of_record(&record), None);
     station(&mut record, "TK.1234");

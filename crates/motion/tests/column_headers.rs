@@ -1,5 +1,5 @@
 //! Random tables under headers of every style give the right channels, units and steps, or a refusal; damaged
-//! headers do not change the peak without a word.
+//! headers do not change the peak silently.
 
 #![allow(
     clippy::unwrap_used,
@@ -14,9 +14,9 @@ mod headers;
 use barrelstack_motion::Random;
 use headers::{Verdict, mutated, table};
 
-/// Random tables; the example `headers` runs a million.
+/// Number of random tables; the example `headers` runs a million.
 const TABLES: u64 = 3000;
-/// Mutated headers; the example `headers` runs a million.
+/// Number of mutated headers; the example `headers` runs a million.
 const MUTATIONS: u64 = 6000;
 
 #[test]
@@ -34,7 +34,7 @@ fn headers_of_every_style_give_the_right_record_or_a_refusal() {
             }
         }
     }
-    // Those that state unit and step in a way of their own; measured 3000 of 3000.
+    // Tables that state unit and step in an unusual form may be refused; measured 3000 of 3000.
     assert!(read >= TABLES * 9 / 10, "{read} of {TABLES} are read");
 }
 

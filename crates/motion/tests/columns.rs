@@ -1,4 +1,4 @@
-//! What headers of plain columns say of their names, units and initial velocities.
+//! Names, units and initial velocities in headers of plain columns.
 
 #![allow(
     clippy::unwrap_used,
@@ -16,10 +16,10 @@ fn columns_without_time_are_channels_only_if_named() {
     let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
     let named = format!("unit: cm/s2\nEW NS UD\n{rows}");
     let record = read(named.as_bytes(), "named.txt", &given).unwrap();
-    // The second column never changes and is left out with a warning.
+    // The second column is constant and left out with a warning.
     let names: Vec<&str> = record.channels.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["EW", "UD"]);
-    // Without names the columns are no series, since neighbours in a row are far apart.
+    // Without names the columns are not a series, since neighbors in a row differ strongly.
     let bare = format!("unit: cm/s2\n{rows}");
     let error = read(bare.as_bytes(), "bare.txt", &given).unwrap_err();
     assert!(error.to_string().contains("no single series"), "{error}");
@@ -79,7 +79,7 @@ fn wave(k: usize) -> f64 {
     1.5 * (6.0 * (t - 8.0)).cos() * (-0.05 * (t - 8.0) * (t - 8.0)).exp()
 }
 
-/// The wave in rows of five columns of 14 characters, which touch.
+/// Returns the wave in rows of five columns of 14 characters, which touch.
 fn touching() -> String {
     let mut text = String::new();
     for row in 0..640 {
@@ -172,7 +172,7 @@ fn steps_are_read_as_headers_state_them() {
     }
 }
 
-/// Rows of time (times `per_second`), acceleration, velocity and displacement.
+/// Returns rows of time (times `per_second`), acceleration, velocity and displacement.
 fn avd(per_second: f64, separator: &str) -> String {
     let (mut v, mut d) = (0.0, 0.0);
     let mut text = String::new();
@@ -221,13 +221,13 @@ fn velocities_and_displacements_are_named_and_left_out() {
         given(&format!("{tabs}\n{}", avd(1.0, "\t")), &ReadOptions::default()).channels.len(),
         1
     );
-    // Without names the numbers themselves tell that one is the integral of another.
+    // Without names the numbers themselves show that one is the integral of another.
     refused(&avd(1.0, " "), "is the integral of another");
     refused(&format!("Time (s),Velocity (cm/s)\n{}", pairs(1.0)), "give the acceleration history");
     refused(&format!("Time (s),Acceleration (m/s)\n{}", pairs(1.0)), "a unit of acceleration");
 }
 
-/// Rows of time (times `per_second`) and the wave.
+/// Returns rows of time (times `per_second`) and the wave.
 fn pairs(per_second: f64) -> String {
     (0..3200).map(|k| format!("{:.6},{:.6}\n", 0.005 * k as f64 * per_second, wave(k))).collect()
 }

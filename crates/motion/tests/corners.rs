@@ -1,4 +1,4 @@
-//! Corners from the noise before the first arrival, on records whose noise is known.
+//! Corners from the noise before the first arrival, on records with known noise.
 
 #![allow(
     clippy::unwrap_used,
@@ -46,8 +46,8 @@ fn corners_lie_where_the_signal_of_a_known_band_meets_the_noise() {
     for (low, high, seed) in [(0.1, 12.0, 1), (0.15, 20.0, 2), (0.12, 30.0, 3)] {
         let found = noise_corners(&known(low, high, seed), ARRIVAL, &criterion).unwrap();
         println!("{low} and {high} Hz: {found:?}");
-        // A signal a hundred times the noise stands above three times of it for another third of an octave
-        // on the flanks of this filter, and the smoothing window reaches half an octave further.
+        // A signal of a hundred times the noise exceeds three times of it for another third of an octave
+        // on the flanks of this filter, and the smoothing window extends half an octave further.
         // Measured: 1.3 octaves below and 0.4 above.
         assert!((-1.5..0.2).contains(&octaves(found.high_pass, low)), "{found:?}");
         assert!((-0.2..0.9).contains(&octaves(found.low_pass, high)), "{found:?}");
@@ -97,7 +97,7 @@ fn the_bundled_record_has_the_corners_of_an_independent_program() {
     let record: Record = bundled("napa-college-2014").unwrap();
     let found = record.noise_corners(&NoiseCriterion::default());
     let east = found[0].as_ref().unwrap();
-    // gmprocess 2.8.0 with this arrival, the ratio 3 from 0.2 to 5 Hz and both horizontals alike:
+    // gmprocess 2.8.0 with this arrival, the ratio 3 from 0.2 to 5 Hz and equal corners of both horizontals:
     // 0.1122 and 40 Hz.
     assert!(octaves(east.high_pass, 0.1122).abs() < 1.0 / 3.0, "{east:?}");
     assert_eq!(east.low_pass, 40.0);

@@ -1,6 +1,6 @@
 //! One suite for every format, on the samples in `tests/data`.
 //!
-//! Every sample is the same decaying sine, so that the numbers expected are a formula.
+//! Every sample is the same decaying sine, so that the expected numbers are a formula.
 
 #![allow(
     clippy::unwrap_used,
@@ -23,7 +23,7 @@ fn bytes(file: &str) -> Vec<u8> {
     std::fs::read(folder().join(file)).unwrap()
 }
 
-/// Acceleration (m/s²) of component `c` (0 east or first, 1 north or second, 2 up) at time `t`.
+/// Returns the acceleration (m/s²) of component `c` (0 east or first, 1 north or second, 2 up) at time `t`.
 fn formula(c: usize, t: f64) -> f64 {
     let c_f = c as f64;
     [0.3, 0.2, 0.1][c]
@@ -55,8 +55,8 @@ fn options(file: &str) -> ReadOptions {
     }
 }
 
-/// File, stage, step, to each channel its name, component of the formula and samples, and half a digit
-/// of the numbers as they are written (g).
+/// File, stage, step; for each channel its name, component of the formula and number of samples; half a digit of the
+/// printed numbers (g).
 type Expected = (
     &'static str,
     Stage,
@@ -178,7 +178,7 @@ const SAMPLES: &[Expected] = &[
     ),
 ];
 
-/// As above, for formats whose offset is removed: compared after removing the formula's mean.
+/// Expectations for formats whose offset is removed: compared after removing the formula's mean.
 const OFFSET: &[Expected] = &[
     ("cosmos/counts.v0c", Stage::Raw, 0.005, &[("90 deg", 0, 103)], 2.8e-7),
     ("knet/example.EW", Stage::Raw, 0.01, &[("E-W", 0, 200)], 3.2e-7),
@@ -208,12 +208,12 @@ fn check(expected: &Expected, offset: bool) -> Record {
         assert_eq!(channel.acceleration.len(), *samples, "{file} {name}");
         let truth: Vec<f64> = (0..*samples).map(|k| formula(*component, k as f64 * step)).collect();
         let mean = if offset { truth.iter().sum::<f64>() / *samples as f64 } else { 0.0 };
-        // The header of this sample states another sensitivity than its counts were made for.
+        // The header of this sample states another sensitivity than that of its counts.
         let scale = if file.starts_with("cosmos/counts") { 0.023_282_4 } else { 1.0 };
         let off = channel.acceleration.iter().zip(&truth).map(|(a, b)| a - scale * (b - mean));
         let off = off.fold(0.0_f64, |worst, off| worst.max(off.abs())) / STANDARD_GRAVITY;
         println!("{file} {name}: {off:.1e} g, half a digit {half:.1e} g");
-        // Measured: half a digit, and up to 1.06 of it where the offset was taken off.
+        // Measured: half a digit, and up to 1.06 of it if the offset was removed.
         assert!(off <= 1.1 * half, "{file} {name}: {off:e} g against {half:e} g");
         for peak in &channel.peaks {
             assert!(peak.agrees(), "{file} {name}: {peak:?}");
@@ -440,7 +440,7 @@ fn a_wrong_unit_is_seen_in_the_warnings() {
     );
 }
 
-/// Lines of a text file with their ends.
+/// Returns the lines of a text file with their ends.
 fn lines(file: &str) -> Vec<Vec<u8>> {
     bytes(file).split_inclusive(|b| *b == b'\n').map(<[u8]>::to_vec).collect()
 }
@@ -461,7 +461,7 @@ fn text_samples() -> Vec<&'static str> {
 #[test]
 fn a_file_cut_at_any_line_is_refused_or_says_so() {
     for file in text_samples() {
-        // Plain columns state no count: a cut cannot be seen.
+        // Plain columns state no count: a truncation cannot be detected.
         if file.starts_with("columns") && file != "columns/count-first.txt"
             || file.starts_with("barrelstack")
         {
@@ -488,7 +488,7 @@ fn a_file_cut_at_any_line_is_refused_or_says_so() {
 
 #[test]
 fn stars_words_and_huge_numbers_are_refused_with_their_place() {
-    // No line of pairs of time and value holds numbers alone; such a file is damaged elsewhere.
+    // No line of pairs of time and value has numbers alone; such a file is damaged elsewhere.
     for file in text_samples().into_iter().filter(|file| *file != "timeseries/tspair.txt") {
         let lines = lines(file);
         // Into the first number of a line near the end of the data.
@@ -597,7 +597,7 @@ fn the_own_text_form_and_csv_survive_a_round_trip_with_the_initial_velocity() {
     }
 }
 
-/// What a file is refused for.
+/// Returns the refusal of a file.
 fn refusal(bytes: &[u8], name: &str) -> barrelstack_motion::ReadError {
     read(bytes, name, &ReadOptions::default()).unwrap_err()
 }
@@ -652,7 +652,7 @@ fn formats_without_a_reader_are_refused_by_their_names() {
 fn text_formats_that_contradict_themselves_are_refused_with_both_numbers() {
     let of = |file: &str| String::from_utf8(bytes(file)).unwrap();
     let cases = [
-        // (file, from, to, said)
+        // (file, from, to, words of the message)
         ("csmnc/example.dat", "DURATION:  1.03", "DURATION:  2.06", ["1.030", "2.06"]),
         ("csmnc/example.dat", "POINTS:   103", "POINTS:   140", ["140", "1.03"]),
         ("timeseries/slist.txt", "103 samples", "104 samples", ["104", "103"]),

@@ -1,7 +1,7 @@
-//! Readers never panic, whatever is done to a file: mutations of every sample, and random bytes.
+//! Readers never panic, whatever the damage: mutations of every sample, and random bytes.
 //!
-//! A fixed count from a fixed seed, so that a failure repeats; `cargo xtask fuzz` goes on for as long as
-//! one likes, with time and memory watched.
+//! A fixed number from a fixed seed, so that a failure repeats; `cargo xtask fuzz` runs any number, with limits of
+//! time and memory.
 
 #![allow(
     clippy::unwrap_used,
@@ -20,7 +20,7 @@ use barrelstack_motion::{
 };
 use fuzz::{Reader, must_hold, mutate, options, samples, samples_of};
 
-/// Mutated files to a sample.
+/// Number of mutated files per sample.
 const MUTATIONS: u32 = 400;
 
 #[test]

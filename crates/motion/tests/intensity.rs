@@ -31,7 +31,7 @@ fn a_harmonic_has_its_closed_forms_to_a_millionth() {
     };
     let pi = std::f64::consts::PI;
     near(of(IntensityMeasure::Arias), pi / (2.0 * STANDARD_GRAVITY) * a * a * n * t / 2.0);
-    // The printed values are for g = 9.81 m/s2; all three are proportional to g.
+    // The published values are for g = 9.81 m/s2; all three are proportional to g.
     let printed = 9.81 / STANDARD_GRAVITY;
     assert!((of(IntensityMeasure::Arias) * printed - 2.773_71).abs() < 6e-6);
     assert!((of(IntensityMeasure::Cav) * printed - 7.494_29).abs() < 6e-6);
@@ -40,7 +40,7 @@ fn a_harmonic_has_its_closed_forms_to_a_millionth() {
     near(of(IntensityMeasure::Pgv), a * t / pi);
     near(of(IntensityMeasure::Pga), a);
     near(of(IntensityMeasure::Rms), a / 2.0_f64.sqrt());
-    // Every second holds |a| above the threshold, so the standardized CAV is the whole.
+    // In every second |a| exceeds the threshold, so the standardized CAV is the whole.
     near(of(IntensityMeasure::CavStandardized), 2.0 / pi * a * n * t);
     // Squared sines build up evenly: 5 % to 95 % takes nine tenths of the time, within a ripple of
     // a quarter period.
@@ -165,7 +165,7 @@ fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
             let reached = over.of(measure, &first, &second).unwrap();
             assert!((reached / target - 1.0).abs() < 1e-9, "{over} {measure}: {reached}");
         }
-        // The largest lies above the median, and both components lie below the largest.
+        // The largest exceeds the median and both components.
         let of = |over: Horizontals| over.of(measure, &one, &two).unwrap();
         assert!(of(Horizontals::RotD100) >= of(Horizontals::RotD50));
         let single = measure.of(&one).unwrap().max(measure.of(&two).unwrap());
@@ -179,7 +179,7 @@ fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
     }
     let time = Horizontals::RotD50.scale_factor(IntensityMeasure::D5_95, &one, &two, 3.0);
     assert!(time.unwrap_err().to_string().contains("does not change"));
-    // Turned Arias intensities have a closed form: their median is that at 45 degrees of the axes.
+    // Rotated Arias intensities have a closed form: their median is that at 45 degrees from the axes.
     let arias = |m: &Sampled| IntensityMeasure::Arias.of(m).unwrap();
     let mean = 0.5 * (arias(&one) + arias(&two));
     let median = Horizontals::RotD50.of(IntensityMeasure::Arias, &one, &two).unwrap();

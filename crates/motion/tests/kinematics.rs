@@ -30,7 +30,7 @@ fn pulses() -> Vec<Pulse> {
     ]
 }
 
-/// Simpson's rule over a smooth stretch.
+/// Integrates by Simpson's rule over a smooth interval.
 fn integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     let n = 200;
     let h = (to - from) / f64::from(n);
@@ -52,7 +52,8 @@ fn every_pulse_is_consistent_at_scattered_times() {
             let to = (from + 0.01 * end).min(end);
             let change_v = integral(from, to, |t| pulse.at(t).acceleration);
             let change_d = integral(from, to, |t| pulse.at(t).velocity);
-            // The end of a ramp is a kink of the acceleration, which Simpson sees; measured 1.6e-8.
+            // The end of a ramp is a kink of the acceleration, which causes an error of Simpson's rule; measured
+            // 1.6e-8.
             let v = (pulse.at(to).velocity - pulse.at(from).velocity - change_v).abs();
             let d = (pulse.at(to).displacement - pulse.at(from).displacement - change_d).abs();
             assert!(v < 5e-8 * pgv, "{pulse:?} at {from}: velocity off by {v:e}");

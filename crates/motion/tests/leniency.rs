@@ -1,5 +1,5 @@
-//! What agencies' files have in excess is left out and told; what they lack is an error; times that are
-//! uneven are not taken for even ones.
+//! Excess content of agencies' files is left out and reported; missing content is an error; uneven times are not taken
+//! as even.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
@@ -20,7 +20,7 @@ fn told(record: &Record) -> String {
     record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-/// The same numbers as the file without what was added.
+/// Checks that the file reads as the same numbers without the addition.
 fn same(file: &str, changed: &[u8], word: &str) {
     let (clean, record) = (given(&bytes(file)), given(changed));
     assert_eq!(clean.channels, record.channels, "{file}");
@@ -44,7 +44,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
         let mut words = bytes(file);
         words.extend(b"end of file\n");
         same(file, &words, "from this line to the last");
-        // A row less stays an error.
+        // A missing row stays an error.
         let text = String::from_utf8(bytes(file)).unwrap();
         let cut: Vec<&str> = text.lines().collect();
         let cut = cut[..cut.len() - 2].join("\n");
@@ -81,7 +81,7 @@ fn formats_that_count_their_rows_leave_the_rest_out() {
     }
 }
 
-/// Volume 1 of USC with the given times (s) of a wave, in g/10.
+/// Returns volume 1 of USC with the given times (s) of a wave, in g/10.
 fn film(times: &[f64]) -> String {
     let text = String::from_utf8(bytes("usc/example.y0a")).unwrap();
     let mut head: Vec<String> = text.lines().take(27).map(str::to_owned).collect();
@@ -105,7 +105,7 @@ fn wave(t: f64) -> f64 {
 
 #[test]
 fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
-    // Steps of 4 ms, nine of ten within a millisecond of the mean, as a film is digitized; some are 13 ms.
+    // Steps of 4 ms, nine of ten within a millisecond of the mean, as for digitized film; some are 13 ms.
     let mut times = vec![0.0];
     for k in 1..2000 {
         let step = if k % 40 == 7 { 0.013 } else { 0.004 };
@@ -122,7 +122,7 @@ fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
             (a / (0.1 * STANDARD_GRAVITY) - 3.0 * wave(t)).abs()
         })
         .fold(0.0, f64::max);
-    // Of a wave of 3: printed digits and chords across 13 ms; measured 0.016. Squeezed, it was 3.
+    // For a wave of 3: printed digits and chords across 13 ms; measured 0.016. With an even step it was 3.
     assert!(worst < 0.02, "{worst}");
     let told = told(&record);
     assert!(told.contains("unevenly spaced times (0.0040 to 0.0130 s"), "{told}");

@@ -11,7 +11,7 @@ use barrelstack_motion::{
     STANDARD_GRAVITY, SiteClass, TargetSpectrum, bundled, response,
 };
 
-/// Every second sample of the first 20 s of the bundled record, to keep the tests quick.
+/// Returns every second sample of the first 20 s of the bundled record, to keep the tests quick.
 fn napa() -> GroundMotion {
     let mut record = bundled("napa-college-2014").unwrap();
     for channel in &mut record.channels {
@@ -31,7 +31,7 @@ fn nch2745() -> TargetSpectrum {
     TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil: NCh2745Soil::II, damping: 0.05 }
 }
 
-/// Largest misfit on a grid of its own, 1000 periods to a decade.
+/// Returns the largest misfit on an independent grid of 1000 periods per decade.
 fn misfit(motion: &GroundMotion, target: &TargetSpectrum) -> f64 {
     let History::Sampled(sampled) = &motion.horizontal else {
         panic!("a matched motion is sampled")
@@ -46,7 +46,7 @@ fn misfit(motion: &GroundMotion, target: &TargetSpectrum) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Panics unless each method meets the target within 5 % and leaves a motion that ends at rest.
+/// Checks that each method meets the target within 5 % and leaves a motion that ends at rest.
 fn both_methods_meet(target: &TargetSpectrum) {
     let start = napa();
     for method in [MatchMethod::Frequency, MatchMethod::Time] {
@@ -66,7 +66,7 @@ fn both_methods_meet(target: &TargetSpectrum) {
     }
 }
 
-// Beside each target the largest misfit measured in frequency and in time.
+// The largest measured misfits in frequency and in time follow each target.
 
 #[test]
 fn both_methods_meet_asce_7() {
@@ -114,7 +114,7 @@ fn both_methods_meet_ac156() {
 
 #[test]
 fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
-    // At some tolerance wavelets no longer come near in few rounds: measured at 0.045.
+    // At some tolerance wavelets no longer converge in few rounds: measured at 0.045.
     let stalled = (0..8).find_map(|k| {
         let tolerance = 0.05 - 0.0025 * f64::from(k);
         let settings = Matching { tolerance, rounds: 20, ..Matching::default() };
@@ -148,7 +148,7 @@ fn impossible_matches_are_refused_in_words() {
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
     let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
     assert!(error.contains("misfit"), "{error}");
-    // A page of periods is no message.
+    // A message must not list a page of periods.
     assert!(error.contains(" other ranges") && error.len() < 500, "{error}");
     let bad = TargetSpectrum::Table { points: vec![(1.0, 1.0), (0.5, 1.0)], damping: 0.05 };
     assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
@@ -219,7 +219,7 @@ fn code_spectra_have_their_published_ordinates() {
     };
     near(near_fault(1.0, 4.0), 0.3 * 3.96 / 16.0 * 1.6);
     near(near_fault(0.5, 4.0), 0.3 * 0.5 * 3.96 / 16.0);
-    // Z R goes no higher than 0.7.
+    // Z R is limited to 0.7.
     near(near_fault(3.0, 1.0), 0.7 * 2.0 * 0.5_f64.powf(0.75));
     let ac = TargetSpectrum::Ac156 { sds: 1.0, height_ratio: 1.0 };
     for (f, a) in [(0.1, 0.16), (1.3, 1.6), (8.3, 1.6), (33.3, 1.2), (50.0, 1.2)] {

@@ -1,6 +1,6 @@
 //! The frequency domain alone brings real records to their targets.
 //!
-//! The records may not be bundled; without their folder the test says that it is skipped.
+//! The records may not be bundled; without their folder the test is reported as skipped.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,4 +1,4 @@
-//! What is said of 50 formats and near-formats, as the table in `docs/formats.md` shows it.
+//! Messages for 50 formats and near-formats, as in the table of `docs/formats.md`.
 
 #![allow(
     clippy::unwrap_used,
@@ -51,7 +51,7 @@ const SAMPLES: [(&str, &str); 36] = [
     ("a record inside zip", "packed/record.zip"),
 ];
 
-/// Files of other formats by their first bytes.
+/// Returns files of other formats by their first bytes.
 fn others() -> Vec<(&'static str, Vec<u8>)> {
     let filled = |head: &[u8]| [head, &[0, 1, 2, 3].repeat(200)].concat();
     let table = |header: &str, row: &dyn Fn(u32) -> String| {
@@ -111,7 +111,7 @@ fn options(file: &str) -> ReadOptions {
     }
 }
 
-/// One row of the table.
+/// Returns one row of the table.
 fn row(what: &str, file: &str, bytes: &[u8]) -> String {
     let known: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
     let said = match read(bytes, file, &options(file)) {
@@ -136,7 +136,7 @@ fn what_is_said_of_formats_and_near_formats_is_as_documented() {
     }
     for (what, bytes) in others() {
         let said = row(what, "file", &bytes);
-        // A file that is sound is not called cut or damaged.
+        // A sound file must not be called truncated or damaged.
         assert!(!said.contains("damaged") && !said.contains("is cut"), "{said}");
         table += &said;
     }

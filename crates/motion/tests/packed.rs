@@ -1,4 +1,4 @@
-//! Archives: what NPZ keeps is read back, and one record inside gzip or zip is read as if it lay open.
+//! Archives: NPZ reads back, and one record inside gzip or zip reads as without packing.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
@@ -101,7 +101,7 @@ fn archives_that_hold_no_single_record_are_refused_in_words() {
     refused(&gz[..gz.len() / 2], "can be unpacked");
     // 200 MB of zeros in 200 kB.
     refused(&gzipped(&vec![b'0'; 200 << 20]), "at most 12 MB");
-    // An archive in an archive is not opened.
+    // A nested archive is not opened.
     refused(&gzipped(&gz), "expected");
 }
 
@@ -116,7 +116,7 @@ fn tarred(files: &[(&str, &[u8])]) -> Vec<u8> {
     out.into_inner().unwrap()
 }
 
-/// Three components of one station as AFAD names them, and what lies beside them in a download.
+/// Returns three components of one station named as by AFAD, with other files of a download.
 fn three() -> Vec<(String, Vec<u8>)> {
     let east = String::from_utf8(bytes("esm/example.ACC.ASC")).unwrap();
     let component = |letter: &str, stream: &str| {
@@ -191,7 +191,7 @@ fn counts_in_an_archive_find_the_sensitivity_beside_them() {
     let open = read(&counts, "a.mseed", &known).unwrap();
     let record = given(&archive, "a.tar");
     assert_eq!(record.channels[0].acceleration, open.channels[0].acceleration);
-    // Without it the question is the one that the file alone would give.
+    // Without it the refusal is the same as for the file alone.
     let bare = read(&tarred(&[("a.mseed", counts.as_slice())]), "a.tar", &ReadOptions::default());
     assert!(matches!(bare.unwrap_err().refusal, Refusal::Missing(_)));
 }
@@ -203,7 +203,7 @@ fn a_damaged_archive_is_refused_and_never_read_in_part() {
     for whole in [zipped(&files), tarred(&files), gzipped(&tarred(&files))] {
         for keep in (0..whole.len()).step_by(whole.len() / 40) {
             let cut = read(&whole[..keep], "cut", &ReadOptions::default());
-            // A tar archive that ends behind a file is whole as far as it can be known.
+            // A tar archive that ends after a file cannot be recognized as truncated.
             if let Ok(record) = cut {
                 assert!(record.channels.iter().all(|channel| channel.acceleration.len() > 100));
             }

@@ -13,7 +13,7 @@ use barrelstack_motion::{
     classify_component, classify_pair, read,
 };
 
-/// Indicator and period (s) of the bundled record's components, and of both together.
+/// Indicator and period (s) of the bundled record's components.
 const NAPA_EAST: (f64, f64) = (0.9999, 1.963);
 const NAPA_NORTH: (f64, f64) = (1.0, 1.724);
 const NAPA_BOTH: (f64, f64) = (10.749, 1.935);
@@ -32,7 +32,7 @@ fn near(found: ClassifiedPulse, indicator: f64, period: f64) {
 #[test]
 fn the_bundled_record_is_pulse_like_as_an_independent_program_finds() {
     let (east, north) = napa();
-    // The wavelet of PyWavelets, its products with the velocity taken one by one.
+    // Computed with the wavelet of PyWavelets, one product with the velocity at a time.
     near(classify_component(&east).unwrap(), NAPA_EAST.0, NAPA_EAST.1);
     near(classify_component(&north).unwrap(), NAPA_NORTH.0, NAPA_NORTH.1);
     let (_, both) = classify_pair(&east, &north).unwrap();
@@ -56,7 +56,7 @@ fn published_pulses_are_found_with_their_periods() {
     // 5.7 s for the fault-normal component; the east one has 5.4 s.
     let found = classify_component(&component("RSN1503_CHICHI_TCU065-E.AT2")).unwrap();
     assert!(found.pulse_like && (found.period - 5.7).abs() < 0.6, "{found:?}");
-    // El Centro and Hollywood are in no list of pulse-like records.
+    // El Centro and Hollywood are not in any list of pulse-like records.
     for file in ["RSN6_IMPVALL.I_I-ELC180.AT2", "RSN995_NORTHR_PEL360.AT2"] {
         assert!(!classify_component(&component(file)).unwrap().pulse_like, "{file}");
     }
@@ -79,7 +79,7 @@ fn a_pulse_is_found_at_any_direction_and_a_weak_one_is_none() {
         assert!((found.period - turned(0.0).period).abs() < 1e-9);
         assert!((found.period / 2.0 - 1.0).abs() < 0.2, "{found:?}");
     }
-    // 30 cm/s is the least peak velocity of Baker's class.
+    // 30 cm/s is the minimum peak velocity of Baker's class.
     assert!(classify_component(&alone.scaled(0.5)).unwrap().pulse_like);
     assert!(!classify_component(&alone.scaled(0.2)).unwrap().pulse_like);
     let still = Sampled::new(0.01, vec![0.0; 500]).unwrap();
@@ -88,8 +88,8 @@ fn a_pulse_is_found_at_any_direction_and_a_weak_one_is_none() {
 
 #[test]
 fn fiv3_of_a_long_square_wave_is_three_windows_of_its_acceleration() {
-    // Three rectangular pushes of 1 m/s2, 4 s long and 4 s apart: the filter passes them whole, and
-    // every increment over 0.7 s is 0.7 m/s.
+    // Three rectangular pulses of 1 m/s2, 4 s long and 4 s apart: the filter passes them fully, and every increment
+    // over 0.7 s is 0.7 m/s.
     let a: Vec<f64> = (0..3200)
         .map(|k| {
             let second = f64::from(k) * 0.01;

@@ -1,4 +1,4 @@
-//! When and where a channel was recorded is kept, and channels of one record begin together.
+//! Time and place of recording are kept, and channels of one record begin together.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
@@ -143,7 +143,7 @@ fn our_own_text_keeps_start_and_place() {
         }
     };
     same(&record, &read_back(&record));
-    // One channel of another station: a line for each.
+    // One channel of another station: one line per channel.
     record.channels[1].site = Site { station: "Elsewhere".to_owned(), ..Site::default() };
     record.channels[2].start = None;
     same(&record, &read_back(&record));
@@ -152,8 +152,8 @@ fn our_own_text_keeps_start_and_place() {
     assert!(error.to_string().contains("vs30"), "{error}");
 }
 
-/// A record of one channel of our own making: a wave of ten seconds at 100 Hz that began `late`
-/// seconds after the full minute.
+/// Returns a record of one synthetic channel: a wave of ten seconds at 100 Hz that began `late` seconds after the full
+/// minute.
 fn wave(name: &str, late: f64, seconds: u32) -> Record {
     let mut record = sample("barrelstack/example.txt");
     let origin: Utc = "2014-08-24T10:20:00.000Z".parse().unwrap();
@@ -191,7 +191,7 @@ fn parts_of_a_step_are_shifted() {
     assert_eq!(north.start, east.start);
     let n = east.acceleration.len().min(north.acceleration.len());
     assert!((1898..=1901).contains(&n), "{n}");
-    // Away from the ends, where less is known; measured 2.3e-6.
+    // Away from the ends, where the interpolation is less accurate; measured 2.3e-6.
     let off = north.acceleration[..n].iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
     let worst = off.skip(32).take(n - 64).fold(0.0, f64::max);
     assert!(worst < 4e-6, "{worst:e}");
@@ -204,7 +204,7 @@ fn channels_without_a_common_span_are_refused() {
     assert!(error.to_string().contains("no span in common"), "{error}");
 }
 
-/// The sample with its channel's last letter, second of the start and location changed.
+/// Returns the sample with its channel's last letter, second of the start and location changed.
 fn seed(letter: u8, second: u8, location: [u8; 2]) -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/miniseed/int32.mseed");
     let mut bytes = std::fs::read(path).unwrap();
@@ -232,7 +232,7 @@ fn channels_of_one_seed_file_begin_together() {
     let apart = [seed(b'E', 0, *b"00"), seed(b'N', 50, *b"00")].concat();
     let error = read(&apart, "apart.mseed", &options()).unwrap_err();
     assert!(error.to_string().contains("no span in common"), "{error}");
-    // Two sensors in one file are read, and not combined.
+    // Two sensors in one file are read, but not combined.
     let sensors = [seed(b'E', 0, *b"00"), seed(b'N', 0, *b"10")].concat();
     let record = read(&sensors, "sensors.mseed", &options()).unwrap();
     assert_eq!(record.station, "ZZ.XXXX");
@@ -240,7 +240,7 @@ fn channels_of_one_seed_file_begin_together() {
     assert!(error.contains("sensor \"00\" and sensor \"10\""), "{error}");
     let mixed = Record { mixed: true, ..record };
     assert!(mixed.horizontal_pair().is_ok());
-    // What programs print for an empty location code.
+    // A placeholder that programs print for an empty location code.
     let empty = read(&seed(b'E', 0, *b"--"), "empty.mseed", &options()).unwrap();
     assert_eq!(empty.channels[0].site.sensor, "");
 }
@@ -263,12 +263,12 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     refused(&one, &copy, "corrected and raw");
     let copy = Record { format: "smc", ..one.clone() };
     refused(&one, &copy, "formats peer and smc");
-    // Asked for, they are, and the record says so.
+    // On request they are combined, and the record states it.
     let mixed = Record::gather_mixed(&[one.clone(), copy]).unwrap();
     assert!(
         mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
     );
-    // As AT2 it cannot have commas and parentheses; it is the same event.
+    // AT2 cannot represent commas and parentheses; it is the same event.
     let named = Record {
         event: "Somewhere, Valley (M 6.1), \u{d1}u\u{f1}oa".to_owned(),
         ..wave("N", 0.0, 10)
@@ -314,7 +314,7 @@ fn station_xml_gives_each_channel_its_sensitivity_direction_and_place() {
     let known = ReadOptions { instruments, ..ReadOptions::default() };
     let record = read(&bytes, "a.mseed", &known).unwrap();
     let (one, two) = (&by_number.channels[0], &record.channels[0]);
-    // The sensitivity of its time, 2000 and not 1, against the 1000 of the options.
+    // The sensitivity valid at its time, 2000 and not 1, overrides the 1000 of the options.
     assert!((two.pga() / one.pga() - 0.5).abs() < 1e-12);
     assert_eq!(two.direction.azimuth, Some(85.5));
     assert_eq!((two.site.latitude, two.site.elevation), (Some(38.5), Some(697.0)));
@@ -335,7 +335,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     assert!(error.contains("HHE, which records velocity (a high-gain seismometer)"), "{error}");
     let known =
         ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
-    // Metadata that state m/s are enough.
+    // Metadata that state m/s are sufficient.
     let stated = read(&bytes, "a.mseed", &known).unwrap();
     assert!(stated.warnings.iter().any(|w| w.message.contains("a sensor of velocity")));
     let both = [bytes.clone(), seed(b'E', 0, *b"00")].concat();
@@ -346,7 +346,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let velocity = read(&bytes, "a.mseed", &asked(Quantity::Velocity)).unwrap();
     assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
     let plain = read(&bytes, "a.mseed", &asked(Quantity::Acceleration)).unwrap();
-    // Integrated again it is what was recorded, but for a constant and half a step.
+    // Integrated again it is the recorded velocity, except for a constant and half a step.
     let again: Vec<f64> = velocity.channels[0]
         .acceleration
         .iter()
@@ -361,7 +361,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     assert!(spread < 2e-3 * plain.channels[0].pga(), "{spread}"); // measured 9.7e-4
 }
 
-/// One channel of metadata with a sensitivity in an input unit, and lines more.
+/// Returns the metadata of one channel with a sensitivity in an input unit, and further lines.
 fn metadata(value: &str, unit: &str, more: &str) -> Vec<Instrument> {
     let text = format!(
         "<?xml version=\"1.0\"?><FDSNStationXML><Network code=\"ZZ\"><Station code=\"XXXX\">\
@@ -408,7 +408,7 @@ fn polarity_and_dip_of_metadata_are_kept() {
     assert_eq!(plain.channels[0].direction.azimuth, Some(90.0));
     let turned: Vec<f64> = plain.channels[0].acceleration.iter().map(|a| -a).collect();
     assert_eq!(with("-1000", "").channels[0].acceleration, turned);
-    // Positive counts of a dip of 90 degrees point down, and are turned upward.
+    // Positive counts of a dip of 90 degrees point down, and are reversed.
     let down = with("1000", "<Azimuth>0</Azimuth><Dip>90</Dip>");
     assert!(down.channels[0].is_vertical());
     assert_eq!(down.channels[0].acceleration, turned);
@@ -425,7 +425,7 @@ fn metadata_of_another_time_are_named_where_a_sensitivity_is_missing() {
     assert!(error.contains("ZZ.XXXX.00.HNE at 2003-01-02T01:02:00.000Z among 1"), "{error}");
 }
 
-/// A hundred data records of ten samples at 100 Hz, each `late` seconds (1e-4 s) more than it should be.
+/// Returns a hundred data records of ten samples at 100 Hz, each `late` (1e-4 s) later than it should be.
 fn records_late(late: u32) -> Vec<u8> {
     let one = seed(b'E', 0, *b"00");
     let mut record = one[..1 << one[54]].to_vec();

@@ -59,7 +59,7 @@ fn rotation_recovers_any_azimuth_from_oblique_horizontals() {
     let given = example((0.0, 90.0), 2000);
     let wanted = &truth.channels[0].acceleration;
     let rotated = given.component(&Component::Azimuth(30.0)).unwrap();
-    // The offsets of the two sets differ; take the means off.
+    // The offsets of the two sets differ; remove the means.
     let mean = |a: &[f64]| a.iter().sum::<f64>() / a.len() as f64;
     let (m1, m2) = (mean(wanted), mean(&rotated.acceleration));
     for (a, b) in wanted.iter().zip(&rotated.acceleration) {
@@ -158,7 +158,7 @@ fn unreasonable_settings_are_refused() {
         Processing { high_pass: Some(60.0), ..Processing::none() },
         Processing { high_pass: Some(f64::NAN), ..Processing::none() },
         Processing { low_pass: Some(0.0), ..Processing::none() },
-        // Slower than one over the duration of 1 s: the pads would be longer than any memory.
+        // Slower than one over the duration of 1 s: the pads would exceed the memory.
         Processing { low_pass: Some(0.99), ..Processing::none() },
         Processing { low_pass: Some(1e-9), ..Processing::none() },
         Processing { low_pass: Some(1e-30), ..Processing::none() },
@@ -237,7 +237,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
     let joined =
         Record::join(&[part(0, 1800, "part1.txt"), part(1300, 3000, "part2.txt")]).unwrap();
     assert_eq!(joined.channels[0].acceleration.len(), 3000);
-    // As K-NET files do, with the same name in both and the mean of each taken off.
+    // As in K-NET files, with the same name in both and the mean of each removed.
     let mut two = part(1300, 3000, "part1.txt");
     let mean = two.channels[0].acceleration.iter().sum::<f64>() / 1700.0;
     for a in &mut two.channels[0].acceleration {

@@ -1,7 +1,7 @@
-//! Reference values of three records, computed elsewhere with independent programs.
+//! Reference values of three records, computed with independent programs.
 //!
-//! The records may not be bundled; the tests run when the folder `../shared/ground-motions` lies
-//! beside the workspace and say so when it does not.
+//! The records may not be bundled; the tests run if the folder `../shared/ground-motions` is beside the workspace,
+//! and are reported as skipped otherwise.
 
 #![allow(
     clippy::unwrap_used,
@@ -63,7 +63,7 @@ const ROWS: [Row; 3] = [
     },
 ];
 
-/// Within half a unit of the reference's last printed digit; measured 0.50 at most.
+/// Checks a value within half a unit of the reference's last printed digit; measured 0.50 at most.
 fn near(what: &str, value: f64, reference: f64, digit: f64) {
     let off = (value - reference).abs() / digit;
     println!("{what}: {value}, off by {off:.2} digits");
@@ -82,7 +82,7 @@ fn the_reference_records_give_the_reference_values() {
         near("PGA", motion.pga() / STANDARD_GRAVITY, row.pga, 1e-4);
         near("PGV", motion.pgv(), row.pgv, 1e-4);
         near("PGD", of(IntensityMeasure::Pgd), row.pgd, 1e-4);
-        // What drives a model is the exact integral; for the first record it is 0.37 % larger.
+        // The motion that drives a model is the exact integral; for the first record it is 0.37 % larger.
         let exact = motion.pgd() / of(IntensityMeasure::Pgd) - 1.0;
         assert!((0.0..4e-3).contains(&exact), "{}: {exact}", row.file);
         near("Arias", of(IntensityMeasure::Arias), row.arias, 1e-3);

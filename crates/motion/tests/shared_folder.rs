@@ -1,6 +1,6 @@
 //! Every real file in `../shared/ground-motions` is read or refused for the right reason.
 //!
-//! Most of those files may not be bundled; without the folder the test says that it is skipped.
+//! Most of those files may not be bundled; without the folder the test is reported as skipped.
 
 #![allow(
     clippy::unwrap_used,
@@ -25,7 +25,7 @@ fn folder() -> Option<PathBuf> {
     shared("")
 }
 
-/// What a user of the file would state, from the folder's own README.
+/// Returns the options for a file, from the folder's own README.
 fn options(file: &str) -> ReadOptions {
     let g = Some(AccelerationUnit::G);
     match file {
@@ -41,7 +41,7 @@ fn options(file: &str) -> ReadOptions {
     }
 }
 
-/// Files that hold no acceleration, and the word their refusal must contain.
+/// Files without acceleration, and the word their refusal must contain.
 const REFUSED: [(&str, &str); 6] = [
     ("README.md", "convert the file"),
     ("asdf/nc72282711_workspace.h5", "HDF5"),
@@ -160,7 +160,7 @@ fn the_table_of_results_is_written() {
     std::fs::write(page(), table_of_results(&folder)).unwrap();
 }
 
-/// Degrees clockwise from north, or what is known instead.
+/// Formats the azimuth in degrees clockwise from north, or the known orientation.
 fn azimuth(channel: &Channel) -> String {
     match (channel.direction.azimuth, channel.direction.orientation) {
         (Some(azimuth), _) => azimuth.to_string(),
@@ -170,7 +170,7 @@ fn azimuth(channel: &Channel) -> String {
     }
 }
 
-/// What the readers make of every file, as a page.
+/// Tabulates the results of the readers for every file, as a page.
 fn table_of_results(folder: &Path) -> String {
     let mut text = String::from(
         "# Formats read\n\nEvery file of the shared folder `ground-motions`, as read by this crate.\n\

@@ -34,7 +34,7 @@ fn the_generator_has_its_published_first_numbers() {
 fn stationary_noise_has_its_density_in_the_mean() {
     let soil = CloughPenzien::medium(1.5);
     let (dt, duration) = (0.02, 40.94);
-    // Bands wide enough to average over: compare mean squared amplitude in each.
+    // Bands wide enough for averages: compare the mean squared amplitude in each.
     let bands = [(0.3, 0.8), (0.8, 1.5), (1.5, 2.5), (2.5, 5.0), (5.0, 12.0)];
     let mut measured = [0.0; 5];
     let mut variance = 0.0;
@@ -121,7 +121,7 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
 
 #[test]
 fn bits_are_those_of_every_platform() {
-    // A hash over the bits, the same on every machine because every function used is the crate's own.
+    // A hash over the bits, equal on every machine because all functions are the crate's own.
     let hash = |motion: &GroundMotion| {
         (0..2000).fold(0xcbf2_9ce4_8422_2325_u64, |hash, k| {
             let bits = motion.horizontal.at(f64::from(k) * 0.01).acceleration.to_bits();

@@ -1,11 +1,11 @@
-//! Files written are read back, whatever their texts say.
+//! Written files read back, whatever their texts.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
 
 use barrelstack_motion::write::{self, archive, at2, csv, npz};
 use barrelstack_motion::{Channel, Direction, ReadOptions, Record, Stage, read};
 
-/// Words that headers use for themselves, in every place where a text can stand.
+/// Returns a record with reserved words of headers in every place of a text.
 fn hostile(channels: Vec<Channel>) -> Record {
     let example = include_bytes!("data/barrelstack/example.txt");
     let mut record = read(example, "a, b (c).csv", &ReadOptions::default()).unwrap();
@@ -21,7 +21,7 @@ fn hostile(channels: Vec<Channel>) -> Record {
 }
 
 fn channel(name: &str, direction: Direction) -> Channel {
-    // Subnormal, tiny, negative zero and long fractions must survive.
+    // Subnormal, tiny, negative zero and long fractions must be preserved.
     let values = vec![1.0 / 3.0, -0.0, 5e-324, -2.5e-9, 12.25, -1.0 / 7.0, 0.0];
     Channel::new(name, direction, 0.1 / 3.0, values)
 }
@@ -49,7 +49,7 @@ fn text_reads_back_bit_for_bit_whatever_the_header_says() {
     let names: Vec<&str> = again.channels.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["a b c", "a b c 2", "channel 3"]);
     assert_eq!(again.notes.len(), 3);
-    // Written again it is the same file: the past is not told twice.
+    // Written again it is the same file: the history is not duplicated.
     assert_eq!(write::text(&again).unwrap().lines().count(), text.lines().count());
 }
 

@@ -1,6 +1,6 @@
 //! The files inside a tar archive.
 
-/// Whether bytes begin with the header of a tar archive, whose checksum is that of its other bytes.
+/// `true` if bytes begin with the header of a tar archive with a valid checksum.
 pub(super) fn is_tar(bytes: &[u8]) -> bool {
     let Some(head) = bytes.get(..512) else { return false };
     let sum: u32 = head
@@ -12,11 +12,11 @@ pub(super) fn is_tar(bytes: &[u8]) -> bool {
     head[0] != 0 && stated.is_ok_and(|stated| stated == sum)
 }
 
-/// Calls `take` with name and bytes of every file, without bytes where the archive ends within them,
-/// until it says that it has enough.
+/// Calls `take` with name and bytes of every file, without bytes where the archive ends within them, until it
+/// returns `true`.
 ///
 /// # Errors
-/// When the archive is damaged; inside, what `take` refuses.
+/// When the archive is damaged; inside, the error of `take`.
 pub(super) fn each_file<E>(
     archive: &[u8],
     mut take: impl FnMut(&str, Option<&[u8]>) -> Result<bool, E>,

@@ -7,7 +7,7 @@ use crate::error::MotionError;
 use crate::format::shorten;
 use crate::record::Record;
 
-/// What a flatfile says of one record.
+/// Data of a flatfile on one record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlatRow {
     /// Earthquake.
@@ -30,15 +30,15 @@ pub struct FlatRow {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flatfile {
     rows: BTreeMap<u64, FlatRow>,
-    /// Event, network and station, in small letters.
+    /// Rows by event, network and station, in lower case.
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Columns of the published table, which its short forms name as well.
+/// Columns of the published table and of its short forms.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];
-/// Columns of ESM that stand for a number of the record.
+/// Columns that identify a record in the flatfile of ESM.
 const ESM_KEY: [&str; 3] = ["event_id", "network_code", "station_code"];
 const MAGNITUDE: &[&str] = &["earthquake magnitude", "magnitude", "mw", "emec_mw", "ml"];
 const RUPTURE: &[&str] = &["clstd (km)", "rrup (km)", "rrup", "rup_dist"];
@@ -47,14 +47,14 @@ const VS30: &[&str] = &["vs30 (m/s) selected for analysis", "vs30 (m/s)", "vs30"
 const STRIKE: &[&str] = &["strike (deg)", "strike", "es_strike"];
 
 impl Flatfile {
-    /// Reads the table as CSV, its first line the names of the columns; −999 stands for unknown.
+    /// Reads the table as CSV, its first line the names of the columns; −999 means unknown.
     ///
-    /// The flatfile of ESM, with semicolons, has no sequence numbers: its rows are found by event, network
-    /// and station, and its first known magnitude of Mw, EMEC Mw and ML counts.
+    /// The flatfile of ESM, with semicolons, has no sequence numbers: its rows are identified by event, network
+    /// and station; the magnitude is the first known one of Mw, EMEC Mw and ML.
     ///
     /// # Errors
-    /// If there is neither a column of sequence numbers nor those of ESM, a number is none, or a sequence
-    /// number comes twice.
+    /// If there is neither a column of sequence numbers nor those of ESM, a number is invalid, or a sequence
+    /// number is repeated.
     pub fn parse(file: &str, text: &str) -> Result<Self, MotionError> {
         let head = text.lines().next().unwrap_or_default();
         let mark = if head.contains(';') && !head.contains(',') { ';' } else { ',' };
@@ -105,7 +105,7 @@ impl Flatfile {
                 strike: value(numbers[3])?,
             };
             if number.is_none() {
-                // Several instruments of one station share what is said here.
+                // Several instruments of one station share these data.
                 let [event, network, station] = key.map(|at| cell(at).to_ascii_lowercase());
                 all.stations.entry((event, network, station)).or_insert(row);
                 continue;
@@ -120,13 +120,13 @@ impl Flatfile {
         Ok(all)
     }
 
-    /// The row of a record.
+    /// Returns the row of a record.
     pub fn get(&self, number: u64) -> Option<&FlatRow> {
         self.rows.get(&number)
     }
 
-    /// The row of a record by the event that its header states and the code of its station; `None` where
-    /// stations of several networks have that code.
+    /// Returns the row of a record by the event in its header and the code of its station; `None` if stations of
+    /// several networks have that code.
     pub fn of_record(&self, record: &Record) -> Option<&FlatRow> {
         let event = record.earthquake.id.to_ascii_lowercase();
         let named = record.channels.first()?.site.station.to_ascii_lowercase();
@@ -139,18 +139,18 @@ impl Flatfile {
         fitting.next().is_none().then_some(row)
     }
 
-    /// How many records it holds.
+    /// Returns the number of records.
     pub fn len(&self) -> usize {
         self.rows.len() + self.stations.len()
     }
 
-    /// Whether it holds none.
+    /// `true` if it has no records.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// The record sequence number in a name such as `RSN995_NORTHR_PEL360.AT2`.
+/// Returns the record sequence number in a name such as `RSN995_NORTHR_PEL360.AT2`.
 pub fn record_sequence_number(path: &str) -> Option<u64> {
     let file = path.rsplit(['/', '\\']).next()?;
     let digits =
@@ -159,7 +159,7 @@ pub fn record_sequence_number(path: &str) -> Option<u64> {
     digits[..end].parse().ok()
 }
 
-/// Rows of a table (RFC 4180) with the line on which each begins; empty lines are left out.
+/// Returns the rows of a table (RFC 4180) with the line on which each begins; empty lines are left out.
 fn rows(text: &str, mark: char) -> impl Iterator<Item = (usize, Vec<String>)> {
     let mut line = 1;
     let mut rest = text;

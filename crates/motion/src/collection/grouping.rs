@@ -1,4 +1,4 @@
-//! Which files of a folder are components of one record, told by their names.
+//! Groups the files of a folder into records by their names.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::format::file_stem;
 /// Files that hold one record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordFiles {
-    /// Name of the record: the path without what tells the components apart.
+    /// Name of the record: the path without the part that names the component.
     pub name: String,
     /// Its files, sorted.
     pub files: Vec<String>,
@@ -22,12 +22,12 @@ pub struct RecordFiles {
 /// - `AOM0011801241951.EW`, `.NS` and `.UD`, and those of a borehole (`.EW1`) apart from those of the
 ///   surface (`.EW2`);
 /// - names with a SEED channel such as `HNE` between dots, dashes or underscores;
-/// - other names that end, before their ending, in `_E`, `_N` and `_U` (or `_Z`), as AFAD's do, or in
-///   `_EW`, `_NS` and `_UD`, with a dash or a dot too, and those of CSMNC, whose number goes before;
+/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as AFAD's do, or in
+///   `_EW`, `_NS` and `_UD`, with a dash or a dot too, and those of CSMNC, whose number precedes it;
 /// - names that end in `.000`, `.090` and `.ver`, as those of the Broadband Platform do.
 ///
 /// Any other file is a record of its own.
-/// Whether the channels do belong together is for [`crate::Record::gather`] to tell.
+/// [`crate::Record::gather`] checks whether the channels do belong together.
 ///
 /// ```
 /// use barrelstack_motion::group_files;
@@ -55,7 +55,7 @@ pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
     }
     let mut records: Vec<RecordFiles> = groups.into_values().collect();
     for record in &mut records {
-        // A file that stands alone keeps its whole name, which nobody else has.
+        // A single file keeps its whole name, which is unique.
         if let [file] = record.files.as_slice() {
             record.name.clone_from(file);
         }
@@ -64,7 +64,7 @@ pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
     records
 }
 
-/// What the components of a record share, and how the record is called.
+/// Returns the part of a name that the components of a record share, and the name of the record.
 fn key(file: &str) -> (String, String) {
     let stem = file_stem(file);
     let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_uppercase();
@@ -91,7 +91,7 @@ fn key(file: &str) -> (String, String) {
     named.map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
 }
 
-/// A name without the direction that it ends in: one letter or two behind a mark, two behind a digit.
+/// Removes the direction at the end of a name: one letter or two after a mark, two after a digit.
 fn direction_off(stem: &str) -> Option<&str> {
     let upper = stem.to_ascii_uppercase();
     let marked = |direction: &&str| {
@@ -108,7 +108,7 @@ fn direction_off(stem: &str) -> Option<&str> {
     stem.get(..stem.len() - found.len())
 }
 
-/// A name of PEER's without its component.
+/// Removes the component from a name of PEER's.
 fn without_component(stem: &str) -> String {
     let upper = stem.to_ascii_uppercase();
     for ending in ["-UP", "-DWN", "-DN", "-VER", "-V", "-N", "-E", "-S", "-W", "-NS", "-EW", "UP"] {
@@ -125,7 +125,7 @@ fn without_component(stem: &str) -> String {
     }
 }
 
-/// A name with a question mark in place of the direction of its SEED channel.
+/// Replaces the direction of the SEED channel in a name by a question mark.
 fn seed(file: &str) -> Option<String> {
     let mut start = 0;
     for part in file.split_inclusive(['.', '_', '-']) {

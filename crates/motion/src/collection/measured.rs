@@ -1,4 +1,4 @@
-//! What a record measures: every component, both horizontals together, and the pulse.
+//! Measures of a record: of every component, of both horizontals jointly, and its pulse.
 
 use crate::error::MotionError;
 use crate::horizontals::Horizontals;
@@ -33,13 +33,13 @@ pub struct MeasuredComponent {
     pub duration: f64,
     /// FIV3 at 1 s (m/s).
     pub fiv3: f64,
-    /// Pulse after Baker (2007); none for a vertical component.
+    /// Pulse after Baker (2007); `None` for a vertical component.
     pub pulse: Option<ClassifiedPulse>,
     /// Pseudo-accelerations (m/s²) at 5 % damping.
     pub spectrum: Vec<f64>,
 }
 
-/// Measures of both horizontals together (SI).
+/// Joint measures of both horizontals (SI).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPair {
     /// `RotD50` of peak acceleration (m/s²) and velocity (m/s).
@@ -61,7 +61,7 @@ pub struct Measured {
     pub vertical: Option<MeasuredComponent>,
     /// Both horizontals, if they are a pair.
     pub pair: Option<MeasuredPair>,
-    /// Why there is no pair.
+    /// Reason why there is no pair.
     pub no_pair: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Many files: which belong together, what each record measures, and what a flatfile knows of it.
+//! Collections of files: grouping to records, measures of each record, and flatfiles.
 
 mod flatfile;
 mod grouping;

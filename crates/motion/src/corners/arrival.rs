@@ -1,18 +1,18 @@
-//! The first arrival: where the noise before the shaking ends.
+//! First arrival: the end of the noise before the shaking.
 
 use crate::math;
 
-/// Share of the peak at which the shaking has begun for sure.
+/// Share of the peak that marks the shaking with certainty.
 const SURE: f64 = 0.2;
-/// How far a search reaches behind what was found before, as a part of the time up to the strong motion.
+/// Extent of a search after the previous result, as a share of the time up to the strong motion.
 const BEHIND: f64 = 0.1;
 
-/// Time (s) after the first sample of the first arrival; 0 if the shaking is there from the start.
+/// Returns the time (s) after the first sample of the first arrival; 0 if the shaking is there from the start.
 ///
-/// Two stretches, each of one variance, explain the record up to its first strong motion best when
+/// Two intervals, each of constant variance, explain the record up to its first strong motion best when
 /// they meet at the arrival: the smallest of Akaike's criterion
 /// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` (Maeda 1985).
-/// A second search, which ends a little behind the first one's answer, finds a weak first arrival
+/// A second search, which ends shortly after the first one's result, finds a weak first arrival
 /// before a strong second one.
 pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     let level = math::mean(&a[..a.len().min(100)]);
@@ -25,9 +25,9 @@ pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     time_step * split(until(first)).unwrap_or(first) as f64
 }
 
-/// Where two stretches of constant variance meet; None if there are too few samples.
+/// Returns the boundary of two intervals of constant variance; `None` if there are too few samples.
 fn split(a: &[f64]) -> Option<usize> {
-    // A variance of fewer samples says nothing.
+    // A variance of fewer samples is meaningless.
     let margin = 10;
     if a.len() < 4 * margin {
         return None;
@@ -45,7 +45,7 @@ fn split(a: &[f64]) -> Option<usize> {
     let variance = |from: usize, to: usize| {
         let count = (to - from) as f64;
         let mean = (sums[to].0 - sums[from].0) / count;
-        // Digits are the resolution of noise: a stretch of equal numbers has no variance at all.
+        // Digits limit the resolution of noise: an interval of equal numbers has no variance at all.
         ((sums[to].1 - sums[from].1) / count - mean * mean).max(1e-12 * squares / n as f64)
     };
     let criterion = |k: usize| {

@@ -1,4 +1,4 @@
-//! Corners of the filters from the record itself: where the shaking stands above the noise before it.
+//! Filter corners from the record itself: the band in which the shaking exceeds the noise before it.
 
 mod arrival;
 mod smooth;
@@ -12,7 +12,7 @@ use crate::record::{Channel, Record};
 use arrival::arrival;
 use smooth::konno_ohmachi;
 
-/// Shortest noise (s) from which corners are taken.
+/// Shortest noise (s) that determines corners.
 const SHORTEST_NOISE: f64 = 1.0;
 /// Shortest shaking (s).
 const SHORTEST_SHAKING: f64 = 5.0;
@@ -21,14 +21,14 @@ const TAPER: f64 = 0.05;
 /// Highest low-pass corner, over the Nyquist frequency and in Hz.
 const HIGHEST: (f64, f64) = (0.75, 40.0);
 
-/// What the ratio of signal to noise must be, and where.
+/// Criterion of the ratio of signal to noise, and its frequency range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseCriterion {
-    /// Least ratio of the smoothed Fourier amplitudes of signal and noise.
+    /// Minimum ratio of the smoothed Fourier amplitudes of signal and noise.
     pub ratio: f64,
-    /// Frequency (Hz) from which the ratio must be kept; the high-pass lies at or below it.
+    /// Lowest frequency (Hz) of the criterion; the high-pass lies at or below it.
     pub from: f64,
-    /// Frequency (Hz) up to which the ratio must be kept; the low-pass lies above it.
+    /// Highest frequency (Hz) of the criterion; the low-pass lies above it.
     pub to: f64,
     /// Coefficient `b` of the smoothing window of Konno and Ohmachi (1998).
     pub bandwidth: f64,
@@ -41,7 +41,7 @@ impl Default for NoiseCriterion {
     }
 }
 
-/// Corners that a channel's own noise suggests.
+/// Corners suggested by a channel's own noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corners {
     /// High-pass (Hz).
@@ -55,7 +55,7 @@ pub struct Corners {
 }
 
 impl Corners {
-    /// How they were found, for provenance.
+    /// Describes their derivation, for provenance.
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(
@@ -77,25 +77,25 @@ impl Corners {
     }
 }
 
-/// Noise and signal of a channel, smoothed.
+/// Smoothed spectra of noise and signal of a channel.
 struct Spectra {
     frequency: Vec<f64>,
     /// Signal over noise, see [`noise_corners`].
     ratio: Vec<f64>,
 }
 
-/// The corners of one channel whose noise ends at `arrival` (s).
+/// Returns the corners of one channel whose noise ends at `arrival` (s).
 ///
-/// The spectrum of the noise, multiplied with the root of the ratio of the lengths, is that of the
-/// noise within the shaking; what stands above it is signal.
-/// Their ratio is divided by the same root, which asks more where the noise is short.
-/// The band is the first in which signal over noise keeps the criterion from its lower to its upper
-/// frequency; the high-pass is no lower than one over the duration and than where the ratio has its
+/// The spectrum of the noise, multiplied by the root of the ratio of the lengths, is that of the noise within the
+/// shaking; the excess over it is signal.
+/// Their ratio is divided by the same root, which is stricter where the noise is short.
+/// The band is the first in which signal over noise satisfies the criterion from its lower to its upper
+/// frequency; the high-pass is not below one over the duration, nor below the frequency where the ratio has its
 /// minimum below its peak; the low-pass is at most 0.75 of the Nyquist frequency and 40 Hz.
 /// This is the rule of the USGS's automatic processing (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
-/// If there is less than a second of noise or five of shaking, or the ratio is not kept.
+/// If there is less than a second of noise or five of shaking, or the criterion is not satisfied.
 pub fn noise_corners(
     channel: &Channel,
     arrival: f64,
@@ -140,10 +140,10 @@ pub fn noise_corners(
 }
 
 impl Record {
-    /// The corners of every channel, in order; both horizontals share the narrower band, so that they
-    /// can be turned together.
+    /// Returns the corners of every channel, in order; both horizontals share the narrower band, so that they can be
+    /// rotated jointly.
     ///
-    /// All channels take the earliest arrival that any of them shows.
+    /// All channels use the earliest arrival of any of them.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
             .channels
@@ -187,13 +187,13 @@ impl Spectra {
             .zip(smooth(noise))
             .map(|(all, noise)| (all - stretch * noise) / (stretch * noise) / stretch)
             .collect::<Vec<f64>>();
-        // Below one over the length of the shaking nothing is known.
+        // Frequencies below one over the length of the shaking are not resolved.
         let known = 1.0 / (shaking.len() as f64 * dt);
         let first = centers.partition_point(|f| *f < known);
         Self { frequency: centers[first..].to_vec(), ratio: ratio[first..].to_vec() }
     }
 
-    /// The first stretch of frequencies with enough signal that spans those of the criterion.
+    /// Returns the first frequency band with enough signal that includes the range of the criterion.
     fn band(&self, criterion: &NoiseCriterion) -> Option<(f64, f64)> {
         let enough = |ratio: &f64| *ratio >= criterion.ratio;
         let mut begin = 0;
@@ -208,7 +208,7 @@ impl Spectra {
         None
     }
 
-    /// Smallest ratio between the frequencies of the criterion.
+    /// Returns the smallest ratio between the frequencies of the criterion.
     fn least(&self, criterion: &NoiseCriterion) -> f64 {
         let inside = self.frequency.iter().zip(&self.ratio);
         inside
@@ -216,7 +216,7 @@ impl Spectra {
             .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
     }
 
-    /// Frequency of the smallest ratio below that of the largest: drift lifts what lies lower.
+    /// Returns the frequency of the smallest ratio below that of the largest: drift raises lower frequencies.
     fn foot(&self) -> f64 {
         let best = |range: std::ops::Range<usize>, sign: f64| {
             range.reduce(

@@ -2,7 +2,7 @@
 
 use crate::math;
 
-/// Amplitudes smoothed at `centers` (Hz) with the window
+/// Returns amplitudes smoothed at `centers` (Hz) with the window
 ///
 /// ```text
 /// W(f, fc) = (sin(b log10(f/fc)) / (b log10(f/fc)))⁴

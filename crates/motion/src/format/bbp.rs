@@ -1,8 +1,8 @@
 //! Text of the SCEC Broadband Platform and of the programs in it (`.000`, `.090`, `.ver`): station and
 //! component, then count, step and times, then values by blanks.
 //!
-//! The same layout holds accelerations and velocities and says of neither which; so the unit comes from
-//! the caller. Files of four columns with a time (`.bbp`) are plain columns.
+//! Accelerations and velocities have the same layout, and the files state neither quantity nor unit: the unit is
+//! an option of the caller. Files of four columns with a time (`.bbp`) are plain columns.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number};
 use super::{Format, Hints};
@@ -19,7 +19,7 @@ pub(crate) const FORMAT: Format =
 /// Count, step, hour, minute, second, epicentral distance, azimuth, back azimuth.
 const NUMBERS: usize = 8;
 
-/// Count and step of the second line.
+/// Parses count and step of the second line.
 fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     let mut row = Vec::new();
     source.tokens(1, f64::INFINITY, &mut row).ok()?;
@@ -29,7 +29,7 @@ fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     fits.then_some((whole, *step))
 }
 
-/// A first line of words, and a second that counts the numbers below it.
+/// `true` for a first line of words, and a second that states the number of values below it.
 fn sniff(source: &Source<'_>) -> bool {
     let title = source.text(0);
     let words: Vec<&str> = title.split_whitespace().collect();
@@ -50,7 +50,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let used = super::check_count(source, &mut record, 1, count, values.len())?;
     values.truncate(used);
     let velocity = hints.recorded() == Some(Quantity::Velocity);
-    // The platform's velocities are cm/s.
+    // Velocities of the platform are in cm/s.
     let factor = if velocity {
         AccelerationUnit::Gal.factor()
     } else {

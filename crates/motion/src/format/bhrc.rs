@@ -84,7 +84,7 @@ fn read_component(
     source.end_of_channel(next, "VOL1DS FILE")
 }
 
-/// `Azimuth L 50    T 140`: either may be missing.
+/// Parses `Azimuth L 50    T 140`: either may be missing.
 fn azimuth(text: &str, component: &str) -> Option<f64> {
     let mut words = text.split("Azimuth").nth(1)?.split_whitespace();
     while let Some(word) = words.next() {

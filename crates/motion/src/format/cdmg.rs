@@ -1,4 +1,4 @@
-//! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block to a channel:
+//! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block per channel:
 //! 13 text lines, 7 lines 16I5, 7 lines of reals, then data.
 
 use super::even::{Timed, even_steps};
@@ -56,7 +56,7 @@ const HEADER_LINES: usize = 27;
 
 fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let mut record = read_blocks(source, hints, RENADIC.name, 0)?;
-    // Times and coordinates of these headers are those of the software's first day, or zero.
+    // Times and coordinates of these headers are the software's defaults, or zero.
     record.place(None, &Site::default());
     if source.name.to_ascii_lowercase().contains("parte") {
         record.warn(
@@ -67,7 +67,7 @@ fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadEr
     Ok(record)
 }
 
-/// Reads every block of a volume 1 file, whose pairs of time and value stand behind `indent` blanks.
+/// Reads every block of a volume 1 file, whose pairs of time and value start after `indent` blanks.
 fn read_blocks(
     source: &Source<'_>,
     hints: &Hints<'_>,
@@ -151,7 +151,7 @@ fn read_equal(
     Ok((time_step, values, next))
 }
 
-/// The Fortran format in parentheses on a data line.
+/// Parses the Fortran format in parentheses on a data line.
 pub(crate) fn format_in(source: &Source<'_>, line: usize) -> Option<Columns> {
     let text = latin1(source.raw(line));
     text.match_indices('(').find_map(|(at, _)| {
@@ -168,14 +168,13 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
     source.header(line, what, quoted(&source.text(line)))
 }
 
-/// The name in columns 1 to 40; behind it stand network and kind of data.
+/// Returns the name in columns 1 to 40; network and kind of data follow it.
 pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
     let text = latin1(source.slice(line, 0, 40));
     text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
 }
 
-/// `START TIME:  7/06/19, 03:19:37.0 UTC` among the text lines; a film recorder starts when it is
-/// triggered.
+/// Parses `START TIME:  7/06/19, 03:19:37.0 UTC` among the text lines; a film recorder starts at its trigger.
 pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
     (first..first + 6).find_map(|line| {
         let at = ["START TIME:", "TRIGGER TIME:"]
@@ -185,8 +184,7 @@ pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
     })
 }
 
-/// `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W` without what follows in
-/// columns 73 to 80.
+/// Parses `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W`, ignoring columns 73 to 80.
 pub(crate) fn channel_name(source: &Source<'_>, line: usize) -> String {
     let text = latin1(source.slice(line, 0, 72));
     let text = text.split('(').next().unwrap_or("");

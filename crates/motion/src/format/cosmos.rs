@@ -35,14 +35,14 @@ struct Header {
 }
 
 impl Header {
-    /// Integer `n` of the specification, counted from 1.
+    /// Returns integer `n` of the specification, counted from 1.
     fn integer(&self, n: usize) -> Option<i64> {
         let value = *self.integers.get(n - 1)?;
         #[expect(clippy::cast_possible_truncation, reason = "compared with codes only")]
         (value != self.unknown && value.abs() < 1e9).then_some(value as i64)
     }
 
-    /// Real `n` of the specification, counted from 1.
+    /// Returns real `n` of the specification, counted from 1.
     fn real(&self, n: usize) -> Option<f64> {
         self.reals.get(n - 1).copied().filter(|value| *value != self.unknown && *value != -999.0)
     }
@@ -86,7 +86,7 @@ fn damaged(source: &Source<'_>, line: usize, expected: &str) -> ReadError {
     )
 }
 
-/// Follows the chain of counts: text lines, integers, reals, comments, data line.
+/// Reads the chain of counts: text lines, integers, reals, comments, data line.
 fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     if !source.has(first, "(Format v") {
         return Err(damaged(source, first, "\"... (Format v01.20 with 13 text lines)\""));
@@ -124,7 +124,7 @@ fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     Ok(Header { integers, reals, unknown, data_line })
 }
 
-/// `Format= (10I8)` or `Format=(8F10.5)`.
+/// Parses `Format= (10I8)` or `Format=(8F10.5)`.
 fn format_after(source: &Source<'_>, line: usize) -> Option<Columns> {
     let at = source.find(line, "format")?;
     let text = latin1(&source.raw(line)[at..]);
@@ -219,13 +219,13 @@ fn read_channel(
     Ok((Ok(channel), next))
 }
 
-/// Integers 40 to 45 and real 30: the first sample.
+/// Returns the time of the first sample: integers 40 to 45 and real 30.
 fn start(header: &Header) -> Option<Utc> {
     let part = |n: usize| header.integer(n);
     Utc::new(part(40)?, part(42)?, part(43)?, part(44)?, part(45)?, header.real(30)?)
 }
 
-/// Reals 1 to 3, and what text line 9 says of the sensor's place in a structure.
+/// Returns the site: reals 1 to 3, and the sensor's place in a structure from text line 9.
 fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     let line = source.text(first + 8);
     let sensor = line.split_once("Location:").map_or("", |(_, place)| place.trim()).to_owned();
@@ -233,7 +233,7 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     site.at(header.real(1).zip(header.real(2)))
 }
 
-/// `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².
+/// Returns `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².
 fn counts_to_si(
     source: &Source<'_>,
     hints: &Hints<'_>,
@@ -260,7 +260,7 @@ fn counts_to_si(
     Ok(lsb * 1e-6 / (sensor * gain) * STANDARD_GRAVITY)
 }
 
-/// `Sta Chan   1: 90 Deg (Rcrdr Chan  ?) Location:...`
+/// Parses `Sta Chan   1: 90 Deg (Rcrdr Chan  ?) Location:...`
 fn channel_name(source: &Source<'_>, first: usize) -> String {
     let text = source.text(first + 8);
     let name = text.split('(').next().unwrap_or("");
@@ -270,7 +270,7 @@ fn channel_name(source: &Source<'_>, first: usize) -> String {
     name.rsplit(':').next().unwrap_or("").trim().to_owned()
 }
 
-/// The channel code in a comment such as `|<SCNL>BMR.BNZ.AK.--`.
+/// Returns the channel code in a comment such as `|<SCNL>BMR.BNZ.AK.--`.
 fn seed_code(source: &Source<'_>, from: usize, to: usize) -> Option<String> {
     (from..to).find_map(|line| {
         let text = source.text(line);

@@ -1,4 +1,4 @@
-//! Channels with SEED codes whose samples are counts, or stand in a unit that the file states.
+//! Channels with SEED codes whose samples are counts, or have a unit stated in the file.
 
 use super::source::Source;
 use super::{Hints, seed};
@@ -10,20 +10,20 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// The samples of one channel as they stand in a file.
+/// The samples of one channel as in a file.
 pub(super) struct Samples {
     pub(super) codes: SeedName,
     pub(super) start: Option<Utc>,
     /// Step (s).
     pub(super) time_step: f64,
     pub(super) values: Vec<f64>,
-    /// What the file says of the unit.
+    /// Stated unit.
     pub(super) unit: Unit,
-    /// Where the channel points, where the file says more than its code.
+    /// Direction of the channel, if the file states more than its code.
     pub(super) direction: Option<Direction>,
 }
 
-/// What a file says of the unit of its samples.
+/// Unit of samples, as stated in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Unit {
     /// Counts of a digitizer.
@@ -33,7 +33,7 @@ pub(super) enum Unit {
 }
 
 impl Unit {
-    /// The unit of a word such as `M/S**2`, `nm/s` or `COUNTS`; none where it is not known.
+    /// Parses a unit such as `M/S**2`, `nm/s` or `COUNTS`; `None` if unknown.
     pub(super) fn of(word: &str) -> Option<Self> {
         let plain = word.trim().to_ascii_lowercase();
         if ["count", "counts", "ct", "cts", ""].contains(&plain.as_str()) {
@@ -43,10 +43,10 @@ impl Unit {
     }
 }
 
-/// A channel in m/s²: counts divided by the sensitivity that the caller knows, samples with a unit
-/// converted; velocities and displacements differentiated where the caller asks for it.
+/// Converts a channel to m/s²: divides counts by the sensitivity that the caller gives, converts samples with a
+/// unit; differentiates velocities and displacements if the caller requests it.
 ///
-/// `format` is what messages call the file.
+/// `format` is the name of the format in messages.
 pub(super) fn channel(
     source: &Source<'_>,
     record: &mut Record,
@@ -56,7 +56,7 @@ pub(super) fn channel(
 ) -> Result<Channel, ReadError> {
     let Samples { codes, start, time_step, values, unit, direction } = samples;
     let name = codes.channel.clone();
-    // Metadata are for counts; a unit that the file states needs none.
+    // Metadata are for counts; a stated unit needs none.
     let known = (unit == Unit::Counts).then(|| hints.instrument(&codes, start)).flatten();
     let factor = match unit {
         Unit::Counts => {
@@ -76,7 +76,7 @@ pub(super) fn channel(
             1.0 / sensitivity
         }
         Unit::Motion(MotionUnit { quantity, factor }) => {
-            // What the file states goes before the code of the channel.
+            // A quantity stated in the file takes precedence over the code of the channel.
             if quantity != Quantity::Acceleration && hints.recorded().is_none() {
                 return Err(source.error(
                     (),
@@ -113,7 +113,7 @@ pub(super) fn channel(
     Ok(channel)
 }
 
-/// The stations of all channels, each once.
+/// Returns the stations of all channels, each once.
 pub(super) fn stations(record: &Record) -> String {
     let mut all: Vec<&str> = record.channels.iter().map(|c| c.site.station.as_str()).collect();
     all.dedup();

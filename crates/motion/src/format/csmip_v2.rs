@@ -53,14 +53,14 @@ fn read_channel(
     if record.channels.is_empty() {
         record.event = source.text(first + 2);
     }
-    // Line 7 by rule; the first line that begins with CHAN where a line is missing.
+    // Normally line 7; the first line that begins with CHAN if a line is missing.
     let name_line = header
         .clone()
         .find(|&line| source.text(line).to_ascii_uppercase().starts_with("CHAN"))
         .unwrap_or(first + 6);
     let name = channel_name(source, name_line);
     if record.channels.is_empty() {
-        // The line before it by rule.
+        // Normally the line before it.
         record.station = station_name(source, name_line.saturating_sub(1));
     }
     let (accelerations, mut next) =
@@ -103,7 +103,7 @@ fn read_channel(
     source.end_of_channel(next, "CORRECTED ACCELEROGRAM")
 }
 
-/// One block of `key` (acc, vel, dis) if its data line stands here.
+/// Reads one block of `key` (acc, vel, dis) if its data line is here.
 fn read_block(
     source: &Source<'_>,
     record: &mut Record,
@@ -140,7 +140,7 @@ fn unit(
     })
 }
 
-/// The step on the data line; real 61 of the header refines it where both agree in the digits shown.
+/// Returns the step on the data line; real 61 of the header refines it if both agree in the printed digits.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

@@ -16,7 +16,7 @@ pub(crate) const FORMAT: Format =
     Format { name: "csmnc", title: "CSMNC text (China)", sniff, read };
 
 const MOST_HEADER_LINES: usize = 24;
-/// Seconds by which Beijing is before universal time.
+/// Offset of Beijing time from universal time (s).
 const BEIJING: f64 = 8.0 * 3600.0;
 
 fn line_with(source: &Source<'_>, key: &str) -> Option<usize> {
@@ -59,7 +59,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         .find(|&line| {
             let mut row = Vec::new();
             let numbers = source.tokens(line, f64::INFINITY, &mut row).is_ok();
-            // A line of the header may be one number, such as that of the record.
+            // A line of the header may be a single number, such as that of the record.
             numbers && (row.len() > 1 || (row.len() == 1 && line + 1 == source.lines.len()))
         })
         .ok_or_else(|| source.cut(format!("{count} values"), "none"))?;
@@ -101,8 +101,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// That count and step give the duration that is stated: one step more or less, and half of its last
-/// digit, is how it is counted and rounded.
+/// Checks that count and step agree with the stated duration, to within one step and half of its last digit, as
+/// conventions of counting and rounding differ.
 fn check_duration(
     source: &Source<'_>,
     line: usize,

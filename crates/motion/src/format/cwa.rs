@@ -1,7 +1,7 @@
 //! CWA (formerly CWB), Taiwan: `#` lines, then time and three components in gal, vertical first.
 //!
-//! Spec: header lines of the Taiwan Strong Motion Instrumentation Program text files; the order of
-//! the columns stands in `#DataSequence`.
+//! Spec: header lines of the Taiwan Strong Motion Instrumentation Program text files; `#DataSequence` states the
+//! order of the columns.
 
 use super::even::{Timed, even_steps};
 use super::source::{

@@ -1,4 +1,4 @@
-//! A step from a time column: even times give it, uneven ones are interpolated, neither is assumed.
+//! Step from a time column: even times determine it, uneven ones are interpolated; it is never assumed.
 
 use super::source::{Columns, Source};
 use crate::error::ReadError;
@@ -9,18 +9,18 @@ use crate::record::Record;
 pub(crate) struct Timed {
     /// Line of the first row, 0-based.
     pub(crate) first_line: usize,
-    /// Rows to a line.
+    /// Rows per line.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,
-    /// One column to a channel.
+    /// One column per channel.
     pub(crate) values: Vec<Vec<f64>>,
     /// One unit of the last printed digit of the times (s).
     pub(crate) resolution: f64,
 }
 
 impl Timed {
-    /// From pairs of time and value.
+    /// Creates columns from pairs of time and value.
     pub(crate) fn of_pairs(
         first_line: usize,
         pairs: Columns,
@@ -32,10 +32,10 @@ impl Timed {
     }
 }
 
-/// The even step of the times and the columns at that step.
+/// Returns the even step of the times and the columns at that step.
 ///
-/// Times that keep an even step within their printed digits give it exactly; others are
-/// interpolated linearly to a finer even step, with a warning.
+/// Times that are even within their printed digits give the step exactly; others are interpolated linearly to a
+/// finer even step, with a warning.
 pub(crate) fn even_steps(
     source: &Source<'_>,
     record: &mut Record,
@@ -47,7 +47,7 @@ pub(crate) fn even_steps(
     if time.len() < 2 {
         return Err(source.cut("at least 2 rows", format!("{} rows", time.len())));
     }
-    // Coarsely printed times may repeat; only going back is damage.
+    // Coarsely printed times may repeat; only decreasing times are damage.
     let back = (1..time.len()).find(|&row| !(time[row] >= time[row - 1]));
     let stuck = (time.len() > 2 && time[time.len() - 1] <= time[0]).then_some(1);
     if let Some(row) = back.or(stuck) {
@@ -125,19 +125,19 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
-/// A round step from which no time strays by more than one unit of its last digit, as times do that
-/// were cut instead of rounded.
+/// Returns a round step from which no time deviates by more than one unit of its last digit, as for truncated
+/// times.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {
         (t - time[0] - k as f64 * step).abs() > 1.01 * resolution + 1e-9 * t.abs()
     };
-    // Times coarser than the step would say nothing about evenness.
+    // Times coarser than the step would be no evidence of evenness.
     let fine = resolution < 0.5 * step;
     (fine && !time.iter().enumerate().any(strays)).then_some(step)
 }
 
-/// Round steps near the mean, then the mean itself.
+/// Returns round steps near the mean, then the mean itself.
 fn candidates(mean: f64, relative: f64) -> impl Iterator<Item = f64> {
     let rate = (1.0 / mean).round();
     let decimal = (mean * 1e5).round() / 1e5;

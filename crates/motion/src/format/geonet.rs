@@ -73,8 +73,8 @@ fn read_component(
         .unwrap_or("")
         .to_owned();
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
-    // Year and month, day and hour, minute and milliseconds of time zero; a corrected record begins
-    // with the filter's pad before it.
+    // Year and month, day and hour, minute and milliseconds of time zero; a corrected record begins with the
+    // filter's pad before it.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |row: usize, column: usize| cell(row, column) as i64;
     let zero = Utc::new(

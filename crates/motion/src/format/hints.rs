@@ -1,4 +1,4 @@
-//! What the caller told of a file, and which of it the reader asked for.
+//! Options of the caller, with a record of which the reader used.
 
 use std::cell::Cell;
 
@@ -8,10 +8,9 @@ use crate::record::Quantity;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// What the caller told, for readers.
+/// Options of the caller, for readers.
 ///
-/// A reader asks only for what the file does not state; so what nobody asked for is ignored, and
-/// reported.
+/// A reader queries only what the file does not state; unused options are ignored, and reported.
 pub(super) struct Hints<'a> {
     options: &'a ReadOptions,
     unit: Cell<bool>,
@@ -26,12 +25,12 @@ impl<'a> Hints<'a> {
         Self { options, unit: no(), time_step: no(), sensitivity: no(), recorded: no() }
     }
 
-    /// All that the caller gave.
+    /// Returns all options.
     pub(super) fn options(&self) -> &'a ReadOptions {
         self.options
     }
 
-    /// Marks as used what another reader used of the same values.
+    /// Marks as used what another reader used of the same options.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
@@ -58,13 +57,13 @@ impl<'a> Hints<'a> {
         self.options.sensitivity
     }
 
-    /// The metadata of a channel that begins at `start`.
+    /// Returns the metadata of a channel that begins at `start`.
     pub(super) fn instrument(&self, seed: &SeedName, start: Option<Utc>) -> Option<&'a Instrument> {
         self.sensitivity.set(true);
         self.options.instruments.iter().find(|known| known.describes(seed, start))
     }
 
-    /// States that no metadata describe a channel, for the error that a sensitivity is missing.
+    /// States that no metadata match a channel, for the error of a missing sensitivity.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {
@@ -82,7 +81,7 @@ impl<'a> Hints<'a> {
         self.options.recorded
     }
 
-    /// What was given and not asked for, in words.
+    /// Returns the names of unused options.
     pub(super) fn ignored(&self) -> impl Iterator<Item = &'static str> {
         let options = self.options;
         let counts = options.sensitivity.is_some() || !options.instruments.is_empty();

@@ -20,8 +20,8 @@ pub(crate) const FORMAT: Format =
     Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
 
 const HEADER_LINES: usize = 17;
-/// What is taken off the record time to get that of the first sample (s): the delay of the recorder
-/// and the nine hours of Japan time.
+/// Difference between the record time and that of the first sample (s): the delay of the recorder and the nine
+/// hours of Japan time.
 const LATE: f64 = 15.0 + 9.0 * 3600.0;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -29,7 +29,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && (0..HEADER_LINES).any(|line| source.has(line, "Scale Factor"))
 }
 
-/// Line and text of a header field by the start of its key.
+/// Returns line and text of a header field by the start of its key.
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     source.field(HEADER_LINES + 2, |text| {
         text.starts_with(key).then(|| text.get(18..).unwrap_or_default())
@@ -82,7 +82,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         |key: &str| field(source, key).and_then(|(_, text)| leading_number(text.as_bytes()));
     channel.site = Site {
         sensor: if borehole { "borehole" } else { "surface" }.to_owned(),
-        // -9999 stands for none.
+        // -9999 means unknown.
         elevation: number("Station Height").filter(|height| *height > -9000.0),
         ..Site::default()
     }
@@ -95,7 +95,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Eight integers of nine columns to a line; the last line may be short.
+/// Reads eight integers of nine columns per line; the last line may be short.
 fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>, ReadError> {
     let last = source.lines.len();
     let mut values = Vec::with_capacity(8 * last.saturating_sub(first));
@@ -108,7 +108,7 @@ fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>
     Ok(values)
 }
 
-/// `3920(gal)/6182761` in gal to a count.
+/// Parses `3920(gal)/6182761` to gal per count.
 fn scale(text: &str) -> Option<f64> {
     let (full, counts) = text.split_once('/')?;
     let unit = full.find("(gal)")?;
@@ -118,7 +118,7 @@ fn scale(text: &str) -> Option<f64> {
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
-/// K-NET names directions; KiK-net numbers them, 1 to 3 in the borehole and 4 to 6 at the surface.
+/// Parses a direction: K-NET names it; KiK-net numbers it, 1 to 3 in the borehole and 4 to 6 at the surface.
 fn direction(text: &str) -> (String, Direction, bool) {
     let (name, borehole) = match text.trim() {
         "1" => ("N-S", true),

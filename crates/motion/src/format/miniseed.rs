@@ -1,9 +1,9 @@
 //! miniSEED 2: data records of integers, floats or Steim-compressed counts, joined by channel.
 //!
-//! A decoder of our own. There is a maintained crate in Rust alone, miniseed-rs (0.2.2), which decodes the
-//! same encodings; but of a header it reads neither the time correction nor the microseconds of blockette
-//! 1001, by which channels are aligned here, and of Steim's frames it does not compare the last sample with
-//! the one that the record states, by which damage is found. The other crates wrap a C library.
+//! The decoder is part of this crate. The only maintained one in Rust, miniseed-rs (0.2.2), decodes the same
+//! encodings, but reads neither the time correction of a header nor the microseconds of blockette 1001, which
+//! align channels here, and does not compare the last sample of Steim's frames with the one that the record
+//! states, which detects damage. The other crates wrap a C library.
 //! Spec: FDSN, Standard for the Exchange of Earthquake Data, version 2.4, chapter 8 and appendix B.
 
 use std::collections::BTreeMap;
@@ -56,9 +56,9 @@ struct Trace {
     values: Vec<f64>,
 }
 
-/// Largest difference between times and samples that is no gap (samples).
+/// Largest difference between times and samples that does not count as a gap (samples).
 const LARGEST_OFFSET: f64 = 0.6;
-/// Largest relative deviation of a sample rate from its nominal value that a recorder's clock has.
+/// Largest relative error of the sample rate due to a recorder's clock.
 const LARGEST_CLOCK_ERROR: f64 = 2e-4;
 
 fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
@@ -135,7 +135,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Leaves out the channels of other sensors where the file holds some of accelerometers.
+/// Leaves out the channels of other sensors if the file has any of accelerometers.
 fn keep_accelerometers(
     hints: &Hints<'_>,
     record: &mut Record,
@@ -177,7 +177,7 @@ fn signed_pair(bytes: &[u8], at: usize, big: bool) -> f64 {
 
 fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     let bytes = &source.bytes[at..];
-    // The year tells the byte order, as no flag does.
+    // The year determines the byte order, for which there is no flag.
     let big = (1900..2200).contains(&two(bytes, 20, true));
     let year = two(bytes, 20, big);
     let day = two(bytes, 22, big);
@@ -189,7 +189,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         ));
     }
     let part = |from: usize, to: usize| latin1(&bytes[from..to]).trim().to_owned();
-    // Blanks are an empty location code, and so is what programs print for one.
+    // The location code is empty if blank or printed as a placeholder.
     let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
     let id =
         SeedName { network: part(18, 20), station: part(8, 13), location, channel: part(15, 18) };
@@ -209,7 +209,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         (if factor > 0.0 { factor } else { -1.0 / factor })
             * (if multiplier > 0.0 { multiplier } else { -1.0 / multiplier })
     };
-    // Bit 1 of the activity flags: the correction is in the time already.
+    // Bit 1 of the activity flags: the time already includes the correction.
     if bytes[36] & 2 == 0 {
         start = start.later(1e-4 * f64::from(i32::from_be_bytes(order(&bytes[40..44], big))));
     }
@@ -244,11 +244,11 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     Ok(Header { id, samples, rate, start, data, length, encoding, big })
 }
 
-/// Joins the data records of one channel in the order of their times; repeated ones are left out, and a gap
-/// or an overlap is an error, because nothing may be made up.
+/// Joins the data records of one channel in the order of their times; repeated ones are left out, and a gap or an
+/// overlap is an error, because samples must not be invented.
 ///
 /// The times are compared with the number of samples since the first record, so that gaps shorter than a sample
-/// cannot add up unnoticed; a recorder's clock may run fast or slow by [`LARGEST_CLOCK_ERROR`].
+/// cannot accumulate unnoticed; a recorder's clock may run fast or slow by [`LARGEST_CLOCK_ERROR`].
 fn joined(
     source: &Source<'_>,
     record: &mut Record,
@@ -356,7 +356,7 @@ fn decode(
     }
 }
 
-/// Bytes in big-endian order.
+/// Converts bytes to big-endian order.
 fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
     let mut ordered = [0; N];
     ordered.copy_from_slice(&bytes[..N]);
@@ -366,7 +366,7 @@ fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
     ordered
 }
 
-/// Steim-1 and Steim-2: frames of 16 words, first differences packed as the top word's nibbles say.
+/// Decodes Steim-1 and Steim-2: frames of 16 words, first differences packed by the nibbles of the top word.
 fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64>> {
     let mut differences: Vec<i64> = Vec::with_capacity(samples);
     let (mut first, mut last) = (0_i64, 0_i64);
@@ -422,7 +422,7 @@ fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64
     (value == last).then_some(values)
 }
 
-/// The lowest `bits` of a word as a signed number.
+/// Returns the lowest `bits` of a word as a signed number.
 fn signed(word: u32, bits: u32) -> i64 {
     let shift = 64 - bits;
     #[expect(clippy::cast_possible_wrap, reason = "sign extension of two's complement")]

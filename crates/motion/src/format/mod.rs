@@ -1,4 +1,4 @@
-//! Readers of strong-motion files: each format in a file of its own, chosen from the bytes.
+//! Readers of strong-motion files, one file per format, selected by content.
 
 mod afad;
 mod bbp;
@@ -45,23 +45,22 @@ pub(crate) use packed::LARGEST as LARGEST_UNPACKED;
 use source::{LARGEST_ACCELERATION, Place, parse_number};
 pub(crate) use source::{Printed, Source, quoted, shorten};
 
-/// What the caller knows and a file may not say.
+/// Information that a file may lack.
 ///
-/// A value the file states itself is taken from the file; one given in addition is reported as
-/// ignored.
+/// A value stated in the file takes precedence; one given in addition is reported as ignored.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// Unit of acceleration for formats that state none.
     pub unit: Option<AccelerationUnit>,
     /// Step (s) for formats that state none.
     pub time_step: Option<f64>,
-    /// Counts to one m/s² for files that hold counts, also before what a COSMOS header states; to one
-    /// m/s or m where [`ReadOptions::recorded`] says that velocity or displacement was recorded.
+    /// Counts per m/s² for files of counts, overriding a COSMOS header; per m/s or m if
+    /// [`ReadOptions::recorded`] is velocity or displacement.
     pub sensitivity: Option<f64>,
-    /// Metadata of single channels; the first that fits a channel goes before the sensitivity for all.
+    /// Metadata of single channels; the first match takes precedence over the sensitivity for all.
     pub instruments: Vec<Instrument>,
-    /// What SEED and SAC files hold, where the caller knows better than their channel codes; velocity
-    /// and displacement are differentiated.
+    /// Quantity in SEED and SAC files, overriding their channel codes; velocity and displacement are
+    /// differentiated.
     pub recorded: Option<Quantity>,
 }
 
@@ -77,11 +76,9 @@ pub struct Format {
 }
 
 impl Format {
-    /// Reads `bytes` as this format, whether or not they look like it; `name` is used in messages
-    /// only.
+    /// Reads `bytes` as this format, whether or not they look like it; `name` is used in messages only.
     ///
-    /// [`read`] finds the format; this is for those who know it, or want to see every reader at work
-    /// on the same bytes.
+    /// [`read`] detects the format; this method is for callers that know it, or run every reader on the same bytes.
     ///
     /// # Errors
     /// As [`read`].
@@ -144,7 +141,7 @@ pub const FORMATS: &[Format] = &[
     columns::FORMAT,
 ];
 
-/// Files that are known and refused, tried first.
+/// Known formats that are refused; they are tried first.
 const KNOWN_OTHERS: &[Format] = &[
     refused::HDF5,
     refused::WEB_PAGE,
@@ -172,12 +169,12 @@ const KNOWN_OTHERS: &[Format] = &[
 /// Reads a strong-motion file of any format, also one inside gzip, and the one record of a zip, tar or
 /// tar.gz archive; `name` is used in messages only.
 ///
-/// The components of a record may lie in several files of an archive; its notes say which, and what was
+/// The components of a record may be spread over several files of an archive; its notes list them, and the files
 /// left out. An archive of several records is refused ([`Refusal::SeveralRecords`]): [`crate::Archive`]
-/// gives its files one by one.
+/// returns its files one by one.
 ///
 /// # Errors
-/// If no format fits, the file holds no acceleration, is damaged, or lacks a unit, step or
+/// If no format matches, the file holds no acceleration, is damaged, or lacks a unit, step or
 /// sensitivity that `options` does not give.
 ///
 /// ```
@@ -215,7 +212,7 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
     format.read_source(source, options)
 }
 
-/// Refuses what no format is.
+/// Refuses bytes that cannot be of any format.
 fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     let (expected, found, remedy) = if source.bytes.trim_ascii().is_empty() {
         ("a strong-motion file", "an empty file", "get the file again from its source")
@@ -227,7 +224,7 @@ fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     Err(source.damaged((), expected, found, remedy))
 }
 
-/// Velocities (m/s) at the first samples, as a header line of our own states them in `text`.
+/// Parses velocities (m/s) at the first samples from `text` in a header line of this crate.
 fn initial_velocities(
     source: &Source<'_>,
     line: usize,
@@ -236,7 +233,7 @@ fn initial_velocities(
 ) -> Result<Vec<f64>, ReadError> {
     let velocities: Option<Vec<f64>> =
         text.split_whitespace().map(|word| parse_number(word.as_bytes())).collect();
-    // No velocity in m/s comes near what no acceleration in m/s² may pass.
+    // No velocity in m/s comes near the limit of accelerations in m/s².
     velocities
         .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
         .ok_or_else(|| {
@@ -249,7 +246,7 @@ fn initial_velocities(
         })
 }
 
-/// The names of all formats, for messages.
+/// Returns the names of all formats, for messages.
 fn names() -> String {
     FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
 }
@@ -274,7 +271,7 @@ fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadE
     Ok(())
 }
 
-/// Checks that hold for every format.
+/// Runs the checks that apply to every format.
 pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     if record.channels.is_empty() {
         return Err(source.not_acceleration(
@@ -357,7 +354,7 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
     })
 }
 
-/// A positive whole number from a header.
+/// Parses a positive integer from a header.
 fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usize, ReadError> {
     if value.fract() == 0.0 && (1.0..=1e9).contains(&value) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1e9")]
@@ -366,9 +363,9 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     Err(source.header(line, format!("{what}, 1 or more"), value.to_string()))
 }
 
-/// How many of the values found are used where a count is stated: one less or two more all are, because
-/// headers in circulation are off by that much; of more only the stated number; fewer mean a cut file, and
-/// twice as many another one.
+/// Returns the number of values used where a count is stated: all, for one less or two more, because headers in
+/// circulation are off by that much; the stated number, for more; fewer mean a truncated file, and twice as many
+/// another kind of file.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
@@ -386,7 +383,7 @@ fn check_count(
         );
         return Ok(found);
     }
-    // Twice as many are no surplus: a comma for the point makes two numbers of each.
+    // Twice as many are not a surplus: a comma for the point makes two numbers of each.
     if found > stated && found < 2 * stated {
         record.warn(
             line + 1,
@@ -406,7 +403,7 @@ fn check_count(
     ))
 }
 
-/// As [`check_count`] where the header states a length in whole seconds: up to one second more or
+/// Checks the count, as [`check_count`], where the header states a length in whole seconds: up to one second more or
 /// less is rounding.
 fn check_seconds(
     source: &Source<'_>,
@@ -425,13 +422,13 @@ fn check_seconds(
     Ok(found)
 }
 
-/// The file name without folders and ending.
+/// Returns the file name without folders and extension.
 pub(crate) fn file_stem(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     base.rsplit_once('.').map_or(base, |(stem, _)| stem).to_owned()
 }
 
-/// Rows of `width` numbers separated by blanks, as columns.
+/// Reads rows of `width` numbers separated by blanks, as columns.
 fn rows(
     source: &Source<'_>,
     from: usize,
@@ -454,7 +451,7 @@ fn rows(
     Ok(columns)
 }
 
-/// Leaves out channels that never change: clocks and unused inputs.
+/// Leaves out constant channels: clocks and unused inputs.
 fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     let dead = |channel: &mut Channel| match channel.acceleration.as_slice() {
         [first, rest @ ..] => !rest.is_empty() && rest.iter().all(|value| value == first),
@@ -478,7 +475,7 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
     Ok(())
 }
 
-/// Takes off the mean of a raw digital channel, whose zero is arbitrary, and notes it.
+/// Removes the mean of a raw digital channel, whose zero is arbitrary, and notes it.
 fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
     let offset = crate::math::take_mean(values);
     record.notes.push(format!(

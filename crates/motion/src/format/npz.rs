@@ -15,7 +15,7 @@ use crate::write::{TITLE, array_name};
 pub(crate) const FORMAT: Format =
     Format { name: "npz", title: "NumPy archive of this crate", sniff, read };
 
-/// Most bytes of all arrays.
+/// Maximum size (bytes) of all arrays.
 const LARGEST: u64 = 64 << 20;
 
 enum Array {
@@ -94,11 +94,11 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         }
         Ok(columns)
     });
-    // An archive has no lines.
+    // Archives have no lines.
     described.map_err(|error| ReadFailure { line: None, column: None, ..(*error).clone() }.into())
 }
 
-/// One array of numbers or strings in a row; nothing if it is something else.
+/// Parses a one-dimensional array of numbers or strings; `None` for anything else.
 fn array(bytes: &[u8]) -> Option<Array> {
     let rest = bytes.strip_prefix(b"\x93NUMPY")?;
     let (start, length) = match rest.first()? {

@@ -1,4 +1,4 @@
-//! Numbers as files print them.
+//! Parsing of printed numbers.
 
 use super::quoted::latin1;
 
@@ -9,10 +9,10 @@ pub(crate) struct Printed {
     pub(crate) resolution: f64,
 }
 
-/// A finite decimal number with optional Fortran exponent letter `D`; nothing else.
+/// Parses a finite decimal number with optional Fortran exponent letter `D`; nothing else.
 pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
     let field = field.trim_ascii();
-    // Rejects what the standard parser would accept as words: inf, nan, infinity.
+    // Rejects words that the standard parser accepts: inf, nan, infinity.
     let mut fortran = false;
     for &byte in field {
         match byte {
@@ -48,12 +48,12 @@ pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
     Some(pieces)
 }
 
-/// The number at the start of `bytes` after blanks, `=` and `:`.
+/// Returns the number at the start of `bytes` after blanks, `=` and `:`.
 pub(crate) fn leading_number(bytes: &[u8]) -> Option<f64> {
     leading_text(bytes).map(|(value, _)| value)
 }
 
-/// As [`leading_number`] with its text.
+/// Returns the [`leading_number`] with its text.
 pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
     let rest = &bytes[skip..];
@@ -75,12 +75,12 @@ pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     Some((value, latin1(&rest[..end])))
 }
 
-/// As [`leading_number`] with the resolution of the printed digits.
+/// Returns the [`leading_number`] with the resolution of the printed digits.
 pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
     leading_text(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
 }
 
-/// One unit of the last digit of a printed number.
+/// Returns one unit of the last digit of a printed number.
 pub(crate) fn resolution(text: &str) -> f64 {
     let lower = text.to_ascii_lowercase();
     let (mantissa, exponent) = lower.split_once('e').unwrap_or((&lower, "0"));
@@ -90,7 +90,7 @@ pub(crate) fn resolution(text: &str) -> f64 {
     crate::math::powf(10.0, f64::from(power))
 }
 
-/// Whether a field is what programs print in place of a number.
+/// `true` if a field is a placeholder that programs print instead of a number.
 pub(super) fn is_no_number(text: &str) -> bool {
     let lower = text.trim_matches(['+', '-', '"']).to_ascii_lowercase();
     let printed =

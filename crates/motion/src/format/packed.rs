@@ -10,18 +10,18 @@ use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::Record;
 
-/// Most bytes that are unpacked, lest a few packed bytes take all memory: lines of one digit take sixteen
-/// times their size while they are read, 192 MB of as many as this; 64 MB of them would take 1 GB.
+/// Maximum size (bytes) of an unpacked file, so that a small archive cannot exhaust the memory: lines of one digit need
+/// sixteen times their size while they are read, 192 MB at this limit; 64 MB of them would need 1 GB.
 /// An hour of one component at 100 Hz has a quarter of it as text.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
-/// The record of a packed file; nothing where the file is not packed.
+/// Reads the record of a packed file; `None` if the file is not packed.
 pub(super) fn read(
     source: &Source<'_>,
     options: &ReadOptions,
 ) -> Result<Option<Record>, ReadError> {
     let packed = [&b"PK"[..], &[0x1F, 0x8B]].iter().any(|magic| source.bytes.starts_with(magic));
-    // Bytes are copied only where they may be an archive; tar has a name and a checksum at its head.
+    // Copy the bytes only if they may be an archive; tar has a name and a checksum in its header.
     let tar = source.bytes.get(257..262) == Some(b"ustar");
     if !packed && !tar {
         return Ok(None);
@@ -39,15 +39,15 @@ pub(super) fn read(
     Ok(Some(record))
 }
 
-/// A file that was packed; what is packed twice is not opened.
+/// Reads an unpacked file; doubly packed files are not opened.
 fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
     let inside = Source::new(name, bytes);
     check_bytes(&inside)?;
     read_any(&inside, options)
 }
 
-/// The one record of an archive: its files are grouped by their names, and what holds no acceleration is
-/// left out with its reason.
+/// Reads the one record of an archive: groups its files by their names, and leaves out files without acceleration, with
+/// their reasons.
 fn from_archive(
     source: &Source<'_>,
     archive: &Archive,
@@ -80,7 +80,7 @@ fn from_archive(
             }
             _ => found.push((group.name.clone(), record)),
         }
-        // The names say how many there may be; two that are read show that it is not one.
+        // The names bound the number of records; two readable ones prove that there are several.
         if found.len() > 1 {
             return Err(several(source, &groups, &found));
         }
@@ -104,7 +104,7 @@ fn from_archive(
     Ok(record)
 }
 
-/// Whether two records of one archive are components of one, though their names do not say so.
+/// `true` if two records of one archive are components of one although their names do not match.
 fn belongs(one: &Record, other: &Record) -> bool {
     let named = !(one.event.is_empty() && one.station.is_empty());
     let new = |name: &str| one.channels.iter().all(|channel| channel.name != name);
@@ -113,7 +113,7 @@ fn belongs(one: &Record, other: &Record) -> bool {
         && Record::gather(&[one.clone(), other.clone()]).is_ok()
 }
 
-/// `StationXML` in the archive, looked into once a file of counts asks for it.
+/// `StationXML` in the archive, read once a file of counts needs it.
 struct Metadata<'a> {
     names: &'a [String],
     options: Option<ReadOptions>,
@@ -161,7 +161,7 @@ impl Metadata<'_> {
     }
 }
 
-/// An archive of several records, by the names of its files.
+/// Returns the error for an archive of several records, with the names of its files.
 fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record)]) -> ReadError {
     let named: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
     let first = groups.iter().find(|group| group.name == named[0]).map(|g| g.files[0].as_str());
@@ -178,7 +178,7 @@ fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record
     )
 }
 
-/// An archive without a record: what its only file, or the first that lacks something, is refused for.
+/// Returns the error for an archive without a record: that of its only file, or of the first that lacks information.
 fn none(
     source: &Source<'_>,
     names: &[String],

@@ -17,7 +17,7 @@ use crate::write::{NO_EVENT, NO_STATION};
 pub(crate) const FORMAT: Format =
     Format { name: "peer", title: "PEER AT2 (NGA, NGA-West2, PEER 2000)", sniff, read };
 
-/// Lines searched for the count and step.
+/// Number of lines searched for the count and step.
 const HEADER_LINES: usize = 12;
 
 struct Counts {
@@ -70,11 +70,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Places of blank fields: line and first column, 0-based.
+/// Positions of blank fields: line and first column, 0-based.
 type Blanks = Vec<(usize, usize)>;
 
-/// The values by columns as wide as in the first row, and the places of fields left blank; nothing if
-/// the rows are not of that form.
+/// Reads the values by columns as wide as in the first row, and the positions of blank fields; `None` if the rows do
+/// not have that form.
 fn in_columns(
     source: &Source<'_>,
     start: usize,
@@ -110,7 +110,7 @@ fn in_columns(
     Ok(Some((values, blanks)))
 }
 
-/// `*** Begin data ***` and its like around the values of some copies.
+/// `true` for `*** Begin data ***` and similar marks around the values of some copies.
 fn is_begin_mark(source: &Source<'_>, line: usize) -> bool {
     let text = source.text(line);
     text.is_empty() || text.starts_with("***") && source.has(line, "begin")
@@ -121,7 +121,7 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with("***") && source.has(line, "end")
 }
 
-/// `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
+/// Parses `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
     let line = (0..HEADER_LINES).find(|&line| source.has(line, "NPTS")).unwrap_or(0);
     let after = source.number_after(line, "NPTS").zip(source.number_after(line, "DT"));
@@ -185,7 +185,7 @@ fn find_unit(
     })
 }
 
-/// Event, station and component from the title lines.
+/// Returns event, station and component from the title lines.
 fn names(source: &Source<'_>, last: usize) -> (String, String, String) {
     for line in 0..last.min(4) {
         let text = source.text(line);

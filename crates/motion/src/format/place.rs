@@ -1,13 +1,13 @@
-//! Where in a text file something stands: a line, a column, a block of columns.
+//! Positions in a text file: a line, a column, a block of columns.
 
 /// A block of numbers in Fortran columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
     /// Blank columns before the first field.
     pub(crate) indent: usize,
-    /// Fields to a line.
+    /// Fields per line.
     pub(crate) per_line: usize,
-    /// Characters to a field.
+    /// Characters per field.
     pub(crate) width: usize,
 }
 
@@ -16,7 +16,7 @@ impl Columns {
         Self { indent: 0, per_line, width }
     }
 
-    /// Reads `8F10.5`, `(10I8)` and `(1X,10F7.3)`; repeated groups such as `5(E15.7)` are not known.
+    /// Parses `8F10.5`, `(10I8)` and `(1X,10F7.3)`; repeated groups such as `5(E15.7)` are not supported.
     pub(crate) fn parse(format: &str) -> Option<Self> {
         let inner = format.trim().trim_start_matches('(');
         let inner = inner.split(')').next()?.trim();
@@ -38,7 +38,7 @@ impl Columns {
     }
 }
 
-/// Where in the file, 0-based.
+/// Position in a file, 0-based.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Place {
     pub(crate) line: Option<usize>,

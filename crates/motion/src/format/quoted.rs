@@ -1,11 +1,11 @@
-//! What stands in a file, as text of messages.
+//! Contents of a file as text in messages.
 
-/// Bytes as text, one character each.
+/// Converts bytes to text, one character each (Latin-1).
 pub(crate) fn latin1(bytes: &[u8]) -> String {
     bytes.iter().map(|&byte| char::from(byte)).collect()
 }
 
-/// At most 40 characters of a text, for messages.
+/// Shortens a text to at most 40 characters, for messages.
 pub(crate) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 {
         text.to_owned()
@@ -14,12 +14,12 @@ pub(crate) fn shorten(text: &str) -> String {
     }
 }
 
-/// As [`shorten`], between quotation marks.
+/// Shortens a text, as [`shorten`], and encloses it in quotation marks.
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shorten(text))
 }
 
-/// States how a file that is no text begins; nothing for text with a stray byte further down.
+/// Describes the start of a binary file; `None` for text with a stray byte further down.
 pub(crate) fn binary(bytes: &[u8]) -> Option<String> {
     let head = bytes.get(..512).unwrap_or(bytes);
     let odd = head.iter().filter(|&&b| b < 0x09 || (0x0E..0x20).contains(&b)).count();

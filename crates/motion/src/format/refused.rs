@@ -1,4 +1,4 @@
-//! Files that are known and hold no acceleration history that can be read here.
+//! Known formats without an acceleration history that can be read here.
 
 use super::source::{Source, parse_number};
 use super::{Format, Hints};
@@ -30,8 +30,8 @@ pub(crate) const XML: Format = Format {
     read: xml,
 };
 
-/// Blocks of acceleration, velocity and displacement that the USGS gave out around 1987; no sample of
-/// them can be passed on, so that a reader could not be tested.
+/// Blocks of acceleration, velocity and displacement published by the USGS around 1987; no sample may be
+/// redistributed, so that a reader could not be tested.
 pub(crate) const USGS_BLOCKS: Format = Format {
     name: "usgs-1987",
     title: "USGS blocks of 1987 (refused)",
@@ -49,7 +49,7 @@ pub(crate) const USGS_BLOCKS: Format = Format {
     },
 };
 
-/// USGS SLAMMER: bare columns of values in g whose steps stand in a table beside them.
+/// USGS SLAMMER: bare columns of values in g whose steps are in a separate table.
 ///
 /// The records themselves are read as plain columns with unit and step given by the caller.
 /// Spec: Jibson et al. 2013, USGS Techniques and Methods 12-B1, "Adding records".
@@ -58,7 +58,7 @@ pub(crate) const SLAMMER: Format = Format {
     title: "USGS SLAMMER record table (refused)",
     sniff: |source| {
         let fields: Vec<&[u8]> = source.raw(0).split(|&b| b == b'\t').collect();
-        // Counted from 0, the step stands in column 10.
+        // Column 10, counted from 0, is the step.
         fields.len() >= 12
             && parse_number(fields[0]).is_none()
             && parse_number(fields[10]).is_some_and(|step| step > 0.0 && step < 1.0)
@@ -89,7 +89,7 @@ fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }
 
-/// A format that is recognized by its first bytes and refused by its name.
+/// Declares a format that is recognized by its first bytes and refused by its name.
 macro_rules! refused_by_name {
     ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {
         pub(crate) const $constant: Format = Format {
@@ -240,7 +240,7 @@ refused_by_name!(
     "html",
     "HTML (a web page)",
     |source| {
-        // Some begin with a line that says XML.
+        // Some begin with an XML declaration.
         (0..4).any(|line| {
             let start = source.text(line).to_ascii_lowercase();
             ["<!doctype html", "<html", "<head"].iter().any(|tag| start.starts_with(tag))
@@ -250,7 +250,7 @@ refused_by_name!(
      browser and download the record again"
 );
 
-/// COSMOS volume 3: response and Fourier spectra, which no motion can be made of.
+/// COSMOS volume 3: response and Fourier spectra, from which no motion can be derived.
 pub(crate) const COSMOS_SPECTRA: Format = Format {
     name: "cosmos-v3",
     title: "COSMOS volume 3 (refused)",
@@ -268,7 +268,7 @@ pub(crate) const COSMOS_SPECTRA: Format = Format {
     },
 };
 
-/// The tag at the head of a Kinemetrics file: `K`, byte order, version, instrument, and the kind of
+/// `true` for the tag at the head of a Kinemetrics file: `K`, byte order, version, instrument, and the kind of
 /// frame as a 32-bit number, 1 for the header of the file.
 fn is_evt(source: &Source<'_>) -> bool {
     let Some(&[b'K', order @ 0..=1, version @ 0..=3, _, a, b, c, d]) =
@@ -280,7 +280,7 @@ fn is_evt(source: &Source<'_>) -> bool {
     (version > 0 || order > 0) && kind.contains(&1)
 }
 
-/// Whether bytes are a date and a time in binary-coded decimals: year, month, day, hour, minute,
+/// `true` if bytes are a date and a time in binary-coded decimals: year, month, day, hour, minute,
 /// second.
 fn is_coded_time(bytes: &[u8]) -> bool {
     let decimal =
@@ -295,7 +295,7 @@ fn big_endian(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_be_bytes(four)).ok()
 }
 
-/// Blocks of one second, each with its length and its time; the second block is looked at too.
+/// `true` for blocks of one second, each with its length and its time; also checks the second block.
 ///
 /// Spec: Urabe and Tsukada 1991, WIN format (Earthquake Research Institute, Tokyo).
 fn is_win(bytes: &[u8]) -> bool {
@@ -305,12 +305,12 @@ fn is_win(bytes: &[u8]) -> bool {
     fits && (length == bytes.len() || timed(length))
 }
 
-/// As WIN with four bytes of zeros before, and a time of eight bytes.
+/// `true` for WIN with four leading zero bytes, and a time of eight bytes.
 fn is_win32(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0; 4]) && bytes.get(5..11).is_some_and(is_coded_time) && bytes.len() > 20
 }
 
-/// Unformatted Fortran: the first record is a line of 80 characters between its lengths.
+/// `true` for unformatted Fortran whose first record is a line of 80 characters between its lengths.
 ///
 /// Spec: Ottemöller, Voss and Havskov, SEISAN manual, appendix B.
 fn is_seisan(source: &Source<'_>) -> bool {

@@ -1,4 +1,4 @@
-//! SAC binary: 158 words of header and one component; the unit must come from the caller.
+//! SAC binary: a header of 158 words and one component; the unit must come from the caller.
 //!
 //! Spec: SAC users manual, "SAC data file format", header version 6.
 
@@ -175,12 +175,12 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     };
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start;
-    // Five decimals of a degree are more than single precision holds.
+    // Five decimals of a degree exceed single precision.
     let real = |index: usize| real(bytes, index, big).map(|value| (value * 1e5).round() / 1e5);
     // Words 31 to 33: latitude, longitude, elevation; the "hole" is the location code.
     channel.site = Site { sensor: location, elevation: real(33), ..Site::default() }
         .at(real(31).zip(real(32)));
-    // Words 35, 36, 39 and 50: epicenter, magnitude, distance (km); the unit of the depth is not certain.
+    // Words 35, 36, 39 and 50: epicenter, magnitude, distance (km); the unit of the depth is ambiguous.
     record.earthquake = Earthquake {
         epicentral_distance: real(50),
         ..Earthquake::of_magnitude([("", real(39))]).at(real(35).zip(real(36)), None)
@@ -192,14 +192,14 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Word 1, the step (s), as the shortest decimal that has the stored single precision: 0.02 for
+/// Returns the step (s) in word 1 as the shortest decimal with the stored single precision: 0.02 for
 /// 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
 fn step(bytes: &[u8], big: bool) -> Option<f64> {
     let stored = f32::from_le_bytes(word(bytes, 0, big)?);
     stored.to_string().parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0)
 }
 
-/// Words 70 to 75, the reference instant, and word 5, the time of the first sample after it.
+/// Returns the start: words 70 to 75, the reference instant, and word 5, the time of the first sample after it.
 fn start(bytes: &[u8], big: bool) -> Option<Utc> {
     let part = |index: usize| i64::from(integer(bytes, index, big));
     let seconds = part(74) as f64 + 1e-3 * part(75) as f64;

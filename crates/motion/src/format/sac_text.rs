@@ -1,6 +1,6 @@
 //! SAC text ("alphanumeric"): the header of the binary file in lines, then the samples.
 //!
-//! Turned into the binary file that it stands for and read as that.
+//! It is converted to the equivalent binary file and read as that.
 //! Spec: SAC users manual, "SAC data file format", alphanumeric files.
 
 use super::source::{Columns, Source};
@@ -36,7 +36,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         source.fixed(line, INTEGERS, Columns::new(5, 10), f64::from(i32::MAX))?;
     let points = super::whole(source, REALS / 5 + 1, "a number of points", integers[POINTS])?;
     let data = line + WORD_LINES;
-    // Five to a line; some programs write the last ones one by one.
+    // Five per line; some programs write the last ones one by one.
     let values = source.all_tokens(data, source.lines.len(), f64::from(f32::MAX))?;
     if values.len() != points {
         let stated = format!("{points} values as the header states");

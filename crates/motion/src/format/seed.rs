@@ -6,8 +6,8 @@ use crate::error::{ReadError, Refusal};
 use crate::instrument::{Instrument, SeedName, differentiated};
 use crate::record::{Quantity, Record};
 
-/// Quantity that a channel recorded, as the caller, the metadata or the channel code state it; `None` for metadata
-/// that state none of motion.
+/// Returns the quantity that a channel recorded, by the caller, the metadata or the channel code; `None` for metadata
+/// with another quantity than motion.
 pub(super) fn quantity(
     hints: &Hints<'_>,
     seed: &SeedName,
@@ -21,11 +21,11 @@ pub(super) fn quantity(
     Some(hints.recorded().or(metadata).unwrap_or_else(by_code))
 }
 
-/// Counts or values of a channel as accelerations, with the mean of a raw accelerometer removed.
+/// Converts counts or values of a channel to accelerations, with the mean of a raw accelerometer removed.
 ///
-/// `scaled` holds SI values of whatever was recorded. What that is comes from the caller, else from the
-/// metadata, else from the channel code; velocities and displacements are differentiated where the caller or
-/// the metadata say that they are, and refused where the channel code alone does.
+/// `scaled` holds SI values of the recorded quantity. The quantity comes from the caller, else from the metadata,
+/// else from the channel code; velocities and displacements are differentiated if the caller or the metadata
+/// state them, and refused if only the channel code does.
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,
@@ -77,7 +77,7 @@ pub(super) fn as_acceleration(
     Ok((0..order).fold(scaled, |values, _| differentiated(&values, time_step)))
 }
 
-/// Refuses a channel whose metadata state an input unit that is none of motion.
+/// Refuses a channel whose metadata state an input unit other than of motion.
 fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
     let found = match unit {
         "" => "metadata without an input unit".to_owned(),

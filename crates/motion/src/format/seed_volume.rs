@@ -1,7 +1,7 @@
 //! Full SEED: control headers with the response of every channel, then data records.
 //!
 //! The data records are read as miniSEED; sensitivities, units and directions come from the control
-//! headers, unless the caller knows better.
+//! headers, unless the caller overrides them.
 //! Spec: FDSN, SEED 2.4, chapters 4 to 8, blockettes 010, 034, 050, 052 and 058.
 
 use std::collections::BTreeMap;
@@ -74,7 +74,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     })
 }
 
-/// `2^n` bytes, as blockette 010 or 005 of the first record states.
+/// Returns the record length, `2^n` bytes, from blockette 010 or 005 of the first record.
 fn record_length(bytes: &[u8]) -> Option<usize> {
     let head = latin1(bytes.get(8..SHORTEST)?);
     // Type, length of the blockette, version, exponent.
@@ -102,14 +102,14 @@ fn blockettes(text: &str, mut take: impl FnMut(&str, &str)) {
 struct Fields<'a>(&'a str);
 
 impl<'a> Fields<'a> {
-    /// A field of a fixed width.
+    /// Reads a field of a fixed width.
     fn fixed(&mut self, width: usize) -> Option<&'a str> {
         let (field, rest) = (self.0.get(..width)?, self.0.get(width..)?);
         self.0 = rest;
         Some(field.trim())
     }
 
-    /// A field that ends with a tilde.
+    /// Reads a field that ends with a tilde.
     fn open(&mut self) -> Option<&'a str> {
         let (field, rest) = self.0.split_once('~')?;
         self.0 = rest;
@@ -121,10 +121,10 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Names of units, and what they are where they are units of motion, by their codes.
+/// Names of units by their codes, with the unit if it is one of motion.
 type Units = BTreeMap<u32, (String, Option<MotionUnit>)>;
 
-/// What the control headers say of every channel that has a sensitivity.
+/// Reads the metadata of every channel with a sensitivity from the control headers.
 fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
     let mut units = Units::new();
     blockettes(abbreviations, |kind, content| {
@@ -151,7 +151,7 @@ fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
                 && let Some(value) = fields.number(12).filter(|value| *value != 0.0)
                 && let Some((mut known, factor)) = open.take()
             {
-                // Counts to one unit of the volume, and SI to one of it.
+                // Counts per unit of the volume, and the SI value of that unit.
                 known.sensitivity = value / factor;
                 found.push(known);
             }
@@ -161,7 +161,7 @@ fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
     found
 }
 
-/// Network and station of blockette 050.
+/// Returns network and station of blockette 050.
 fn names(content: &str) -> Option<(String, String)> {
     let mut fields = Fields(content);
     let station = fields.fixed(5)?.to_owned();
@@ -176,7 +176,7 @@ fn names(content: &str) -> Option<(String, String)> {
     Some((fields.fixed(2).unwrap_or_default().to_owned(), station))
 }
 
-/// A channel of blockette 052 without its sensitivity, and the SI unit to one unit of its signal.
+/// Reads a channel of blockette 052 without its sensitivity, and the SI value of the unit of its signal.
 fn channel(
     content: &str,
     (network, station): &(String, String),
@@ -219,7 +219,7 @@ fn channel(
     Some((known, unit.map_or(1.0, |unit| unit.factor)))
 }
 
-/// `2003,175,00:00:00.0000`: year, day of the year, time.
+/// Parses `2003,175,00:00:00.0000`: year, day of the year, time.
 fn instant(text: &str) -> Option<crate::utc::Utc> {
     let mut parts = text.split([',', ':']).map(|part| part.trim().parse::<f64>().ok());
     let mut next = || parts.next().flatten();

@@ -121,7 +121,7 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
     source.header(line.min(source.lines.len().saturating_sub(1)), what, quoted(&source.text(line)))
 }
 
-/// `component= 360` at column 42 of line 6.
+/// Parses `component= 360` at column 42 of line 6.
 fn component(source: &Source<'_>) -> String {
     let text = source.text(5);
     let lower = text.to_ascii_lowercase();

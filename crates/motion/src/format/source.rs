@@ -1,4 +1,4 @@
-//! The bytes of a text file by line and column, and numbers read from them or refused with a place.
+//! Lines and columns of a text file, and numbers read from them, with the position of each error.
 
 use super::number::split_touching;
 pub(crate) use super::number::{
@@ -10,10 +10,10 @@ use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::units::AccelerationUnit;
 
-/// Largest acceleration any reader accepts (m/s²), about a thousand g's.
+/// Largest acceleration that a reader accepts (m/s²), about a thousand g.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
 
-/// m/s² to one gal, the cm/s² of most networks.
+/// SI value of the gal (m/s²), the cm/s² of most networks.
 pub(crate) const GAL: f64 = 0.01;
 
 /// A file split into lines; line indices count from 0 here, from 1 in messages.
@@ -34,11 +34,11 @@ impl<'a> Source<'a> {
         while let [rest @ .., b'\n' | b'\r'] = text {
             text = rest;
         }
-        // Counted first: growing by doubling would hold three times what a file of short lines needs.
+        // Count first: growing by doubling would need three times the memory for a file of short lines.
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
         lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
-            // Some agencies fill their lines up with NUL.
+            // Some agencies pad their lines with NUL.
             while let [rest @ .., b'\r' | 0] = line {
                 line = rest;
             }
@@ -50,51 +50,51 @@ impl<'a> Source<'a> {
         Self { name, bytes, lines }
     }
 
-    /// The line as trimmed text (Latin-1), empty beyond the end.
+    /// Returns the line as trimmed text (Latin-1), empty beyond the end.
     pub(crate) fn text(&self, line: usize) -> String {
         latin1(self.raw(line)).trim().to_owned()
     }
 
-    /// The untrimmed bytes of a line, empty beyond the end.
+    /// Returns the untrimmed bytes of a line, empty beyond the end.
     pub(crate) fn raw(&self, line: usize) -> &'a [u8] {
         self.lines.get(line).copied().unwrap_or(&[])
     }
 
-    /// The characters of a line from column `from` (0-based) on, at most `width`.
+    /// Returns the characters of a line from column `from` (0-based) on, at most `width`.
     pub(crate) fn slice(&self, line: usize, from: usize, width: usize) -> &'a [u8] {
         let raw = self.raw(line);
         let start = from.min(raw.len());
         &raw[start..(from.saturating_add(width)).min(raw.len())]
     }
 
-    /// Whether the line holds `needle`, whatever its case.
+    /// `true` if the line contains `needle`, in any case.
     pub(crate) fn has(&self, line: usize, needle: &str) -> bool {
         self.find(line, needle).is_some()
     }
 
-    /// Byte offset of `needle` in the line, whatever its case.
+    /// Returns the byte offset of `needle` in the line, in any case.
     pub(crate) fn find(&self, line: usize, needle: &str) -> Option<usize> {
         find_ignoring_case(self.raw(line), needle.as_bytes())
     }
 
-    /// The first number that follows `key` on the line, skipping blanks, `=` and `:`.
+    /// Returns the first number that follows `key` on the line, skipping blanks, `=` and `:`.
     pub(crate) fn number_after(&self, line: usize, key: &str) -> Option<f64> {
         let start = self.find(line, key)? + key.len();
         leading_number(&self.raw(line)[start..])
     }
 
-    /// As [`Source::number_after`] with the resolution of the printed digits.
+    /// Returns the same number as [`Source::number_after`] with the resolution of the printed digits.
     pub(crate) fn printed_after(&self, line: usize, key: &str) -> Option<Printed> {
         let start = self.find(line, key)? + key.len();
         leading_printed(&self.raw(line)[start..])
     }
 
-    /// The unit that follows one of `keys` on the line, in parentheses or not.
+    /// Returns the unit that follows one of `keys` on the line, in parentheses or not.
     pub(crate) fn unit_after(&self, line: usize, keys: &[&str]) -> Option<AccelerationUnit> {
         keys.iter().find_map(|key| self.word_after(line, key)?.1.parse().ok())
     }
 
-    /// The word behind `key` on the line, and where the key ends.
+    /// Returns the word after `key` on the line, and the offset of the key's end.
     pub(crate) fn word_after(&self, line: usize, key: &str) -> Option<(usize, String)> {
         let at = self.find(line, key)? + key.len();
         let text = latin1(&self.raw(line)[at..]);
@@ -102,7 +102,7 @@ impl<'a> Source<'a> {
         Some((at, word.trim_end_matches('.').to_owned()))
     }
 
-    /// Line and value of the first line before `end` in which `value` finds one.
+    /// Returns number and value of the first line before `end` for which `value` returns one.
     pub(crate) fn field(
         &self,
         end: usize,
@@ -112,13 +112,13 @@ impl<'a> Source<'a> {
             .find_map(|line| Some((line, value(&self.text(line))?.trim().to_owned())))
     }
 
-    /// A field that the header must have.
+    /// Returns a required field of the header.
     pub(crate) fn needed<T>(&self, field: Option<T>, key: &str) -> Result<T, ReadError> {
         field.ok_or_else(|| self.header((), format!("a value for \"{key}\""), "none"))
     }
 
-    /// Reads blocks to the end of the file, past blank lines between them; `read` takes the first
-    /// line of a block and gives the one behind it.
+    /// Reads blocks to the end of the file, skipping blank lines between them; `read` takes the first line of a block
+    /// and returns the line after it.
     pub(crate) fn each_block(
         &self,
         mut read: impl FnMut(usize) -> Result<usize, ReadError>,
@@ -131,7 +131,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// That a block begins on a line with a mark, which is `expected` there.
+    /// Checks that a block begins on a line with a mark; `expected` describes it.
     pub(crate) fn require_mark(
         &self,
         line: usize,
@@ -146,7 +146,7 @@ impl<'a> Source<'a> {
         Err(self.damaged(line, expected, quoted(&self.text(line)), remedy))
     }
 
-    /// That a block has all lines of its header, and some behind it.
+    /// Checks that a block has all lines of its header, and some after it.
     pub(crate) fn require_header(&self, first: usize, lines: usize) -> Result<(), ReadError> {
         let found = self.lines.len() - first;
         if found > lines {
@@ -155,8 +155,8 @@ impl<'a> Source<'a> {
         Err(self.cut(format!("{lines} header lines and data"), format!("{found} lines")))
     }
 
-    /// The line behind the end of a channel, "/&" or "end of data", which blank lines may precede; the
-    /// mark may be left out where the next channel begins as told.
+    /// Returns the line after the end of a channel, "/&" or "end of data", which blank lines may precede; the mark is
+    /// optional if the next channel begins with `next`.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
         let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
         let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
         ))
     }
 
-    /// The error that the file is damaged.
+    /// Returns the error for a damaged file.
     pub(crate) fn damaged(
         &self,
         place: impl Into<Place>,
@@ -186,7 +186,7 @@ impl<'a> Source<'a> {
         self.error(place, Refusal::Damaged, expected, found, remedy)
     }
 
-    /// The error that the file is sound and holds something else than accelerations.
+    /// Returns the error for a sound file with other contents than accelerations.
     pub(crate) fn not_acceleration(
         &self,
         place: impl Into<Place>,
@@ -197,7 +197,7 @@ impl<'a> Source<'a> {
         self.error(place, Refusal::NotAcceleration, expected, found, remedy)
     }
 
-    /// The error that the header is damaged.
+    /// Returns the error for a damaged header.
     pub(crate) fn header(
         &self,
         place: impl Into<Place>,
@@ -216,7 +216,7 @@ impl<'a> Source<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         let place = place.into();
-        // Where a whole line is meant, its first sign that is not blank.
+        // A whole line is marked at its first non-blank character.
         let begin = |line: usize| {
             self.raw(line).iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(0)
         };
@@ -232,7 +232,7 @@ impl<'a> Source<'a> {
         .into()
     }
 
-    /// A damaged field.
+    /// Returns the error for a damaged field.
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
         let (found, remedy) = if text.is_empty() {
@@ -257,7 +257,7 @@ impl<'a> Source<'a> {
         self.damaged((line, column), "a number", found, remedy)
     }
 
-    /// A file that ends too soon, right behind its last sign.
+    /// Returns the error for a truncated file, right after its last character.
     pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let last = self.lines.len().saturating_sub(1);
         self.damaged(
@@ -268,14 +268,14 @@ impl<'a> Source<'a> {
         )
     }
 
-    /// The column behind the last sign of a line.
+    /// Returns the column after the last character of a line.
     pub(crate) fn end_of(&self, line: usize) -> usize {
         self.raw(line).trim_ascii_end().len()
     }
 
     /// Reads `count` numbers from fixed columns starting on `line`; returns them and the next line.
     ///
-    /// Fields are taken by column; a line whose columns do not fit is taken by blanks if that gives
+    /// Fields are split by column; a line whose columns do not fit is split at blanks if that gives
     /// the right number of fields.
     pub(crate) fn fixed(
         &self,
@@ -288,8 +288,8 @@ impl<'a> Source<'a> {
             .map(|(values, next, _)| (values, next))
     }
 
-    /// As [`Source::fixed`] where the count came first: what stands behind the last number, on its line
-    /// and on further lines of numbers, is left out with a warning.
+    /// Reads numbers as [`Source::fixed`] where the count precedes them; values after the last one, on its line and on
+    /// further lines of numbers, are left out with a warning.
     pub(crate) fn counted(
         &self,
         record: &mut Record,
@@ -322,7 +322,7 @@ impl<'a> Source<'a> {
         Ok((values, next))
     }
 
-    /// Values, the next line, and how many numbers in excess the last line had where `lenient`.
+    /// Returns the values, the next line, and, if `lenient`, the number of excess values on the last line.
     fn fixed_or_more(
         &self,
         line: usize,
@@ -424,7 +424,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// All numbers of lines `from..to` by blanks.
+    /// Returns all numbers of lines `from..to`, split at blanks.
     pub(crate) fn all_tokens(
         &self,
         from: usize,
@@ -438,7 +438,7 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    /// `value` unless it is larger than any acceleration can be.
+    /// Returns `value` unless it exceeds any possible acceleration.
     pub(crate) fn within(
         &self,
         line: usize,
@@ -458,7 +458,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A row that has not `width` numbers.
+    /// Returns the error for a row without `width` numbers.
     pub(crate) fn ragged(&self, line: usize, width: usize, found: usize) -> ReadError {
         self.damaged(
             (line, self.end_of(line)),
@@ -468,7 +468,7 @@ impl<'a> Source<'a> {
         )
     }
 
-    /// Refuses the first byte that no text file holds.
+    /// Refuses the first byte that is invalid in text.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {

@@ -1,7 +1,7 @@
 //! TSPAIR and SLIST: text of FDSN web services, of irisws-timeseries, and of `ObsPy`.
 //!
 //! Every block begins with one line: `TIMESERIES NET_STA_LOC_CHA_Q, n samples, r sps, start, TSPAIR or
-//! SLIST, type, unit`; below it stand time and value, or values alone.
+//! SLIST, type, unit`; lines of time and value, or values alone, follow.
 //! Spec: `EarthScope`, timeseries web service, output formats `ascii`, `ascii1` and `ascii2`.
 
 use super::counts::{self, Samples, Unit};
@@ -16,7 +16,7 @@ pub(crate) const FORMAT: Format =
     Format { name: "timeseries", title: "TSPAIR and SLIST text (FDSN)", sniff, read };
 
 const MARK: &str = "TIMESERIES ";
-/// Larger numbers are damage, in counts and in units.
+/// Larger numbers are errors, in counts and in units.
 const LIMIT: f64 = 1e12;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -107,7 +107,7 @@ fn head(source: &Source<'_>, line: usize) -> Result<Head, ReadError> {
         "SLIST" => false,
         other => return Err(wrong("TSPAIR or SLIST as layout", other)),
     };
-    // What states no unit is taken for counts, which need a sensitivity.
+    // Without a unit, the values are counts, which need a sensitivity.
     let word = rest.first().copied().unwrap_or_default();
     let unit = Unit::of(word).ok_or_else(|| {
         source.not_acceleration(
@@ -123,7 +123,7 @@ fn head(source: &Source<'_>, line: usize) -> Result<Head, ReadError> {
     Ok(Head { line, codes, count, rate, start, pairs, unit })
 }
 
-/// The values of a block, as many as its head states, each at its time.
+/// Returns the values of a block, as many as its head states, each at its time.
 fn values(source: &Source<'_>, head: &Head, end: usize) -> Result<Vec<f64>, ReadError> {
     let mut values = Vec::with_capacity(head.count.min(source.bytes.len()));
     for line in head.line + 1..end {
@@ -161,7 +161,7 @@ fn values(source: &Source<'_>, head: &Head, end: usize) -> Result<Vec<f64>, Read
 
 const AGAIN: &str = "the text is cut or damaged; get it again from its source";
 
-/// That a block goes on where the one before ended.
+/// Checks that a block begins where the one before ended.
 fn continued(
     source: &Source<'_>,
     first: &Head,

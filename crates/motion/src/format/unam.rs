@@ -1,7 +1,6 @@
 //! UNAM and CICESE, Mexico: the "archivo estándar de aceleración" (ASA 2.0), columns in gal.
 //!
-//! Keys are Spanish and spelled in several ways; the order of the columns stands in
-//! `ORIENTACION C1-C6`.
+//! Keys are Spanish and have several spellings; `ORIENTACION C1-C6` states the order of the columns.
 //! Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version 2.0.
 
 use super::source::{
@@ -21,11 +20,11 @@ pub(crate) const FORMAT: Format =
 const MOST_HEADER_LINES: usize = 200;
 
 fn sniff(source: &Source<'_>) -> bool {
-    // Accented capitals, where there are any, differ by encoding.
+    // Accented capitals, if any, depend on the encoding.
     (0..20).any(|line| source.has(line, "ARCHIVO EST") && source.has(line, "NDAR DE ACELERACI"))
 }
 
-/// A key reduced to letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
+/// Reduces a key to letters and digits, so that "C1-C6, (s)" equals "C1-C6 (s)".
 fn reduced(text: &str) -> String {
     text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_ascii_uppercase()
 }
@@ -39,7 +38,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     found.filter(|(_, value)| !value.is_empty())
 }
 
-/// `/a/b/c`: one part or more.
+/// Parses `/a/b/c`: one part or more.
 fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
@@ -91,7 +90,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         }
     }
     let found = values.first().map_or(0, Vec::len);
-    // Here one or two in excess are left out too.
+    // Here one or two excess values are left out too.
     if found > count {
         for column in &mut values {
             column.truncate(count);
@@ -120,8 +119,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// The first sample's hour on the day of the event, or on the day after where that hour would lie
-/// half a day before the event.
+/// Returns the first sample's hour on the day of the event, or on the day after if that hour would precede the event
+/// by half a day.
 fn start(source: &Source<'_>) -> Option<Utc> {
     let (_, day) = field(source, "FECHA DEL SISMO")?;
     let at = |hour: String| Utc::in_header(&format!("{day} {hour}"), DateOrder::DayFirst);
@@ -131,7 +130,7 @@ fn start(source: &Source<'_>) -> Option<Utc> {
     Some(if event.since(first) > 0.5 * day { first.later(day) } else { first })
 }
 
-/// Of several magnitudes `/Mb=5.2/Ms=5.8` that by moment, else by surface waves, else the first.
+/// Returns the earthquake; of several magnitudes `/Mb=5.2/Ms=5.8` by moment, else by surface waves, else the first.
 fn earthquake(source: &Source<'_>) -> Earthquake {
     let stated = field(source, "MAGNITUD").map(|(_, text)| list(&text)).unwrap_or_default();
     let all: Vec<(&str, Option<f64>)> = stated
@@ -145,7 +144,7 @@ fn earthquake(source: &Source<'_>) -> Earthquake {
     Earthquake::of_magnitude(ordered).at(degrees(source, "COORDENADAS DEL EPICENTRO"), depth)
 }
 
-/// `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
+/// Parses `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
 fn degrees(source: &Source<'_>, key: &str) -> Option<(f64, f64)> {
     let signed = |text: &str| {
         let value = leading_number(text.trim_start_matches(':').as_bytes())?;
@@ -161,7 +160,7 @@ fn site(source: &Source<'_>) -> Site {
     Site { elevation, ..Site::default() }.at(position)
 }
 
-/// The line after the second ruler below `DATOS DE ACELERACION`.
+/// Returns the line after the second ruler below `DATOS DE ACELERACION`.
 fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
     let title = (0..MOST_HEADER_LINES.min(source.lines.len()))
         .rev()

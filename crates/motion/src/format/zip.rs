@@ -4,19 +4,19 @@
 
 use std::io::Read as _;
 
-/// Most files of one archive.
+/// Maximum number of files in an archive.
 const MOST: usize = 50_000;
 
 /// A file in an archive.
 pub(crate) struct Entry<'a> {
     pub(crate) name: String,
-    /// As it lies in the archive.
+    /// Its bytes in the archive.
     packed: &'a [u8],
     method: u16,
     sum: u32,
 }
 
-/// All files of an archive in the order of its directory, or what is wrong with it.
+/// Returns all files of an archive in the order of its directory, or a description of the damage.
 pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
     let cut = || "an archive that ends before its directory".to_owned();
     // The end of the directory has 22 bytes and a comment of at most 64 kB.
@@ -39,7 +39,7 @@ pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
     Ok(found)
 }
 
-/// The file that the directory describes at a place, and the place of the next.
+/// Returns the file that the directory describes at an offset, and the offset of the next entry.
 fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
     let head = bytes.get(at..)?;
     if !head.starts_with(b"PK\x01\x02") {
@@ -55,14 +55,14 @@ fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
     }
     let begin = 30 + usize::from(two(local, 26)?) + usize::from(two(local, 28)?);
     let packed = local.get(begin..)?.get(..size(head, 20)?)?;
-    // Encrypted files are told apart by a method that there is not.
+    // Mark encrypted files by a method that does not exist.
     let method = if two(head, 8)? & 1 == 1 { u16::MAX } else { two(head, 10)? };
     let sum = four(head, 16)?;
     Some((Entry { name, packed, method, sum }, next))
 }
 
 impl Entry<'_> {
-    /// The file unpacked, if it has at most `limit` bytes; else what is wrong with it.
+    /// Returns the unpacked file, if it has at most `limit` bytes; else a description of the error.
     pub(crate) fn unpack(&self, limit: u64) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let read = match self.method {
@@ -85,9 +85,9 @@ impl Entry<'_> {
     }
 }
 
-/// Whether the first file of a zip archive is an array of NumPy.
+/// `true` if the first file of a zip archive is a NumPy array.
 pub(crate) fn is_numpy(bytes: &[u8]) -> bool {
-    // Its name stands 30 bytes behind the beginning of the archive.
+    // Its name is 30 bytes after the beginning of the archive.
     let name = bytes.get(30..bytes.len().min(200)).unwrap_or(&[]);
     bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
 }

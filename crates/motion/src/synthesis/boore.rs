@@ -14,11 +14,11 @@ pub enum SiteAmplification {
     /// 1 at every frequency.
     None,
     /// Points `(frequency (Hz), amplification)` in ascending order, linear between in the logarithm
-    /// of frequency; held outside.
+    /// of frequency; constant outside.
     Table(Vec<(f64, f64)>),
 }
 
-/// How waves travel from source to site.
+/// Propagation path of waves from source to site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     /// Distance from source to site (km); spreading is `1/R` up to 70 km and constant to 130 km,
@@ -59,7 +59,7 @@ const WINDOW_PEAK: f64 = 0.2;
 const WINDOW_END: f64 = 0.05;
 
 impl BooreSource {
-    /// A source of western North America of a moment magnitude at a distance (km): 70 bar, 3.5 km/s,
+    /// Returns a source of western North America with a moment magnitude at a distance (km): 70 bar, 3.5 km/s,
     /// 2.8 g/cm³, `Q = 180 f^0.45`, κ = 0.04 s.
     pub fn western(magnitude: f64, distance: f64) -> Self {
         Self {
@@ -77,22 +77,22 @@ impl BooreSource {
         }
     }
 
-    /// Seismic moment (dyne cm), Hanks and Kanamori (1979).
+    /// Returns the seismic moment (dyne cm), Hanks and Kanamori (1979).
     pub fn moment(&self) -> f64 {
         math::powf(10.0, 1.5 * self.magnitude + 16.05)
     }
 
-    /// Corner frequency (Hz).
+    /// Returns the corner frequency (Hz).
     pub fn corner_frequency(&self) -> f64 {
         4.9e6 * self.velocity * math::powf(self.stress / self.moment(), 1.0 / 3.0)
     }
 
-    /// Duration of the strong part (s): source `1/f0` and path `0.05 R`.
+    /// Returns the duration of the strong part (s): source `1/f0` and path `0.05 R`.
     pub fn strong_duration(&self) -> f64 {
         1.0 / self.corner_frequency() + 0.05 * self.path.distance
     }
 
-    /// Fourier amplitude of the acceleration (m/s) at `f` (Hz).
+    /// Returns the Fourier amplitude of the acceleration (m/s) at `f` (Hz).
     pub fn fourier_amplitude(&self, f: f64) -> f64 {
         if f <= 0.0 {
             return 0.0;
@@ -149,14 +149,14 @@ impl BooreSource {
         )
     }
 
-    /// Accelerations (m/s²) as drawn; the noise is normalized so that the mean square of its Fourier
+    /// Returns unprocessed accelerations (m/s²); the noise is normalized so that the mean square of its Fourier
     /// amplitudes is the target's at every frequency over many seeds.
     ///
     /// # Errors
     /// If a parameter is out of range.
     pub fn acceleration(&self, time_step: f64, seed: u64) -> Result<Vec<f64>, MotionError> {
         self.check()?;
-        // The window reaches its last twentieth at the duration; twice that holds its tail.
+        // The window decreases to a twentieth at the duration; twice that includes its tail.
         let window_length = 2.0 * self.strong_duration();
         let steps = step_count(2.0 * window_length, time_step)?;
         let length = (steps + 1).next_power_of_two();
@@ -173,7 +173,7 @@ impl BooreSource {
             })
             .collect();
         forward(&mut spectrum);
-        // Windowed unit noise has mean-square Fourier amplitude Σw²: a known number, not a draw's.
+        // Windowed unit noise has mean-square Fourier amplitude Σw²: a constant, independent of the draw.
         let norm = 1.0 / energy.sqrt();
         let df = 1.0 / (length as f64 * time_step);
         for (k, value) in spectrum.iter_mut().enumerate() {
@@ -184,7 +184,7 @@ impl BooreSource {
         Ok(spectrum.iter().take(steps + 1).map(|x| x.re).collect())
     }
 
-    /// A motion, high-passed at a fifth of the corner frequency (at least 0.05 Hz) and closed at its
+    /// Returns a motion, high-passed at a fifth of the corner frequency (at least 0.05 Hz) and closed at its
     /// ends.
     ///
     /// # Errors
@@ -198,7 +198,7 @@ impl BooreSource {
     }
 }
 
-/// Saragoni and Hart's window `a x^b exp(-c x)` with peak 1 at `WINDOW_PEAK`.
+/// Returns Saragoni and Hart's window `a x^b exp(-c x)` with peak 1 at `WINDOW_PEAK`.
 fn window(x: f64) -> f64 {
     let peak = WINDOW_PEAK;
     let b = -peak * math::ln(WINDOW_END) / (1.0 + peak * (math::ln(peak) - 1.0));

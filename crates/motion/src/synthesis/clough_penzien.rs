@@ -34,7 +34,7 @@ pub enum Envelope {
 }
 
 impl Envelope {
-    /// The envelope at time `t` (s).
+    /// Returns the envelope at time `t` (s).
     pub fn at(&self, t: f64) -> f64 {
         if t < 0.0 {
             return 0.0;
@@ -82,7 +82,7 @@ impl Envelope {
 ///           · w⁴/((wf² - w²)² + 4 zf² wf² w²)
 /// ```
 ///
-/// made as a sum of cosines of random phase and multiplied by an envelope.
+/// computed as a sum of cosines of random phase and multiplied by an envelope.
 /// The second factor vanishes at w = 0, so the velocity is bounded, unlike Kanai and Tajimi's.
 ///
 /// ```
@@ -108,17 +108,17 @@ pub struct CloughPenzien {
 }
 
 impl CloughPenzien {
-    /// Firm soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns firm soil of Der Kiureghian and Neuenhofer (1992).
     pub fn firm(rms: f64) -> Self {
         Self::new(rms, 15.0, 0.6, 1.5, 0.6)
     }
 
-    /// Medium soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns medium soil of Der Kiureghian and Neuenhofer (1992).
     pub fn medium(rms: f64) -> Self {
         Self::new(rms, 10.0, 0.4, 1.0, 0.6)
     }
 
-    /// Soft soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns soft soil of Der Kiureghian and Neuenhofer (1992).
     pub fn soft(rms: f64) -> Self {
         Self::new(rms, 5.0, 0.2, 0.5, 0.6)
     }
@@ -133,7 +133,7 @@ impl CloughPenzien {
         }
     }
 
-    /// Spectral density over `S0` at `w` (rad/s).
+    /// Returns the spectral density over `S0` at `w` (rad/s).
     fn shape(&self, w: f64) -> f64 {
         let term = |w0: f64, z: f64| {
             let (a, b) = (w0 * w0 - w * w, 2.0 * z * w0 * w);
@@ -144,13 +144,13 @@ impl CloughPenzien {
         above / ground * ((w * w) * (w * w)) / filter
     }
 
-    /// Two-sided spectral density of the stationary acceleration (m²/s³) at `w` (rad/s), for a step
-    /// that carries frequencies up to π over the step.
+    /// Returns the two-sided spectral density of the stationary acceleration (m²/s³) at `w` (rad/s), for a step that
+    /// resolves frequencies up to π over the step.
     pub fn density(&self, w: f64, time_step: f64) -> f64 {
         self.rms * self.rms / self.unit_variance(time_step) * self.shape(w)
     }
 
-    /// Variance for `S0 = 1` over the frequencies that the step can carry.
+    /// Returns the variance for `S0 = 1` over the frequencies that the step resolves.
     fn unit_variance(&self, time_step: f64) -> f64 {
         let top = PI / time_step;
         let n = 20_000;
@@ -166,7 +166,7 @@ impl CloughPenzien {
         MotionError::require_positive("filter damping", self.filter_damping)
     }
 
-    /// Accelerations (m/s²) as drawn, before anything is done about their ends.
+    /// Returns unprocessed accelerations (m/s²), with open ends.
     ///
     /// # Errors
     /// If a parameter is out of range.
@@ -197,7 +197,7 @@ impl CloughPenzien {
         Ok((0..=steps).map(|k| envelope.at(k as f64 * time_step) * spectrum[k].re).collect())
     }
 
-    /// A motion of the given length; its ends are closed so that it comes to rest where it began.
+    /// Returns a motion of a given length; its ends are closed so that it comes to rest where it began.
     ///
     /// # Errors
     /// As [`CloughPenzien::acceleration`].

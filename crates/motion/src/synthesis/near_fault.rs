@@ -1,4 +1,4 @@
-//! A near-fault motion: a velocity pulse and the high-frequency rest around it.
+//! A near-fault motion: a velocity pulse and a high-frequency residual.
 
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
@@ -16,14 +16,14 @@ pub struct NearFault {
     pub pulse: Pulse,
     /// Start of the pulse (s), not negative.
     pub start: f64,
-    /// The source of the rest.
+    /// The source of the residual motion.
     pub rest: BooreSource,
-    /// The rest is high-passed at this multiple of the pulse's frequency; 1 or a little more.
+    /// The residual is high-passed at this multiple of the pulse's frequency; 1 or slightly more.
     pub crossover: f64,
 }
 
 impl NearFault {
-    /// The motion with a rest of step `time_step` (s) from `seed`.
+    /// Returns the motion with a residual of step `time_step` (s) from `seed`.
     ///
     /// # Errors
     /// If a parameter is out of range.

@@ -1,4 +1,4 @@
-//! PEER AT2: one component in g, five numbers to a line.
+//! PEER AT2: one component in g, five numbers per line.
 //!
 //! Spec: header lines of the NGA and NGA-West2 flat files, as in the reader.
 
@@ -9,20 +9,20 @@ use crate::error::MotionError;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Record};
 
-/// Stands for an event that the record does not name.
+/// Placeholder for an event that the record does not name.
 pub(crate) const NO_EVENT: &str = "EVENT NOT STATED";
-/// Stands for a station that the record does not name.
+/// Placeholder for a station that the record does not name.
 pub(crate) const NO_STATION: &str = "STATION NOT STATED";
 
-/// Longest component name that readers tell from a part of the event.
+/// Longest component name that readers distinguish from a part of the event.
 const LONGEST_NAME: usize = 12;
 
-/// A record of one channel as PEER AT2, in g with eight significant digits.
+/// Writes a record of one channel as PEER AT2, in g with eight significant digits.
 ///
 /// The four header lines are the provenance; event, station, component; quantity and unit; count and
 /// step (s) at full precision.
-/// Commas and parentheses have a meaning to readers of the format, as have some words: they are
-/// replaced in texts that come from elsewhere.
+/// Readers of the format interpret commas, parentheses and some words; these are replaced in texts from other
+/// sources.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -75,7 +75,7 @@ pub fn at2(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// A text without the signs and words that readers take for the header's own.
+/// Replaces characters and words that readers would interpret as those of the header.
 fn harmless(text: &str) -> String {
     const OWN: [&str; 5] = ["SPECTR", "UNITS", "VELOCITY", "DISPLACEMENT", "ACCEL"];
     let plain = super::line(text).replace(',', ";").replace(['(', ')'], "");
@@ -83,7 +83,7 @@ fn harmless(text: &str) -> String {
     broken.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
-/// The component's name if it still tells its direction, else its azimuth or `UP`.
+/// Returns the component's name if it still states its direction, else its azimuth or `UP`.
 fn component(channel: &Channel) -> String {
     let name = harmless(&channel.name);
     let fits = !name.is_empty() && name.len() <= LONGEST_NAME;
@@ -98,7 +98,7 @@ fn component(channel: &Channel) -> String {
     }
 }
 
-/// C's `%15.7E`; what is too small for an exponent of two digits is zero.
+/// Formats a number as C's `%15.7E`; zero if too small for an exponent of two digits.
 fn number(value: f64) -> String {
     let value = if value.abs() < 1e-98 { 0.0 } else { value };
     let text = format!("{value:.7e}");

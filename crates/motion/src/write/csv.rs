@@ -1,18 +1,18 @@
-//! Columns of time and acceleration between commas.
+//! Columns of time and acceleration, separated by commas.
 
 use std::fmt::Write as _;
 
 use crate::error::MotionError;
 use crate::record::Record;
 
-/// Comment that gives the velocity at the first sample of each channel, where one is not zero.
+/// Comment with the velocity at the first sample of each channel, if one is not zero.
 pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 
-/// First line of the files written here; it names quantity and unit.
+/// First line of the files written here; it states quantity and unit.
 pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
 
-/// A record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row
-/// to a sample.
+/// Writes a record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row per
+/// sample.
 ///
 /// Accelerations are the shortest decimals that read back to the same double; times are rounded to
 /// a nanosecond.
@@ -30,7 +30,7 @@ pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
 /// If there is no channel or the steps differ.
 pub fn csv(record: &Record) -> Result<String, MotionError> {
     let (step, rows) = super::common(record)?;
-    // Readers that know this line take no word further down for a step, a unit or a quantity.
+    // Readers that recognize this line ignore steps, units and quantities in later words.
     let mut text = format!("{FIRST_LINE}\n");
     for (key, value) in [("event", &record.event), ("station", &record.station)] {
         if !value.is_empty() {
@@ -63,7 +63,7 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// A text on one line, without the words by which other formats are known.
+/// Returns a text on one line, without the words by which other formats are recognized.
 fn plain(text: &str) -> String {
     let line = super::broken(&super::line(text), &super::FOREIGN);
     let cells = line
@@ -72,13 +72,13 @@ fn plain(text: &str) -> String {
     cells.collect::<Vec<_>>().join(",")
 }
 
-/// Whether a spreadsheet would compute a cell; it takes one with an apostrophe before it as text.
+/// `true` if a spreadsheet would compute a cell; after an apostrophe it is text.
 fn is_formula(cell: &str) -> bool {
     let cell = cell.trim_start();
     cell.starts_with(['=', '+', '-', '@']) && cell.len() > 1 && cell.parse::<f64>().is_err()
 }
 
-/// A time (s) to nine decimals without trailing zeros.
+/// Formats a time (s) with nine decimals without trailing zeros.
 fn nanoseconds(time: f64) -> String {
     let digits = format!("{time:.9}");
     digits.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,9 +1,9 @@
-//! Writers of motion files: PEER AT2, CSV, NumPy archives and the crate's own text form.
+//! Writers of motion files: PEER AT2, CSV, NumPy archives and the crate's own text format.
 //!
 //! Every writer takes a [`Record`]; its notes are the provenance and go into the header.
-//! Channels stand side by side, cut to the shortest.
-//! AT2 has no place for a velocity at the first sample ([`crate::Channel::initial_velocity`]): it
-//! stands in the title, and what is read back starts from rest. All other forms keep it.
+//! Channels are written side by side, cut to the shortest.
+//! AT2 has no field for a velocity at the first sample ([`crate::Channel::initial_velocity`]): it is written into
+//! the title, and the file reads back starting from rest. All other formats keep it.
 
 mod at2;
 mod csv;
@@ -23,10 +23,10 @@ use crate::error::MotionError;
 use crate::join::require_step;
 use crate::record::{Channel, Record};
 
-/// Most lines of provenance in a header; readers look for numbers in the first lines of a file only.
+/// Maximum number of provenance lines in a header; readers look for numbers in the first lines of a file only.
 const MOST_NOTES: usize = 40;
 
-/// The step (s) of all channels and the number of samples of the shortest.
+/// Returns the step (s) of all channels and the number of samples of the shortest.
 fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     let Some(first) = record.channels.first() else {
         return Err(MotionError::parameter("channels to write", "at least 1", 0));
@@ -38,23 +38,23 @@ fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     Ok((first.time_step, rows))
 }
 
-/// Velocities (m/s) at the first samples, one to a channel, where one is not zero.
+/// Returns the velocities (m/s) at the first samples, one per channel, if one is not zero.
 fn initial_velocities(record: &Record) -> Option<String> {
     let some = record.channels.iter().any(|channel| channel.initial_velocity != 0.0);
     let all = record.channels.iter().map(|c| format!("{:e}", c.initial_velocity));
     some.then(|| all.collect::<Vec<_>>().join(" "))
 }
 
-/// A text on one line, without control characters.
+/// Returns a text on one line, without control characters.
 fn line(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     plain.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Words by which files of other formats are known.
+/// Words by which files of other formats are recognized.
 const FOREIGN: [&str; 4] = ["NPTS", "RAW PGA", "ARCHIVO EST", "GNS SCIENCE"];
 
-/// A text with a hyphen behind the second letter of each of `words`: still legible, the word no more.
+/// Inserts a hyphen after the second letter of each of `words`: still legible, but no longer recognized.
 fn broken(text: &str, words: &[&str]) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -76,12 +76,12 @@ fn broken(text: &str, words: &[&str]) -> String {
     out
 }
 
-/// The provenance, one line each; a very long one ends with the rest on one line.
+/// Returns the provenance, one line each; a very long one ends with the rest on one line.
 fn provenance(record: &Record) -> Vec<String> {
     let mut notes: Vec<String> = record
         .notes
         .iter()
-        // Lines that were read from a header of ours already have the word in front.
+        // Lines read from a header of this crate already have the prefix.
         .map(|note| line(note.strip_prefix("processing: ").unwrap_or(note)))
         .collect();
     if notes.len() > MOST_NOTES {
@@ -91,7 +91,7 @@ fn provenance(record: &Record) -> Vec<String> {
     notes
 }
 
-/// Names that can stand between commas, none twice.
+/// Returns unique names without separators.
 fn names(channels: &[Channel]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (k, channel) in channels.iter().enumerate() {

@@ -7,13 +7,13 @@ use crate::error::MotionError;
 use crate::record::Record;
 use crate::sampled::integrate;
 
-/// A record as a NumPy archive: `time` (s) and for every channel `NAME_acceleration` (m/s²),
-/// `NAME_velocity` (m/s) and `NAME_displacement` (m); signs other than letters and digits in names
+/// Writes a record as a NumPy archive: `time` (s) and for every channel `NAME_acceleration` (m/s²),
+/// `NAME_velocity` (m/s) and `NAME_displacement` (m); characters other than letters and digits in names
 /// become underscores.
 ///
-/// What the header of our own text form tells stands in arrays of strings beside them, such as `station`,
-/// `unit`, `channels` and `processing` (one to a step), so that [`crate::read`] gives the record back
-/// bit for bit; `azimuth` has degrees clockwise from north, not a number where unknown.
+/// The header of this crate's text format is stored in arrays of strings beside them, such as `station`, `unit`,
+/// `channels` and `processing` (one per step), so that [`crate::read`] restores the record bit for bit; `azimuth` is
+/// in degrees clockwise from north, not a number where unknown.
 ///
 /// ```
 /// use barrelstack_motion::{bundled, write};
@@ -50,17 +50,17 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
     })
 }
 
-/// The part of an array's name that stands for its channel.
+/// Returns the part of an array's name that identifies its channel.
 pub(crate) fn array_name(channel: &str) -> String {
     channel.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
-/// NumPy's archive of named arrays: an uncompressed zip of one `.npy` for each.
+/// Writes NumPy's archive of named arrays: an uncompressed zip of one `.npy` for each.
 ///
 /// Equal arrays give equal bytes.
 ///
 /// # Errors
-/// If a name occurs twice or an array is beyond the size of the format.
+/// If a name is repeated or an array exceeds the size of the format.
 pub fn archive(arrays: &[(String, &[f64])]) -> io::Result<Vec<u8>> {
     zipped(&arrays.iter().map(|(name, values)| (name.clone(), npy(values))).collect::<Vec<_>>())
 }
@@ -110,7 +110,7 @@ fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
 /// Version of the zip format that a reader needs for stored files (PKWARE, APPNOTE 4.4.3: 1.0).
 const VERSION: u16 = 10;
 
-/// What the header of a stored file and the directory say of it alike (PKWARE, APPNOTE 4.3.7 and 4.3.12).
+/// Returns the fields that the header of a stored file and the directory share (PKWARE, APPNOTE 4.3.7 and 4.3.12).
 fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
     /// The first day of the format's calendar, 1 January 1980, so that equal runs give equal bytes.
     const DATE: u16 = 0x21;
@@ -125,14 +125,14 @@ fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
     entry
 }
 
-/// An array of numbers.
+/// Encodes an array of numbers.
 fn npy(values: &[f64]) -> Vec<u8> {
     let mut bytes = npy_head("<f8", values.len());
     bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
     bytes
 }
 
-/// An array of strings, all as long as the longest, in UCS-4 as NumPy has them.
+/// Encodes an array of strings, all as long as the longest, in UCS-4 as in NumPy.
 fn npy_words(words: &[&str]) -> Vec<u8> {
     let longest = words.iter().map(|word| word.chars().count()).max().unwrap_or(0).max(1);
     let mut bytes = npy_head(&format!("<U{longest}"), words.len());
@@ -143,7 +143,7 @@ fn npy_words(words: &[&str]) -> Vec<u8> {
     bytes
 }
 
-/// NumPy's array format, version 1.0: a magic word and a padded description; the items follow.
+/// Returns the header of NumPy's array format, version 1.0: magic and padded description; the items follow.
 fn npy_head(kind: &str, count: usize) -> Vec<u8> {
     let mut description =
         format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({count},), }}");

@@ -1,4 +1,4 @@
-//! The crate's own text form at full precision: what is read back has the same bits.
+//! The crate's own text format at full precision: it reads back with the same bits.
 //!
 //! ```text
 //! # barrelstack motion 1
@@ -12,12 +12,12 @@
 //! 1.2345e-3 -2.3456e-4 0e0
 //! ```
 //!
-//! One column stands for each channel, numbers as the shortest decimals that read back to the same
+//! One column per channel, numbers as the shortest decimals that read back to the same
 //! double.
-//! `# recorded:` tells start (UTC), place and sensor, once or for each channel: `start
+//! `# recorded:` states start (UTC), place and sensor, once or for each channel: `start
 //! 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor surface,
-//! station Napa`; what is not known is left out.
-//! `# initial_velocity:` (m/s, one to a channel) stands there where one is not zero.
+//! station Napa`; unknown values are left out.
+//! `# initial_velocity:` (m/s, one per channel) is written if one is not zero.
 //! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
 //! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
 //! `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are comments.
@@ -28,11 +28,11 @@ use crate::direction::Orientation;
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 
-/// The first line of the form.
+/// The first line of the format.
 pub(crate) const TITLE: &str = "# barrelstack motion 1";
 
-/// A record in the crate's own text form; [`crate::read`] gives the accelerations and the initial
-/// velocities back bit for bit.
+/// Writes a record in the crate's own text format; [`crate::read`] restores the accelerations and the initial
+/// velocities bit for bit.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -63,7 +63,7 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// Keys and values of the header, in their order.
+/// Returns keys and values of the header, in order.
 pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> =
         vec![("station", record.station.clone()), ("event", record.event.clone())];
@@ -88,8 +88,8 @@ pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
     lines.into_iter().map(|(key, value)| (key, super::line(&value))).collect()
 }
 
-/// Start and place of the channels: one line if they share them, else one to a channel; none if
-/// nothing is known.
+/// Returns start and place of the channels: one line if they share them, else one per channel; empty if nothing is
+/// known.
 fn recorded(record: &Record) -> Vec<String> {
     let words = |channel: &Channel| {
         let site = &channel.site;
@@ -117,7 +117,7 @@ fn recorded(record: &Record) -> Vec<String> {
     all
 }
 
-/// Notes that a header of this form gave under a key of their own.
+/// Splits a note that a header of this format stored under a key of its own.
 fn own_key(note: &str) -> Option<(&'static str, &str)> {
     ["source", "attribution", "licence"]
         .into_iter()

@@ -2,7 +2,7 @@
 
 use barrelstack_motion::Sampled;
 
-/// Times without pattern in 0..1.
+/// Returns irregular times in 0..1.
 pub(crate) fn scattered(n: u32) -> impl Iterator<Item = f64> {
     (1..=n).map(|k| (f64::from(k) * 0.618_033_988_749_894_9).fract())
 }

@@ -1,9 +1,9 @@
-//! Files of one megabyte made from a small one: grown soundly where that can be done, and made absurd.
+//! Files of one megabyte made from a small one: grown consistently where possible, and absurd.
 
 /// Size of the files (bytes).
 pub(crate) const SIZE: usize = 1_000_000;
 
-/// Large files after the manner of a sample.
+/// Returns large files derived from a sample.
 pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     let mut files = vec![repeated(sample, sample), repeated(&[], sample)];
     files.extend(sound(sample));
@@ -24,7 +24,7 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     ] {
         files.push(repeated(sample, filling));
         files.push(repeated(head, filling));
-        // In front, so that the header becomes what is absurd.
+        // In front, so that the header becomes absurd.
         let mut front = filling.repeat((SIZE - sample.len().min(SIZE / 2)) / filling.len());
         front.extend(sample);
         files.push(front);
@@ -34,7 +34,7 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     files
 }
 
-/// A sample grown to a large file, in each way that its format may count.
+/// Returns a sample grown to a large file, by each way of counting of its format.
 pub(crate) fn sound(sample: &[u8]) -> Vec<Vec<u8>> {
     let rows = [Counts::Values, Counts::Rows].into_iter().filter_map(|c| grown(sample, c));
     rows.chain(grown_words(sample)).collect()
@@ -54,14 +54,14 @@ fn is_data(line: &[u8]) -> bool {
     !plain.is_empty() && plain.iter().all(|b| b.is_ascii_digit() || b"+-.eE \t,;".contains(b))
 }
 
-/// What the count in a header is one of; formats differ.
+/// Unit of the count in a header, which depends on the format.
 #[derive(Clone, Copy)]
 enum Counts {
     Values,
     Rows,
 }
 
-/// The longest block of full rows of numbers repeated, and the counts in front of it corrected.
+/// Repeats the longest block of full rows of numbers, and corrects the counts before it.
 fn grown(sample: &[u8], counts: Counts) -> Option<Vec<u8>> {
     let lines: Vec<&[u8]> = sample.split_inclusive(|&b| b == b'\n').collect();
     let mut best = 0..0;
@@ -104,8 +104,8 @@ fn fields(line: &[u8]) -> usize {
     line.split(|b| b.is_ascii_whitespace() || *b == b',').filter(|f| !f.is_empty()).count()
 }
 
-/// A header line with its counts, whole numbers from 101 to 103 as all samples have, raised by what was
-/// added.
+/// Increases the counts in a header line, integers from 101 to 103 as in all samples, by the number of added
+/// values.
 fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
     let text: String = line.iter().map(|&b| char::from(b)).collect();
     let mut out = String::new();
@@ -117,7 +117,7 @@ fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
         match word.parse::<usize>() {
             Ok(count @ 101..=103) if whole => {
                 let wide = (count + more).to_string();
-                // In its columns, where blanks stand in front.
+                // In its columns, if blanks precede it.
                 let blanks = rest[..at].len() - rest[..at].trim_end_matches(' ').len();
                 let eaten = (wide.len() - word.len()).min(blanks.saturating_sub(1));
                 out.push_str(&rest[..at - eaten]);
@@ -131,12 +131,12 @@ fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
     out.chars().map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?')).collect()
 }
 
-/// A binary file with its samples repeated soundly.
+/// Repeats the samples of a binary file consistently.
 fn grown_words(sample: &[u8]) -> Option<Vec<u8>> {
     grown_sac(sample).or_else(|| grown_miniseed(sample))
 }
 
-/// The words of the header that hold the count are raised.
+/// Increases the header words of the count.
 fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
     const HEADER: usize = 632;
     const COUNT: usize = 79 * 4;
@@ -155,7 +155,7 @@ fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
     Some(file)
 }
 
-/// The records follow one another in time, as those of one channel do.
+/// Makes the records follow one another in time, as those of one channel.
 fn grown_miniseed(sample: &[u8]) -> Option<Vec<u8>> {
     /// Ticks of the header's clock (1/s).
     const TICKS: u32 = 10_000;
@@ -171,7 +171,7 @@ fn grown_miniseed(sample: &[u8]) -> Option<Vec<u8>> {
     let records = sample.chunks_exact(length);
     let samples: u32 =
         records.map(|record| u32::from(u16::from_be_bytes([record[30], record[31]]))).sum();
-    // The rate of the samples is a whole number of Hz.
+    // The sampling rate is an integer in Hz.
     let span = samples * TICKS / u32::from(number(32));
     let mut file = Vec::with_capacity(SIZE);
     let mut shift = 0;

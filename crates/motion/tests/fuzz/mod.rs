@@ -1,4 +1,4 @@
-//! Damage to files, seeded and aware of their structure, and what must hold whatever comes of it.
+//! Seeded, structure-aware damage to files, and properties of every result.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use barrelstack_motion::{
     Record, read, station_xml,
 };
 
-/// Numbers that break readers: edges of types, of formats and of sense.
+/// Numbers that break readers: edges of types, of formats and of plausibility.
 const NUMBERS: [&str; 22] = [
     "0",
     "-0",
@@ -33,7 +33,7 @@ const NUMBERS: [&str; 22] = [
     "*******",
 ];
 
-/// Pieces that readers look for, and some that they do not expect.
+/// Words that readers look for, and some unexpected ones.
 const WORDS: [&[u8]; 20] = [
     b"\n",
     b"\r\n",
@@ -87,7 +87,7 @@ fn pick<'a, T>(random: &mut Random, from: &'a [T]) -> &'a T {
     &from[below(random, from.len())]
 }
 
-/// All samples of the folder beside the tests, sorted by name.
+/// Returns all samples of the folder beside the tests, sorted by name.
 pub(crate) fn samples() -> Vec<Sample> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     let mut files: Vec<PathBuf> = Vec::new();
@@ -109,7 +109,7 @@ pub(crate) fn samples() -> Vec<Sample> {
         .collect()
 }
 
-/// Something that takes bytes from outside.
+/// A parser of external bytes.
 #[derive(Clone, Copy)]
 pub(crate) enum Reader {
     Format(&'static Format),
@@ -125,7 +125,7 @@ impl Reader {
         FORMATS.iter().map(Self::Format).chain(others).collect()
     }
 
-    /// As its folder of samples is called.
+    /// Returns the name of its folder of samples.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Format(format) => format.name,
@@ -135,7 +135,7 @@ impl Reader {
         }
     }
 
-    /// Reads a file; panics unless what comes of it holds. Tells whether it was taken.
+    /// Reads a file; panics if the result violates a property. Returns `true` if it was accepted.
     pub(crate) fn take(self, bytes: &[u8], given: &ReadOptions) -> bool {
         let text = || String::from_utf8_lossy(bytes);
         match self {
@@ -160,13 +160,13 @@ fn record_holds(result: &Result<Record, ReadError>) -> bool {
     result.is_ok()
 }
 
-/// The samples that lie in the folder of a reader.
+/// Returns the samples in the folder of a reader.
 pub(crate) fn samples_of(reader: Reader, samples: &[Sample]) -> Vec<&Sample> {
     let folder = format!("{}/", reader.name());
     samples.iter().filter(|sample| sample.name.starts_with(&folder)).collect()
 }
 
-/// What a caller may state: nothing, one thing, or all.
+/// Returns options of a caller: none, one, or all.
 pub(crate) fn options(random: &mut Random) -> ReadOptions {
     let choice = random.bits();
     let units =
@@ -179,7 +179,7 @@ pub(crate) fn options(random: &mut Random) -> ReadOptions {
     }
 }
 
-/// One to five changes to a file; `others` lend lines.
+/// Applies one to five changes to a file; `others` supply lines.
 pub(crate) fn mutate(bytes: &[u8], others: &[Sample], random: &mut Random) -> Vec<u8> {
     let mut out = bytes.to_vec();
     for _ in 0..=below(random, 5) {
@@ -213,7 +213,7 @@ pub(crate) fn mutate(bytes: &[u8], others: &[Sample], random: &mut Random) -> Ve
             7 => {
                 let word = *pick(random, &WORDS);
                 let at = below(random, out.len());
-                // Over what stands there, or between.
+                // Overwrites or inserts.
                 let end =
                     if random.bits() & 1 == 0 { at } else { (at + word.len()).min(out.len()) };
                 out.splice(at..end, word.iter().copied());
@@ -258,7 +258,7 @@ fn span(length: usize, most: usize, random: &mut Random) -> std::ops::Range<usiz
     at..(at + below(random, most)).min(length)
 }
 
-/// Another number in the place of one that is there, in its columns or pushing the rest along.
+/// Replaces a number by another one, in its columns or shifting the rest.
 fn change_number(out: &mut Vec<u8>, random: &mut Random) {
     let start = below(random, out.len());
     let is_part = |b: u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'+');
@@ -284,7 +284,7 @@ fn line_start(bytes: &[u8], at: usize) -> usize {
     bytes[..at].iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1)
 }
 
-/// Lines lost, doubled, emptied, moved, cut short or made long.
+/// Deletes, duplicates, empties, moves, truncates or extends lines.
 fn change_lines(out: &mut Vec<u8>, random: &mut Random) {
     let from = line_start(out, below(random, out.len()));
     let to = (from..out.len()).find(|&k| out[k] == b'\n').map_or(out.len(), |k| k + 1);
@@ -307,7 +307,7 @@ fn change_lines(out: &mut Vec<u8>, random: &mut Random) {
             out.drain(at..to.saturating_sub(1).max(at));
         }
         _ => {
-            // The line joined with the next.
+            // Join the line with the next.
             if to > from && out.get(to - 1) == Some(&b'\n') {
                 out.remove(to - 1);
             }
@@ -315,7 +315,7 @@ fn change_lines(out: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Panics unless what was read is usable, or what was refused says why and what to do.
+/// Panics unless the result is usable, or the refusal states reason and remedy.
 pub(crate) fn must_hold(result: &Result<Record, ReadError>) {
     match result {
         Ok(record) => {

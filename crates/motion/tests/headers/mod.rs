@@ -1,4 +1,4 @@
-//! Tables of made-up motions under headers of every style, and damage to such headers.
+//! Tables of synthetic motions under headers of every style, and damage to such headers.
 
 use barrelstack_motion::{Random, ReadOptions, read};
 
@@ -10,7 +10,7 @@ fn pick<'a, T>(random: &mut Random, from: &'a [T]) -> &'a T {
     &from[below(random, from.len())]
 }
 
-/// A way to write a unit beside a name.
+/// Style of a unit beside a name.
 #[derive(Clone, Copy)]
 enum Style {
     Parentheses,
@@ -20,7 +20,7 @@ enum Style {
     Prose,
 }
 
-/// A table and the record that it is.
+/// A table with the record that it represents.
 pub struct Table {
     header: String,
     rows: String,
@@ -32,7 +32,7 @@ pub struct Table {
     peak_line: Option<String>,
 }
 
-/// What became of a table.
+/// Result for a table.
 pub enum Verdict {
     Right,
     Refused,
@@ -52,7 +52,7 @@ const UNITS: [(&str, f64); 9] = [
 ];
 const STEPS: [f64; 6] = [0.005, 0.01, 0.02, 0.004, 0.0025, 0.003_906_25];
 
-/// A random table.
+/// Generates a random table.
 #[allow(clippy::too_many_lines, reason = "one table, from top to bottom")]
 pub fn table(random: &mut Random) -> Table {
     let step = *pick(random, &STEPS);
@@ -120,7 +120,7 @@ pub fn table(random: &mut Random) -> Table {
             );
         }
     }
-    // Blanks within names do not go with blanks between them.
+    // Names with blanks are incompatible with blanks as separators.
     if separator == " " {
         for (name, _) in &mut names {
             *name = name.replace(" acceleration", "");
@@ -197,7 +197,7 @@ pub fn table(random: &mut Random) -> Table {
     Table { header, rows, step, peaks, samples, peak_line }
 }
 
-/// Lines that say nothing of the samples.
+/// Lines unrelated to the samples.
 const PROSE: [&str; 8] = [
     "Station 12, Nowhere",
     "Filter: 0.1 - 25 Hz, 4th order",
@@ -210,12 +210,12 @@ const PROSE: [&str; 8] = [
 ];
 
 impl Table {
-    /// The file.
+    /// Returns the file.
     pub fn text(&self) -> String {
         format!("{}{}", self.header, self.rows)
     }
 
-    /// Whether the record read of a text is that of the table.
+    /// Compares the record read from a text with that of the table.
     pub fn verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;
@@ -240,8 +240,8 @@ impl Table {
         Verdict::Right
     }
 
-    /// Whether the peak of a record read of a damaged text is that of the table within 1 %, or a warning contradicts
-    /// the stated one.
+    /// Checks that the peak of a record read from a damaged text is that of the table within 1 %, or that a warning
+    /// contradicts the stated one.
     pub fn peak_verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;
@@ -260,7 +260,7 @@ impl Table {
     }
 }
 
-/// The file with one to three changes to its header.
+/// Returns the file with one to three changes to its header.
 pub fn mutated(table: &Table, random: &mut Random) -> String {
     let mut header = table.header.clone().into_bytes();
     for _ in 0..=below(random, 3) {

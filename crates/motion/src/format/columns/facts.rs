@@ -1,4 +1,4 @@
-//! Statements of a header in words: step, count, duration, unit, peak, component.
+//! Data stated in the words of a header: step, count, duration, unit, peak, component.
 
 use crate::direction::Direction;
 use crate::error::ReadError;
@@ -13,16 +13,16 @@ pub(super) struct Stated<T> {
     pub(super) value: T,
 }
 
-/// A peak acceleration as stated.
+/// A stated peak acceleration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {
     pub(super) value: f64,
     pub(super) resolution: f64,
-    /// SI value of one of its unit; that of the samples where none is stated.
+    /// SI value of its unit; `None` for the unit of the samples.
     pub(super) factor: Option<f64>,
 }
 
-/// Statements of the header lines above a table.
+/// Data stated in the header lines above a table.
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     /// Time between samples (s).
@@ -33,10 +33,10 @@ pub(super) struct Facts {
     pub(super) duration: Option<Stated<[f64; 2]>>,
     /// Unit of the samples.
     pub(super) unit: Option<Stated<MotionUnit>>,
-    /// Word in the place of a unit that is none of motion.
+    /// Word in the place of the unit that is not a unit of motion.
     pub(super) unknown_unit: Option<Stated<String>>,
     pub(super) peak: Option<Stated<Peak>>,
-    /// Name of the only component, if it says a direction.
+    /// Name of the only component, if it states a direction.
     pub(super) component: Option<String>,
 }
 
@@ -110,7 +110,7 @@ const PEAK_KEYS: [&str; 10] = [
 ];
 const COMPONENT_KEYS: [&str; 7] =
     ["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
-/// Words before a key that give it another meaning.
+/// Words before a key that change its meaning.
 const OTHER_MEANING: [&str; 12] = [
     "original",
     "orig",
@@ -127,7 +127,7 @@ const OTHER_MEANING: [&str; 12] = [
 ];
 
 impl Facts {
-    /// Reads header lines; those that name columns are left to the names.
+    /// Reads header lines, except those with names of columns.
     ///
     /// # Errors
     /// If two lines contradict each other about the step.
@@ -174,14 +174,14 @@ impl Facts {
         Ok(facts)
     }
 
-    /// The step (s) that count and duration give, for advice.
+    /// Returns the step (s) from count and duration, for advice.
     pub(super) fn step_by_duration(&self) -> Option<f64> {
         let (count, [duration, _]) = (self.count?.value, self.duration?.value);
         (count > 1).then(|| duration / count as f64)
     }
 }
 
-/// Text behind a key that stands as words of its own, none of `OTHER_MEANING` before it.
+/// Returns the text after a key that is a word of its own, not preceded by `OTHER_MEANING`.
 fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     text.match_indices(key).find_map(|(at, _)| {
         let (before, rest) = (&text[..at], &text[at + key.len()..]);
@@ -194,7 +194,7 @@ fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     })
 }
 
-/// A value behind a key: a unit in parentheses, a number, a word behind it.
+/// The value of a key: a unit in parentheses, a number, and the text after it.
 struct Value<'a> {
     in_parentheses: Option<&'a str>,
     printed: crate::format::Printed,
@@ -221,7 +221,7 @@ fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     Some(Value { in_parentheses, printed, behind: word })
 }
 
-/// Seconds to one of a unit of time.
+/// Returns the length in seconds of a unit of time.
 pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
         "s" | "sec" | "secs" | "second" | "seconds" => 1.0,
@@ -237,7 +237,7 @@ fn step(text: &str) -> Option<f64> {
     let by_step = STEP_KEYS.iter().find_map(|key| {
         let value = value_behind(text, key)?;
         let unit = value.in_parentheses.and_then(time_factor).or_else(|| time_factor(value.behind));
-        // "1/200" states no step of 1 s.
+        // "1/200" does not state a step of 1 s.
         let number = match value.behind.strip_prefix('/').and_then(|d| leading_text(d.as_bytes())) {
             Some((divisor, _)) => value.printed.value / divisor,
             None => value.printed.value,
@@ -256,7 +256,7 @@ fn step(text: &str) -> Option<f64> {
     by_step.or_else(by_rate)
 }
 
-/// The number right before a word.
+/// Returns the number right before a word.
 fn number_before(text: &str, word: &str) -> Option<f64> {
     text.match_indices(word).find_map(|(at, _)| {
         if text[at + word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric()) {
@@ -267,13 +267,13 @@ fn number_before(text: &str, word: &str) -> Option<f64> {
     })
 }
 
-/// Fewest samples that a number before "points" is taken for; fewer may be those of a filter.
+/// Minimum of a number before "points" to be a count of samples; smaller ones may be those of a filter.
 const FEWEST_POINTS: f64 = 50.0;
 
 fn count(text: &str) -> Option<usize> {
     let behind = COUNT_KEYS.iter().find_map(|key| {
         let value = value_behind(text, key)?;
-        // "3200 samples, 200 sps" states a rate behind the word.
+        // "3200 samples, 200 sps" has a rate after the word.
         let rate = ["sps", "hz", "samples/s"].iter().any(|unit| value.behind.starts_with(unit));
         (!rate).then_some(value.printed.value)
     });
@@ -323,7 +323,7 @@ fn peak(text: &str) -> Option<Peak> {
     })
 }
 
-/// Whether a text speaks of acceleration.
+/// `true` if a text mentions acceleration.
 pub(super) fn says_acceleration(lower: &str) -> bool {
     words(lower).any(|word| word.starts_with("acc") || word.starts_with("acel"))
 }
@@ -332,14 +332,14 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// The unit in a line that states it: behind "unit", or in parentheses, behind "in", a colon or a comma in a
-/// line that speaks of acceleration.
+/// Parses the unit in a line that states it: after "unit", or in parentheses, after "in", a colon or a comma in
+/// a line that mentions acceleration.
 fn unit(lower: &str) -> Option<MotionUnit> {
-    // A length is no unit of a record in prose: "in" is a preposition, and "m" may be anything.
+    // In prose a length is not the unit of a record: "in" is a preposition, and "m" is ambiguous.
     let rate = |text: &str| {
         MotionUnit::parse(text.trim()).filter(|unit| unit.quantity != Quantity::Displacement)
     };
-    // A peak and its unit say nothing of the samples.
+    // The unit of a peak is not that of the samples.
     if PEAK_KEYS.iter().any(|key| value_behind(lower, key).is_some()) {
         return None;
     }
@@ -359,7 +359,7 @@ fn unit(lower: &str) -> Option<MotionUnit> {
     groups.chain(after_in).chain(last).find_map(rate)
 }
 
-/// The word behind "unit" at the beginning of a line, if it is no unit of motion.
+/// Returns the word after "unit" at the beginning of a line, if it is not a unit of motion.
 fn unknown_unit(lower: &str) -> Option<String> {
     let plain = lower.trim_start_matches(['#', '%', '!', '/', '"', ' ']);
     let rest = ["units", "unit", "acceleration units", "acceleration unit", "accel units"]
@@ -383,7 +383,7 @@ fn component(text: &str) -> Option<String> {
     })
 }
 
-/// Refuses a header that says in words that the numbers are no accelerations.
+/// Refuses a header that describes the numbers as other quantities than accelerations.
 pub(super) fn refuse_other_quantities(
     source: &Source<'_>,
     lines: impl Iterator<Item = usize> + Clone,

@@ -1,7 +1,7 @@
 //! Plain columns and CSV: values alone, time and values, or a count and a step on the first line.
 //!
 //! Neither unit nor step is ever guessed: both come from the header, a time column, or the caller. A header line names
-//! columns only if its names say quantities, and what a header states of step, count and duration must agree with the
+//! columns only if the names are quantities, and the stated step, count and duration must agree with the
 //! numbers.
 
 mod facts;
@@ -28,7 +28,7 @@ pub(crate) const FORMAT: Format =
 
 /// Largest time step (s) of a time column whose unit is not stated.
 const LARGEST_BARE_STEP: f64 = 0.5;
-/// Share by which a stated duration may differ from that of the samples.
+/// Tolerance of a stated duration relative to that of the samples.
 const DURATION_TOLERANCE: f64 = 0.02;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -76,7 +76,7 @@ fn read_table(
     let table = table(source, first, end)?;
     rows::require_rows(source, first, &table)?;
     let (width, rows) = (table.len(), table[0].len());
-    // Comments of files of our own are a past in free words.
+    // Comments in files of this crate are free text on their history.
     let own = header > 0 && source.text(0) == FIRST_LINE;
     let mut named = names::find(source, header, width);
     if let Some((_, names)) = named.as_mut().filter(|_| own) {
@@ -133,7 +133,7 @@ fn read_table(
     let several = columns.len() > 1;
     for (k, (column, unit)) in columns.into_iter().zip(units).enumerate() {
         let label = names.get(k).map(|name| name.label.clone());
-        // A single column is often called "acceleration"; the header or the file's name says more.
+        // A single column is often called "acceleration"; the header or the file's name is more specific.
         let says = |name: &String| several || Direction::parse(name) != Direction::default();
         let name = label.filter(says).or_else(|| facts.component.clone().filter(|_| !several));
         let fallback = || if several { format!("column {}", k + 1) } else { stem.clone() };
@@ -160,7 +160,7 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     }
 }
 
-/// Names and columns without a first column that counts the rows.
+/// Removes the first column, with its name, if it counts the rows.
 fn without_index(
     record: &mut Record,
     names: Option<Vec<Name>>,
@@ -190,7 +190,7 @@ fn without_first(names: Option<Vec<Name>>) -> Option<Vec<Name>> {
     })
 }
 
-/// Seconds to one of the first column, if it holds times.
+/// Returns the unit of the first column in seconds, if it has times.
 fn time_of(
     source: &Source<'_>,
     first: usize,
@@ -217,7 +217,7 @@ fn time_of(
             });
             (true, factor.transpose()?.or(in_label))
         }
-        // A column that is called something else is no time, however it rises.
+        // A rising column under another name does not hold times.
         Some(_) => return Ok(None),
         None => (false, None),
     };
@@ -240,7 +240,7 @@ fn time_of(
     Ok(Some(1.0))
 }
 
-/// The columns that hold accelerations, and their names; velocities, displacements and all else that is named are
+/// Returns the columns of accelerations, with their names; named columns of velocities, displacements and others are
 /// left out with a warning.
 fn accelerations(
     source: &Source<'_>,
@@ -304,7 +304,7 @@ fn accelerations(
     Ok(kept.into_iter().unzip())
 }
 
-/// The step (s) of columns without times.
+/// Returns the step (s) of columns without times.
 fn step(
     source: &Source<'_>,
     first: usize,
@@ -343,7 +343,7 @@ fn require_step(source: &Source<'_>, facts: &Facts, step: f64) -> Result<(), Rea
     }
 }
 
-/// Refuses samples that do not last as long as the header states, with both lengths.
+/// Refuses samples whose duration differs from the stated one, with both lengths.
 fn require_duration(
     source: &Source<'_>,
     facts: &Facts,
@@ -375,7 +375,7 @@ fn require_duration(
     ))
 }
 
-/// Columns cut to a stated count, which must be that of the samples.
+/// Cuts columns to a stated count, which must match the number of samples.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,
@@ -395,7 +395,7 @@ fn counted(
         ));
     }
     let used = crate::format::check_count(source, record, line, stated, found)?;
-    // Interpolated columns have another length than the rows that were counted.
+    // Interpolated columns have another length than the counted rows.
     if columns[0].len() == found {
         for column in &mut columns {
             column.truncate(used);
@@ -404,7 +404,7 @@ fn counted(
     Ok(columns)
 }
 
-/// Velocities (m/s) at the first samples, which files of our own state; none in all others.
+/// Returns the velocities (m/s) at the first samples, as stated in files of this crate; empty for all others.
 fn initial_velocities(
     source: &Source<'_>,
     first: usize,
@@ -418,7 +418,7 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// SI value of one of the unit of each column: as stated with its name, in the header, or by the caller.
+/// Returns the SI factor of the unit of each column: as stated with its name, in the header, or by the caller.
 fn units(
     source: &Source<'_>,
     first: usize,
@@ -454,7 +454,7 @@ fn units(
             }
             let unknown = name.and_then(|name| name.unit.clone());
             let in_header = facts.unit.filter(|_| unknown.is_none());
-            // Units behind the names of some columns say nothing of the others.
+            // Units after the names of some columns do not apply to the others.
             let some = names.iter().any(|name| name.motion_unit().is_some());
             if let Some(stated) = in_header.filter(|_| !some) {
                 return acceleration(stated.value, stated.line, source.text(stated.line));

@@ -1,4 +1,4 @@
-//! Names of columns: a header line is one only if its names say quantities.
+//! Names of columns: a header line has them only if they are quantities.
 
 use super::facts::time_factor;
 use crate::direction::Direction;
@@ -6,18 +6,18 @@ use crate::format::source::Source;
 use crate::record::Quantity;
 use crate::units::MotionUnit;
 
-/// What a column holds, as far as its name and unit say.
+/// Content of a column, according to its name and unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Holds {
     Time,
-    /// Numbers of the rows.
+    /// Row numbers.
     Index,
     Motion(Quantity),
     /// A direction alone, such as `EW`.
     Component,
     /// Period, frequency or a spectral ordinate.
     Spectrum,
-    /// Something that is named and no motion, such as a force.
+    /// A named quantity other than motion, such as a force.
     Other,
     Unknown,
 }
@@ -33,12 +33,12 @@ pub(super) struct Name {
 }
 
 impl Name {
-    /// Unit of motion, if the stated one is any.
+    /// Returns the unit, if it is one of motion.
     pub(super) fn motion_unit(&self) -> Option<MotionUnit> {
         self.unit.as_deref().and_then(MotionUnit::parse)
     }
 
-    /// Name and unit as a message shows them.
+    /// Formats name and unit for messages.
     pub(super) fn shown(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} ({unit})", self.label),
@@ -47,7 +47,7 @@ impl Name {
     }
 }
 
-/// The line of names right above a table of `width` columns, and its 0-based line.
+/// Finds the line of names right above a table of `width` columns; returns its 0-based number and the names.
 pub(super) fn find(source: &Source<'_>, first: usize, width: usize) -> Option<(usize, Vec<Name>)> {
     let mut lines = (0..first).rev().filter(|&line| !is_rule(&source.text(line)));
     let last = lines.next()?;
@@ -70,7 +70,7 @@ pub(super) fn find(source: &Source<'_>, first: usize, width: usize) -> Option<(u
     Some((line, by_company(names)))
 }
 
-/// Whether a line is empty or drawn with signs.
+/// `true` if a line is empty or a drawn rule.
 fn is_rule(text: &str) -> bool {
     text.chars().all(|c| " -=+|_#*\t,;".contains(c))
 }
@@ -79,7 +79,7 @@ fn plain(text: &str) -> &str {
     text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
 }
 
-/// Parts of a line by each separator that it may be written with; whether the separator is one that prose lacks.
+/// Splits a line by each possible separator; the flag is `true` for separators that do not occur in prose.
 fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
     let by = |mark: char| text.split(mark).map(tidy).collect::<Vec<_>>();
@@ -97,14 +97,14 @@ fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     all
 }
 
-/// A row of units alone, below the names.
+/// Parses a row of units alone, below the names.
 fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     let bare = |part: &str| part.trim_matches(['(', ')', '[', ']', '{', '}', ' ']).to_owned();
     splits(plain(text)).into_iter().find_map(|(_, parts)| {
         let units: Vec<String> = parts.iter().map(|part| bare(part)).collect();
         let each = units.iter().all(|unit| is_unit(unit) || unit == "-" || unit == "#");
         let any = units.iter().any(|unit| is_unit(unit));
-        // A row of names may be "N E" or "S": no unit looks like a direction but "g" and "m".
+        // A row of names may be "N E" or "S"; no units except "g" and "m" resemble a direction.
         let direction = units.iter().all(|unit| Direction::parse(unit) != Direction::default());
         (units.len() == width && each && any && !direction).then_some(units)
     })
@@ -117,7 +117,7 @@ fn is_unit(text: &str) -> bool {
 fn names(text: &str, width: usize) -> Option<Vec<Name>> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         let parts = if parts.len() > width { merged(parts) } else { parts };
-        // "0.005" and "#N/A" stand in rows of numbers.
+        // "0.005" and "#N/A" occur in rows of numbers.
         let of_a_row = |part: &String| {
             part.contains('.') && part.parse::<f64>().is_ok() || part.starts_with("#N")
         };
@@ -129,7 +129,7 @@ fn names(text: &str, width: usize) -> Option<Vec<Name>> {
     })
 }
 
-/// Parts with units that stand for themselves (`Time, s, Acceleration, g`) put to the name before.
+/// Merges units that stand alone (`Time, s, Acceleration, g`) with the name before.
 fn merged(parts: Vec<String>) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for part in parts {
@@ -145,12 +145,12 @@ fn merged(parts: Vec<String>) -> Vec<String> {
     out
 }
 
-/// Whether names are of a table: all of them say what they hold; where time leads, or a separator is used
-/// that prose lacks, one column may be called anything.
+/// `true` if names belong to a table: all of them are quantities; with time first, or a separator that does not occur
+/// in prose, one column may have any name.
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);
-    // Time stands first, or the line is a sentence that speaks of it.
+    // Time comes first, or the line is a sentence that mentions it.
     let time_within = names.iter().skip(1).any(|name| name.holds == Holds::Time);
     let time_after_index = names[0].holds == Holds::Index
         && names.get(1).is_some_and(|name| name.holds == Holds::Time);
@@ -163,7 +163,7 @@ fn says_quantities(names: &[Name], separated: bool) -> bool {
     names.len() > 1 && separated && leads
 }
 
-/// A name with its unit: `Acceleration (g)`, `Accel [cm/s2]`, `acc, g`, `acc_g`, `Acceleration in g`.
+/// Parses a name with its unit: `Acceleration (g)`, `Accel [cm/s2]`, `acc, g`, `acc_g`, `Acceleration in g`.
 fn name(text: &str) -> Name {
     let mut label = text.trim();
     let mut unit = None;
@@ -171,7 +171,7 @@ fn name(text: &str) -> Name {
         && let Some((inner, after)) = inner.rsplit_once([')', ']', '}'])
         && !before.trim().is_empty()
     {
-        // "Acc (EW)" has no unit in its parentheses.
+        // The parentheses of "Acc (EW)" do not hold a unit.
         let inner = inner.trim();
         if Direction::parse(inner) == Direction::default() || is_unit(inner) {
             unit = Some(inner.to_owned());
@@ -183,7 +183,7 @@ fn name(text: &str) -> Name {
             if let Some((before, last)) = label.rsplit_once(mark)
                 && is_unit(last)
                 && !before.trim().is_empty()
-                // "acc_m" and "UP m" are too little to be sure of; "time s" and "acc g" are not.
+                // "acc_m" and "UP m" are too ambiguous; "time s" and "acc g" are not.
                 && MotionUnit::parse(last).is_none_or(|unit| unit.quantity != Quantity::Displacement)
             {
                 unit = Some(last.trim().to_owned());
@@ -245,14 +245,14 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
     }
     match (unit_of_motion, unit) {
         (Some(quantity), _) => Holds::Motion(quantity),
-        // A stated unit that is none of motion is that of something else.
+        // A stated unit that is not one of motion belongs to another quantity.
         (None, Some(unit)) if time_factor(unit).is_none() => Holds::Other,
         _ => Holds::Unknown,
     }
 }
 
-/// `v`, `d` and `u` beside an acceleration are velocity and displacement; alone they say a direction or
-/// nothing.
+/// `v`, `d` and `u` beside an acceleration are velocity and displacement; alone they are a direction or
+/// unknown.
 fn by_company(mut names: Vec<Name>) -> Vec<Name> {
     let acceleration = names.iter().any(|name| name.holds == Holds::Motion(Quantity::Acceleration));
     let horizontal = names.iter().any(|name| {

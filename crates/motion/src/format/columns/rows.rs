@@ -1,4 +1,4 @@
-//! Rows of numbers: where they begin and end, their width, and what stands among them.
+//! Rows of numbers: their range, their width, and comments among them.
 
 use super::facts::Facts;
 use super::names::Name;
@@ -7,13 +7,13 @@ use crate::error::{ReadError, Refusal};
 use crate::format::source::{Source, quoted};
 use crate::record::Record;
 
-/// Header lines searched.
+/// Number of header lines searched.
 const MOST_HEADER_LINES: usize = 60;
-/// Anything larger is damage whatever the unit.
+/// Larger numbers are errors whatever the unit.
 const LIMIT: f64 = 1e12;
-/// Most columns that are taken for components; more are one series in long lines.
+/// Maximum number of columns taken as components; more are one series in long lines.
 const MOST_COLUMNS: usize = 200;
-/// Fewest numbers that a file of one line may hold.
+/// Minimum number of values in a file of one line.
 const FEWEST_ON_ONE_LINE: usize = 50;
 
 pub(super) fn is_row(source: &Source<'_>, line: usize) -> bool {
@@ -21,14 +21,14 @@ pub(super) fn is_row(source: &Source<'_>, line: usize) -> bool {
     source.tokens(line, f64::INFINITY, &mut values).is_ok() && !values.is_empty()
 }
 
-/// The first line that holds numbers only and is followed by another, or by nothing.
+/// Returns the first line of numbers only that is followed by another, or by nothing.
 pub(super) fn first_row(source: &Source<'_>) -> Option<usize> {
     let end = source.lines.len();
     (0..end.min(MOST_HEADER_LINES))
         .find(|&line| is_row(source, line) && (line + 1 == end || is_row(source, line + 1)))
 }
 
-/// The line behind the last row.
+/// Returns the line after the last row.
 pub(super) fn end(source: &Source<'_>, first: usize) -> usize {
     let mut end = source.lines.len();
     while end > first && is_comment(source, end - 1) {
@@ -55,7 +55,7 @@ pub(super) fn require_rows(
     ))
 }
 
-/// Refuses a line above the table that is a row of it but for a number that is none.
+/// Refuses a line above the table that would be a row of it except for an invalid number.
 pub(super) fn require_no_lost_row(
     source: &Source<'_>,
     first: usize,
@@ -82,7 +82,7 @@ fn is_comment(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with(['#', '%', '!', '/'])
 }
 
-/// Line, count and step (s) of a first line `11800 0.005`, or `0.005 11800`, above rows of another shape.
+/// Parses a first line `11800 0.005`, or `0.005 11800`, above rows of another shape; returns line, count and step (s).
 pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
     let (mut row, mut next) = (Vec::new(), Vec::new());
     source.tokens(first, f64::INFINITY, &mut row).ok()?;
@@ -104,8 +104,8 @@ pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize
     (next.len() != 2 || next[0] < count).then_some((first, count as usize, step))
 }
 
-/// All rows as columns, or one column of very long rows; rows of several values without a common
-/// width are refused with their line, except a short last one.
+/// Reads all rows as columns, or as one column of very long rows; refuses rows of several values without a common
+/// width, with their line, except for a short last one.
 pub(super) fn table(
     source: &Source<'_>,
     first: usize,
@@ -141,7 +141,7 @@ pub(super) fn table(
     Ok(columns)
 }
 
-/// A row of another width: the first line may be the one that differs, or a cell may be empty.
+/// Returns the error for a row of another width: the first line may be the exception, or a cell may be empty.
 fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
     let text = source.text(line);
     if [",,", ";;", "\t\t", ", ,"].iter().any(|empty| text.contains(empty)) {
@@ -165,8 +165,8 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
     source.ragged(line, width, found)
 }
 
-/// Several values to a line and no time: channels if the header names the columns, one series row by row if
-/// the stated count or the numbers themselves say so, with a warning.
+/// Interprets several values per line without times: as channels if the header names the columns, as one series row
+/// by row if the stated count or the numbers themselves indicate it, with a warning.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,
@@ -204,7 +204,7 @@ pub(super) fn without_time(
     Ok(vec![series])
 }
 
-/// A single column without a count in its first row, which is the number of rows below it.
+/// Removes the count in the first row of a single column, if it is the number of rows below it.
 fn without_count(
     source: &Source<'_>,
     first: usize,

@@ -1,17 +1,17 @@
-//! Evidence in the numbers themselves: times, decimal commas, one series in rows, integrals, spectra.
+//! Evidence from the numbers themselves: times, decimal commas, one series in rows, integrals, spectra.
 
 use crate::format::source::{Source, latin1};
 use crate::math;
 
-/// Rows that are looked at for the way numbers are written.
+/// Number of rows examined for the format of numbers.
 const ROWS: usize = 200;
-/// Least share of rising steps by which an unnamed first column is taken for times.
+/// Minimum share of rising steps for an unnamed first column to be times.
 const RISING: f64 = 0.95;
 
-/// Whether a column without a name holds times or numbers of rows: it rises nearly throughout, and no step is ten
-/// times the mean.
+/// `true` if an unnamed column holds times or row numbers: it rises nearly throughout, and no step is ten times
+/// the mean.
 ///
-/// Times that repeat or go back are times all the same, to be refused as such.
+/// Times that repeat or decrease still count as times, to be refused as such.
 pub(super) fn is_time(column: &[f64]) -> bool {
     if column.len() < 3 {
         return false;
@@ -23,13 +23,13 @@ pub(super) fn is_time(column: &[f64]) -> bool {
     mean > 0.0 && even && (rising == steps || rising as f64 >= RISING * steps as f64)
 }
 
-/// Whether a column counts its rows from 0 or 1.
+/// `true` if a column counts its rows from 0 or 1.
 pub(super) fn is_index(column: &[f64]) -> bool {
     matches!(column.first(), Some(0.0 | 1.0))
         && column.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
 }
 
-/// The first row whose time is that of the row before although the times are printed fine enough to differ.
+/// Returns the first row that repeats the time of the row before although the printed digits could distinguish them.
 pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     let steps = column.len().saturating_sub(1);
     let mean = (column.last()? - column.first()?) / steps.max(1) as f64;
@@ -39,7 +39,7 @@ pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     (1..column.len()).find(|&row| column[row] == column[row - 1])
 }
 
-/// The coarsest resolution of the printed times: one unit of the most digits shown.
+/// Returns the coarsest resolution of the printed times: one unit of the last digit.
 pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> f64 {
     let resolution = |line: usize| {
         let text = latin1(source.raw(line));
@@ -49,7 +49,7 @@ pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> 
     (first..end.min(first + ROWS)).map(resolution).reduce(f64::min).unwrap_or(1e-6)
 }
 
-/// How a table uses commas.
+/// Use of commas in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Commas {
     /// Between numbers, or not at all.
@@ -60,8 +60,8 @@ pub(super) enum Commas {
     Both,
 }
 
-/// How the rows of a table use commas: as decimal signs where no number has a point and another separator parts
-/// the numbers, or where digits behind commas begin with zeros.
+/// Determines the use of commas in a table: as decimal signs if no number has a point and another separator separates
+/// the numbers, or if digits after commas begin with zeros.
 pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     let (mut any, mut zeros, mut one_each, mut other) = (false, false, true, true);
     for line in first..end.min(first + ROWS) {
@@ -86,8 +86,8 @@ pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     }
 }
 
-/// Whether rows of several numbers are one series written row by row: neighbours in a row, and the ends of rows,
-/// are nearer to each other than neighbours in a column.
+/// `true` if rows of several numbers are one series written row by row: neighbors in a row, and across the ends of
+/// rows, differ less than neighbors in a column.
 pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
     let (width, rows) = (table.len(), table[0].len());
     let (mut along, mut down) = (0.0, 0.0);
@@ -102,7 +102,7 @@ pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
     along <= down
 }
 
-/// The first pair of columns of which the second is the integral of the first, as velocities are of accelerations.
+/// Returns the first pair of columns of which the second is the integral of the first, as of an acceleration.
 pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     let pairs = (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| [a, b]));
     pairs.into_iter().filter(|[a, b]| a != b).find(|[a, b]| {
@@ -122,7 +122,7 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Whether no value lies below zero and the first one is not small, as in spectra.
+/// `true` if no value is negative and the first one is not small, as in spectra.
 pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     columns.iter().all(|column| {
         column.len() > 4
