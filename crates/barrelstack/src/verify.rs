@@ -78,7 +78,7 @@ described! {
 /// Repeats a run: with half the step, with nodes at half the spacing, and four times with every barrel
 /// displaced by up to a nanometer.
 ///
-/// `progress` receives the progress of all repeats, in aggregate, and may cancel; cancelled ones are
+/// `progress` receives the progress of all repeats, in aggregate, and may cancel; canceled ones are
 /// listed as skipped.
 ///
 /// # Errors
@@ -102,7 +102,7 @@ pub fn verify(
         add(change, disturbed(&base.scenario, seed));
     }
     let mut repeats = Vec::new();
-    // `None` for a cancelled repeat.
+    // `None` for a canceled repeat.
     let repeat =
         |at: usize, run: Run| (!run.interrupted).then(|| Repeat::of(base, &run, &changes[at]));
     let done = run_together(&scenarios, base.simulation.end_time, progress, &repeat)?;

@@ -15,7 +15,7 @@ use barrelstack_dynamics::{
 /// A method of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// As in runs: full gravity acts on all bodies at once, with heavy damping.
+    /// As in runs: gravity acts on all bodies at once, and overshoot dies out quickly.
     AtOnce,
     /// Gravity grows in a number of parts, each brought to rest.
     Growing(u32),

@@ -53,8 +53,8 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
             );
         };
         let friction = "friction.coefficient";
-        // Static friction scales with kinetic friction, so as not to fall below it; fallen bodies have the same
-        // materials.
+        // Static friction takes the same value, so that it does not fall below kinetic friction; so does the
+        // friction of fallen bodies, whose materials are the same.
         let others = [
             Some(path("friction.static_coefficient")),
             fallen.map(|fallen| format!("interface.{fallen}.{friction}")),

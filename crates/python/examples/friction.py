@@ -1,4 +1,4 @@
-"""Many cases: how often a stack comes down, against the friction under its racks."""
+"""Many cases: the share of collapses against the friction under the racks."""
 
 from barrelstack import ensemble
 

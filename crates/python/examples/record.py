@@ -1,10 +1,10 @@
-"""A stack under accelerations of one's own, scaled, with its report as a page."""
+"""A stack under user-supplied accelerations, scaled, with its report as a page."""
 
 import numpy as np
 
 from barrelstack import Record, Scenario
 
-# Any samples will do; these are those of the record that comes with the library.
+# Any samples will do; these are those of the bundled record.
 own = Record.bundled()["E"]
 samples = np.array(own.acceleration) / 9.80665
 record = Record.from_arrays(samples, own.time_step, unit="g", raw=True).process("compact").scale(pgv="80 cm/s")

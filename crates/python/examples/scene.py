@@ -1,4 +1,4 @@
-"""A free scene: how far a block slides, against v²/(2 μ g), and an observer that ends a run."""
+"""A free scene: the sliding distance of a block, against v²/(2 μ g), and an observer that ends a run."""
 
 from barrelstack import Glance, Scene
 
@@ -17,7 +17,7 @@ print(f"{x[-1] - x[0]:.4f} m; exactly {1 / (2 * 0.3 * 9.80665):.4f} m")
 
 
 def slow(glance: Glance) -> bool:
-    """Whether the block has half of its speed left."""
+    """Returns True once the block has lost half of its speed."""
     return bool(glance.twists[1, 0] < 0.5)
 
 

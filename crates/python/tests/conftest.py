@@ -1,4 +1,4 @@
-"""What the tests share, and the closing line that the test command adds up."""
+"""Shared fixtures, and the closing line that the test command adds up."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 @pytest.fixture(scope="session")
 def command() -> str:
-    """The program, which numbers are held against."""
+    """The program, as the reference for numbers."""
     found = os.environ.get("BARRELSTACK_COMMAND") or shutil.which("barrelstack")
     if found is None:
         pytest.skip("no program to compare with: build it and name it in BARRELSTACK_COMMAND")
@@ -30,7 +30,7 @@ def strong_motion() -> Path:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Says what was skipped and why, then one line in the form of the other runners."""
+    """Reports skipped tests with reasons, then one line in the form of the other runners."""
     stats = terminalreporter.stats
     for report in stats.get("skipped", []):
         reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr

@@ -1,4 +1,4 @@
-"""What many runs say, by the command and by the package; pages; what is refused."""
+"""Analyses of many runs, by the command and by the package; pages; refusals."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_a_comparison_has_the_numbers_of_the_command(command: str, tmp_path: Pat
 def test_protections_are_those_of_the_command(command: str, tmp_path: Path) -> None:
     words = ["--set", "stack.levels=2", "--pgv", "50 cm/s", "--count", "4", "--rounds", "1", "--budget", "60", "--quiet"]
     told = by_command(command, "protect", "candia-8-barrels", *words, "--out", str(tmp_path / "theirs"))
-    # The studies are those of the command: had another question been asked, their folders would be refused.
+    # The studies are those of the command: another request would refuse their folders.
     shutil.copytree(tmp_path / "theirs", tmp_path / "ours")
     stack = Scenario.load("candia-8-barrels").set("stack.levels", 2)
     start = time.perf_counter()
@@ -108,7 +108,7 @@ def test_the_cases_of_the_paper_are_a_table_and_end_on_ctrl_c() -> None:
         signal.raise_signal(signal.SIGINT)
 
     timer = threading.Timer(0.5, press)
-    # A shell that runs the tests in the background has Ctrl-C ignored.
+    # A shell ignores Ctrl-C for tests in the background.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         timer.start()

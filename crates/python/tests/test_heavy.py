@@ -1,4 +1,4 @@
-"""What needs packages that take long to install: ObsPy, OpenQuake, Dask, Slurm. Skipped where they are not there."""
+"""Tests with packages that take long to install: ObsPy, OpenQuake, Dask, Slurm. Skipped if missing."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def test_a_stream_of_obspy_measures_what_its_file_measures(tmp_path: Path) -> No
     own = Record.bundled()
     stream = own.to_obspy()
     assert [trace.stats.channel for trace in stream] == ["E", "N", "Up"]
-    # Through a file of ObsPy's: MiniSEED of doubles, read by both.
+    # Through a file written by ObsPy: MiniSEED of doubles, read by both.
     path = tmp_path / "napa.mseed"
     stream.write(str(path), format="MSEED", encoding="FLOAT64")
     by_obspy = Record.from_obspy(obspy.read(str(path)), unit="m/s2")
-    # The reader of MiniSEED takes the zero of the digitizer out, as ObsPy does when it is told to.
+    # The reader of MiniSEED removes the offset of the digitizer, as ObsPy does on request.
     by_reader = Record.read(path, sensitivity=1.0)
     centered = Record.from_obspy(obspy.read(str(path)).detrend("demean"), unit="m/s2")
     periods = np.geomspace(0.05, 5.0, 40)
@@ -38,7 +38,7 @@ def test_a_stream_of_obspy_measures_what_its_file_measures(tmp_path: Path) -> No
         assert (by_obspy.spectrum(periods, of=name)[1] == own.spectrum(periods, of=name)[1]).all()
         pairs = [(record.intensity("pgv")[0].values[name]) for record in (by_obspy, own, centered, by_reader)]
         assert pairs[0] == pairs[1]
-        # The two means round in another order; measured 1e-15.
+        # The two means are rounded in another order; measured 1e-15.
         assert pairs[2] == pytest.approx(pairs[3], rel=1e-12)
         spectra = [record.spectrum(periods, of=name)[1] for record in (centered, by_reader)]
         assert spectra[0] == pytest.approx(spectra[1], rel=1e-12)
@@ -101,7 +101,7 @@ chunk = 20
 
 
 def run_and_kill(client: Any, folder: Path, pids: Any, kills: int) -> int:
-    """Runs the cheap study on a cluster and kills a worker a few times on the way; how often it was killed."""
+    """Runs the cheap study on a cluster, kills a worker a few times, and returns the number of kills."""
     killed = 0
 
     def progress(done: float, of: float, what: str) -> None:
@@ -164,7 +164,7 @@ def free_port() -> int:
 
 @pytest.fixture
 def slurm(tmp_path: Path) -> Iterator[dict[str, str]]:
-    """A cluster of one machine, of this test alone."""
+    """A cluster of one machine for this test alone."""
     for program in ("munged", "slurmctld", "slurmd", "sbatch"):
         if shutil.which(program, path=os.environ["PATH"] + ":/usr/sbin") is None:
             pytest.skip(f"no {program}")

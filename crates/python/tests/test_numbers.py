@@ -41,7 +41,7 @@ def test_every_number_of_a_summary_has_the_bits_of_the_command(
         path, value = change.split("=")
         scenario = scenario.set(path, json.loads(value.replace("'", '"')))
     found = scenario.run().summary
-    # The clock is no result.
+    # Wall-clock times are not results.
     told["run"].pop("wall_seconds", None), found["run"].pop("wall_seconds", None)
     assert found == told
     assert len(json.dumps(found)) > 1000
@@ -54,7 +54,7 @@ def test_what_would_have_helped_is_what_the_command_finds(command: str) -> None:
     told = by_command(command, "run", "demo-napa", *sets, "--json", "--quiet")["remedy"]
     found = Scenario.load("demo-napa").set(changes).run(remedy=True).summary["remedy"]
     assert told is not None
-    # What to type is the command's to say.
+    # Only the command suggests arguments.
     told.pop("comparison"), found.pop("comparison")
     assert found == told
 
@@ -123,7 +123,7 @@ def test_cases_of_a_table_have_the_bits_of_single_runs_and_of_a_study(tmp_path: 
 
 
 def test_ten_thousand_rows_are_prepared_in_seconds() -> None:
-    # What a case costs beside its steps; measured 2.3 s on two cores of which others take half.
+    # Overhead of a case besides its steps; measured 2.3 s on two half-busy cores.
     cases = [{"interface.block-ground.friction.coefficient": float(mu)} for mu in np.linspace(0.2, 0.4, 10_000)]
     base = Scenario.load("sliding-block").set("run.duration", "10 ms")
     start = time.perf_counter()

@@ -39,7 +39,7 @@ def test_arrays_make_the_record_of_their_file(napa: Record) -> None:
     parts = {channel.name: channel.acceleration / G for channel in napa.channels}
     made = Record.from_arrays(parts, napa["h1"].time_step, unit="g", raw=True)
     assert made.stage == "raw"
-    # Division by g and multiplication by it round; measured 1e-16.
+    # Rounding of a division and a multiplication by g; measured 1e-16.
     assert made.intensity("pgv")[0].values["E"] == pytest.approx(napa.intensity("pgv")[0].values["E"], rel=1e-13)
     flat = Record.from_arrays(np.sin(np.arange(500) / 20), 0.01, unit="m/s2", vertical=np.cos(np.arange(500) / 9))
     assert [channel.name for channel in flat.channels] == ["H1", "UP"]
@@ -86,7 +86,7 @@ def test_processing_is_told_step_by_step(napa: Record) -> None:
 
 
 def test_the_spectrum_is_that_of_a_closed_form() -> None:
-    # Undamped, under an acceleration a that sets in within a millisecond: the displacement peaks at 2 a/ω², so PSA is 2 a.
+    # Undamped, with an acceleration a that starts within a millisecond: displacement peaks at 2 a/ω², so PSA is 2 a.
     step = np.full(2000, 1.5)
     step[0] = 0.0
     record = Record.from_arrays(step, 0.001, unit="m/s2")

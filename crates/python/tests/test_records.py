@@ -1,4 +1,4 @@
-"""Many records: folders, measures, sets; motions that are made; what each command is in the package."""
+"""Many records: folders, measures, sets; synthetic motions; the counterpart of each command in the package."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from conftest import ROOT
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of twelve records, one of them in two files, and one file that is none."""
+    """A folder of twelve records, one of them in two files, and one file that is not a record."""
     folder = tmp_path_factory.mktemp("records")
     (folder / "near").mkdir()
     for seed in range(1, 12):
@@ -63,7 +63,7 @@ def test_a_set_is_that_of_the_command(command: str, library: Path, tmp_path: Pat
     theirs = {json.loads(line.split(",")[0]): float(line.split(",")[3]) for line in lines}
     with pytest.warns(BarrelstackWarning):
         records = read_folder(library)
-    # The command takes each record without an event of its own for one of an event of its own, as names are.
+    # The command takes each record without an event as one of a separate event, as the names do here.
     ours = select(records, (periods, median, sigma), at=1.0, epsilon=0.5, count=5, spectrum="h1", seed=3)
     assert ours.factors.keys() == theirs.keys()
     for name, factor in theirs.items():
@@ -72,7 +72,7 @@ def test_a_set_is_that_of_the_command(command: str, library: Path, tmp_path: Pat
     assert ours.target.shape == ours.found.shape == (2, 4)
     scaled = ours.records[name].spectrum(periods)[1]
     assert scaled == pytest.approx(factor * records[name].spectrum(periods)[1])
-    # Given at 1 s: all have it, and the target no spread there.
+    # Given at 1 s: all records match there, where the target has no spread.
     at = [record.spectrum([1.0])[1][0] for record in ours.records.values()]
     assert at == pytest.approx([0.8 * np.exp(0.5 * 0.65)] * 5)
     assert ours.target[1][2] == pytest.approx(0.0, abs=1e-7)
@@ -81,7 +81,7 @@ def test_a_set_is_that_of_the_command(command: str, library: Path, tmp_path: Pat
 def test_records_without_the_spectrum_are_left_out(library: Path) -> None:
     with pytest.warns(BarrelstackWarning):
         records = read_folder(library)
-    # One of the twelve has two components, whose median over directions is asked for.
+    # One of the twelve has two components, and so a median over directions.
     with pytest.warns(BarrelstackWarning, match="no rotd50 spectrum") as told, pytest.raises(RecordError):
         select(records, ([0.5, 1.0], [2.0, 1.0], [0.6, 0.6]), count=5)
     assert len([one for one in told if "left out" in str(one.message)]) == 11
@@ -149,7 +149,7 @@ def test_every_command_has_its_place_in_the_package(command: str, tmp_path: Path
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     rows = [line.split("|")[1:4] for line in text.splitlines() if line.startswith("| `")]
     told = {word.replace(" ", "-") for row in rows for word in re.findall(r"`([a-z -]+)`", row[0])}
-    # What has commands of its own is told by these; each motion of `synth` is one of its kinds.
+    # A command with subcommands is represented by these; each motion of `synth` is one of its kinds.
     groups = {name for name in names if any(other.startswith(f"{name}-") for other in names)}
     alone = {name for name in names if not name.startswith("motion-synth-")}
     assert alone - groups - told == set()

@@ -1,4 +1,4 @@
-"""What a run gives: arrays without a copy, tables, pages, progress, stops."""
+"""Results of a run: arrays without copies, tables, pages, progress, interruptions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_histories_arrive_without_a_copy(run: Run) -> None:
     one, two = run.histories["B2.1 displacement x"], run.histories["B2.1 displacement x"]
     assert one is not two
     assert address(one) == address(two)
-    # The memory is that of the run, which the array keeps alive, and not of NumPy.
+    # The memory belongs to the run, which the array keeps alive, not to NumPy.
     assert not one.flags.owndata
     assert type(one.base).__name__ == "Run"
     assert address(run.forces["R1 on ground"].vertical) == address(run.forces["R1 on ground"].vertical)
@@ -51,7 +51,7 @@ def test_histories_say_what_the_frames_say(run: Run) -> None:
     body = frames.bodies.index("B2.1")
     ground = frames.poses[:, 0, 0]
     way = frames.poses[:, body, 0] - ground - (frames.poses[0, body, 0] - ground[0])
-    # Both have rates of their own: where they meet, they tell of one state.
+    # Both have their own rates: at common times they hold the same state.
     common, of_frames, of_histories = np.intersect1d(frames.time, time, return_indices=True)
     assert len(common) > 20
     apart = run.histories["B2.1 displacement x"][of_histories] - way[of_frames]
@@ -150,7 +150,7 @@ def test_an_observer_sees_every_so_many_steps_and_stops_the_run() -> None:
         run = Scenario.load("sliding-block").observe(look, every=10)
     assert run.interrupted
     assert [steps for _, steps, _ in seen] == [10 * at for at in range(len(seen))]
-    # Half of 1 m/s is lost after 0.5 / (0.3 g) s; measured within one look, 10 steps.
+    # Half of 1 m/s is lost after 0.5 / (0.3 g) s; measured within one call, 10 steps.
     assert abs(seen[-1][0] - 0.5 / (0.3 * 9.80665)) < 0.005
 
     def fail(_: barrelstack.Glance) -> None:
@@ -215,7 +215,7 @@ def test_ctrl_c_ends_work_within_a_second(work: str, tmp_path: Path) -> None:
     # Measured 0.1 to 0.3 s.
     assert passed < 1.0, passed
     if folder.exists():
-        # What was done is kept, and nothing of it is half there.
+        # Finished chunks are kept, and no file is incomplete.
         assert not list(folder.glob("**/*.part"))
         study = barrelstack.Study.load("napa-four-levels")
         assert len(study.plan(folder)) <= len(study.plan())

@@ -27,7 +27,7 @@ cycles = 5
 
 def test_a_dict_is_the_scenario_of_the_same_text() -> None:
     assert Scenario(FOUR) == Scenario(TEXT)
-    # What stands in no text has a title of what it is.
+    # Without a text the title describes the source.
     assert Scenario(FOUR).title == "Eight barrels on four levels, sine of 0.80 s"
 
 
@@ -122,7 +122,7 @@ def test_a_scene_has_force_elements() -> None:
     scene.body("ball", shape=ball, mass="20 kg", position=["0 m", "1 m"])
     scene.element("spring", "guide", "ground", "ball", stiffness="8 kN/m", axis="90 deg", at=["0 m", "1 m"])
     (element,) = scene.run().summary["elements"]
-    # Let go at rest, it presses with twice its weight. Measured: 1e-5.
+    # Released at rest, it presses with twice its weight. Measured: 1e-5.
     assert abs(element["peak_force"]) == pytest.approx(2 * 20 * 9.80665, rel=1e-4)
     scene.element("spring", "rod", "ball", "bell", stiffness="1 kN/m")
     with pytest.raises(barrelstack.ScenarioError, match="two elements are called"):

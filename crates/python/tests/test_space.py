@@ -38,7 +38,7 @@ def test_every_number_has_the_bits_of_the_command(
     told = json.loads(done.stdout)
     scenario = Scenario.load(name)
     found = (scenario.set(changes) if changes else scenario).run_in_space().summary
-    # The clock is no result.
+    # Wall-clock times are not results.
     told["run"].pop("wall_seconds"), found["run"].pop("wall_seconds")
     assert found == told
     assert found["schema"] == "space/1"

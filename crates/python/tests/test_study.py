@@ -36,7 +36,7 @@ chunk = 4
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("study") / "six"
     study = Study(STRIPES)
-    # In an order that no machine would take, and in two processes' worth of visits.
+    # In an unusual order, and in two rounds as by two processes.
     for chunk in reversed(study.plan()):
         assert study.run_chunk(folder, chunk.number)
     assert not study.run_chunk(folder, 0)
@@ -85,7 +85,7 @@ def test_an_export_is_what_openquake_documents(folder: Path, tmp_path: Path) -> 
     assert curve.median is not None
     assert curve.dispersion is not None
     mean = 100 * curve.median * np.exp(0.5 * curve.dispersion**2)
-    # OpenQuake states a curve by the mean of its capacity, PGV in cm/s; measured 1e-15.
+    # OpenQuake states a curve by its mean capacity, PGV in cm/s; measured 1e-15.
     assert float(params.get("mean", "")) == pytest.approx(mean, rel=1e-9)
 
 

@@ -1,4 +1,4 @@
-"""Types: stubs against the module, strict checks of package and examples; names that are told."""
+"""Types: stubs against the module, strict checks of package and examples; documented names."""
 
 from __future__ import annotations
 

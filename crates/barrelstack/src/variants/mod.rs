@@ -198,7 +198,7 @@ pub fn run_some(
     Ok(whole.then_some(results))
 }
 
-/// Runs variants as [`run_some`], but keeps finished results when cancelled: all others are interrupted.
+/// Runs variants as [`run_some`], but keeps finished results when canceled: all others are interrupted.
 ///
 /// # Errors
 /// As [`run`].

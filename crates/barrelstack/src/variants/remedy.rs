@@ -284,7 +284,7 @@ impl Trial {
                 }
                 self.done.fetch_add(1, Ordering::Relaxed);
             };
-            // If it is cancelled, no variant of the block counts.
+            // If it is canceled, no variant of the block counts.
             let _ = simulate(cases, &mut Audience { tell: &mut tell, stop: &asked });
         };
         pool::map(&batches, work, &|_| ());

@@ -58,7 +58,7 @@ pub enum StudyError {
     /// A chunk that the study does not have.
     #[error("{0}")]
     Chunk(String),
-    /// The caller cancelled.
+    /// The caller canceled.
     #[error("stopped")]
     Stopped,
 }

@@ -94,7 +94,7 @@ struct Shared<'a> {
 struct State {
     /// Chunks that no thread here has taken, the next one last.
     open: Vec<usize>,
-    /// Those of them claimed by another process.
+    /// Open chunks that another process has claimed.
     elsewhere: Vec<usize>,
     /// Counts by outcome of each finished chunk.
     done: BTreeMap<usize, Tally>,
@@ -128,7 +128,7 @@ impl Study {
     ///
     /// # Errors
     /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
-    /// [`StudyError::Stopped`] when `tell` cancelled it.
+    /// [`StudyError::Stopped`] when `tell` canceled it.
     pub fn run_all(
         &self,
         folder: &Path,

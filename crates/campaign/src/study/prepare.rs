@@ -39,7 +39,7 @@ struct Built {
 }
 
 impl Study {
-    /// Computes the rows of a chunk; `None` when cancelled.
+    /// Computes the rows of a chunk; `None` when canceled.
     pub(super) fn compute(
         &self,
         chunk: usize,
@@ -65,7 +65,7 @@ impl Study {
         Ok(Some(table))
     }
 
-    /// Runs hunts side by side, one level each at a time, and returns their rows; `None` when cancelled.
+    /// Runs hunts side by side, one level each at a time, and returns their rows; `None` when canceled.
     fn hunts(
         &self,
         hunt: &Hunt,

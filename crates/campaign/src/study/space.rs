@@ -38,7 +38,7 @@ impl From<InSpace> for FinishedCase {
 }
 
 impl Study {
-    /// Runs a case in space under all components of its motion, scaled by one factor; `None` when cancelled.
+    /// Runs a case in space under all components of its motion, scaled by one factor; `None` when canceled.
     pub(super) fn run_in_space(
         &self,
         case: &Case,

@@ -34,7 +34,7 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     files
 }
 
-/// Returns a sample grown to a large file, by each way of counting of its format.
+/// Returns a sample grown to a large file, by each method of counting in its format.
 pub(crate) fn sound(sample: &[u8]) -> Vec<Vec<u8>> {
     let rows = [Counts::Values, Counts::Rows].into_iter().filter_map(|c| grown(sample, c));
     rows.chain(grown_words(sample)).collect()

@@ -349,7 +349,7 @@ class Study:
         Raises
         ------
         KeyboardInterrupt
-            Tasks that have not begun are cancelled; finished ones are kept.
+            Tasks that have not begun are canceled; finished ones are kept.
 
         Notes
         -----

@@ -103,11 +103,11 @@ impl Counts {
 pub(super) struct Found {
     /// Counts of every change of the plan; `None` for changes that were not tried.
     pub(super) counts: Vec<Option<Counts>>,
-    /// `true` if it was not cancelled.
+    /// `true` if it was not canceled.
     pub(super) complete: bool,
 }
 
-/// Number of failures of a block in each plane, or `Break` when cancelled.
+/// Number of failures of a block in each plane, or `Break` when canceled.
 pub(super) type Failed = ControlFlow<(), Vec<u32>>;
 
 /// Runs a block of variants, counted from zero, of a change.
@@ -135,7 +135,7 @@ impl<E> Search<'_, '_, E> {
             let block = self.plan.block(counts.ran);
             match (self.run)(change, block.clone())? {
                 ControlFlow::Continue(failed) => counts.add(&block, &failed),
-                // A cancelled block does not count.
+                // A canceled block does not count.
                 ControlFlow::Break(()) => {
                     self.counts[change] = Some(counts);
                     return Ok(ControlFlow::Break(()));
