@@ -28,7 +28,14 @@ fn paths_named_in(text: &str) -> Vec<String> {
 #[test]
 fn every_path_that_a_document_names_exists() {
     let mut checked = 0;
-    for name in ["README.md", "ARCHITECTURE.md", "DESIGN.md", "CONTRIBUTING.md", "GLOSSARY.md", "CHANGELOG.md"] {
+    for name in [
+        "README.md",
+        "ARCHITECTURE.md",
+        "DESIGN.md",
+        "CONTRIBUTING.md",
+        "GLOSSARY.md",
+        "CHANGELOG.md",
+    ] {
         let text = std::fs::read_to_string(root().join(name)).unwrap();
         for path in paths_named_in(&text) {
             assert!(root().join(&path).exists(), "{name} names {path}, which is not there");

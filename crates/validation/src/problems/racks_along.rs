@@ -98,16 +98,27 @@ fn named(assembly: &Assembly, name: &str) -> Result<usize, Failure> {
 /// Length, diameter at the heads and at the bilge of the barrel (m).
 const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
 
-/// Friction of the barrel on its rails.
+/// Friction of the barrel on the supports of its cradles.
 const FRICTION: f64 = 0.2;
+
+/// Angle (degrees) of the supports of a cradle from the vertical, seen along the barrel.
+const CRADLE: f64 = 28.0;
+
+/// Returns the friction of the barrel against sliding along itself: wedged between the supports of its cradles, it
+/// presses on them with `1 / cos` of what it weighs on the rail.
+fn wedged() -> f64 {
+    FRICTION / cos(CRADLE.to_radians())
+}
 
 /// Returns the push (g) from which a barrel slides on two rails that raise its right end by an angle (rad), toward
 /// that end or, with `side = -1`, away from it.
 ///
 /// Its staves are an arc about a point C high above it, so it slides by rotating about C: at the two contacts
-/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0` and about C `m d × (A, −g) = μ (N₁ + N₂) R`.
+/// `N₁ n₁ + N₂ n₂ + μ (N₁ t₁ + N₂ t₂) + m (A, −g) = 0` and about C `m d × (A, −g) = μ (N₁ + N₂) R`, with the
+/// friction of a wedge for μ.
 fn sliding(angle: f64, side: f64) -> f64 {
     let [length, head, bilge] = BARREL;
+    let friction = wedged();
     let rise = 0.5 * (bilge - head);
     let arc = (0.25 * length * length + rise * rise) / (2.0 * rise);
     // Rails at ±27 cm, 5 cm wide, corners rounded by 12 mm: the barrel touches the inner ones.
@@ -121,7 +132,7 @@ fn sliding(angle: f64, side: f64) -> f64 {
     };
     let [left, right] = [-rail, rail].map(contact);
     // The force at a contact for a unit normal force: toward C, and against the slip, which is to the right.
-    let force = |e: Vec2| Vec2::new(-e.x + FRICTION * e.z, -e.z - FRICTION * e.x);
+    let force = |e: Vec2| Vec2::new(-e.x + friction * e.z, -e.z - friction * e.x);
     let (a, b) = (force(left), force(right));
     // In units of weight: N₁ a + N₂ b = (−A, 1).
     let whole = a.x * b.z - b.x * a.z;
@@ -131,7 +142,7 @@ fn sliding(angle: f64, side: f64) -> f64 {
     };
     let excess = |push: f64| {
         let [one, other] = normal(push);
-        (-center.z * push - center.x) - FRICTION * (one + other) * arc
+        (-center.z * push - center.x) - friction * (one + other) * arc
     };
     let (zero, slope) = (excess(0.0), excess(1.0) - excess(0.0));
     -zero / slope
