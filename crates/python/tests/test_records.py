@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import csv
 import re
 import subprocess
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_a_set_is_that_of_the_command(command: str, library: Path, tmp_path: Pat
     done = subprocess.run([command, *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     lines = (tmp_path / "set" / "selection.csv").read_text().splitlines()[1:]
-    theirs = {json.loads(line.split(",")[0]): float(line.split(",")[3]) for line in lines}
+    theirs = {row[0]: float(row[3]) for row in csv.reader(lines)}
     with pytest.warns(BarrelstackWarning):
         records = read_folder(library)
     # The command takes each record without an event as one of a separate event, as the names do here.
