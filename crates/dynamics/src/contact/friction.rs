@@ -1,12 +1,11 @@
-//! Friction force as a function of normal force, slip rate and the memory of the stick.
+//! Friction force as a function of normal force, slip rate and stick memory.
 
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Space};
 
-/// A law for the friction force of one node.
+/// Friction law of one node.
 ///
-/// The force of a node in the direction opposite to its slip is returned with the sign of the slip;
-/// the contact loop applies it to the contactor with a minus.
+/// The returned force has the sign of the slip; the contact loop applies it to the contactor with a minus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrictionLaw<R = f64> {
     /// No friction.
@@ -18,12 +17,10 @@ pub enum FrictionLaw<R = f64> {
     /// f_t     = spring + c_t v_t held within ± μ fₙ
     /// ```
     ///
-    /// `s` is the stick displacement: it grows with the slip rate like any other coordinate of the
-    /// state, and only an accepted step cuts it back to what the spring may carry
-    /// ([`Stick::commit`]), so a body at rest on a slope stays there for ever.
-    /// The paper's `f_t = μ fₙ` is the sliding part of this law.
-    /// μ is the static coefficient until the force first exceeds it, and the kinetic one until the
-    /// slip turns back.
+    /// `s` is the stick displacement: it is integrated with the slip rate like any other coordinate of the state, and
+    /// only an accepted step limits it to the capacity of the spring ([`Stick::commit`]), so a body at rest on a
+    /// slope stays there for ever. The paper's `f_t = μ fₙ` is the sliding part of this law.
+    /// μ is the static coefficient until the force first exceeds it, and the kinetic one until the slip reverses.
     Coulomb {
         /// `μ_s` (1), at least the kinetic one.
         static_coefficient: R,
@@ -31,10 +28,10 @@ pub enum FrictionLaw<R = f64> {
         kinetic_coefficient: R,
         /// `k_t` (N/m).
         tangential_stiffness: R,
-        /// `c_t` (N·s/m): without it a stopped body rings on its stick for ever.
+        /// `c_t` (N·s/m): without it a stopped body vibrates on its stick for ever.
         tangential_damping: R,
     },
-    /// Coulomb's dry friction made smooth: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
+    /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
     ///
     /// It has no memory and cannot hold: under a steady tangential force `T < μ fₙ` a body creeps at
     /// `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
@@ -46,7 +43,7 @@ pub enum FrictionLaw<R = f64> {
     },
 }
 
-/// What a node remembers of its stick.
+/// Stick memory of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
     /// Elastic tangential displacement of the contactor relative to the target (m), in the frame of the
@@ -54,21 +51,21 @@ pub struct Stick<S: Space> {
     pub displacement: S::Tangent,
     /// The plane of the displacement when the last step was accepted: contacts travel over round targets.
     pub tangent_plane: S::TangentPlane,
-    /// Whether the node was slipping when the last step was accepted.
+    /// `true` if the node was slipping when the last step was accepted.
     pub slipping: <S::Real as Real>::Mask,
 }
 
-/// A friction force and what of it can be got back.
+/// A friction force, and its recoverable energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<S: Space> {
-    /// Force (N) along the slip; the contactor feels its opposite.
+    /// Force (N) along the slip; the opposite acts on the contactor.
     pub force: S::Tangent,
     /// Energy stored in the stick (J).
     pub energy: S::Real,
 }
 
 impl<R: Real> FrictionLaw<R> {
-    /// The friction of a node that slips at `slip_rate` (m/s) under a normal force (N).
+    /// Returns the friction of a node that slips at `slip_rate` (m/s) under a normal force (N).
     ///
     /// `weight` multiplies the tangential constants: 1 for constants per node, the tributary length
     /// (m) for constants per length.
@@ -107,7 +104,7 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// The stiffness (N/m) with which it holds what does not slip; zero for laws that do not hold.
+    /// Returns the tangential stiffness (N/m) of a sticking contact; zero for laws that do not stick.
     #[inline(always)]
     pub fn stick_stiffness(&self) -> R {
         match *self {
@@ -116,8 +113,8 @@ impl<R: Real> FrictionLaw<R> {
         }
     }
 
-    /// The speed (m/s) at which a body creeps under a steady tangential force that is `share` of the
-    /// friction limit (0 ≤ share < 1); zero for laws that hold.
+    /// Returns the creep speed (m/s) of a body under a steady tangential force that is `share` of the friction limit
+    /// (0 ≤ share < 1); zero for laws that stick.
     pub fn creep_speed(&self, share: f64) -> R {
         match *self {
             Self::Frictionless | Self::Coulomb { .. } => R::zero(),
@@ -129,7 +126,7 @@ impl<R: Real> FrictionLaw<R> {
 }
 
 impl<S: Space> Stick<S> {
-    /// The stick turned into the tangent plane where its contact is now.
+    /// Transports the stick into the current tangent plane of its contact.
     #[inline(always)]
     #[must_use]
     pub fn carried(self, to: S::TangentPlane) -> Self {
@@ -137,11 +134,10 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// What is remembered of a stick once a step is accepted: no more displacement than friction can
-    /// hold, and whether the node slips.
+    /// Returns the stick memory after an accepted step: the displacement limited by friction, and whether the node
+    /// slips.
     ///
-    /// `self` carries the displacement reached by the step, `weight` is that of
-    /// [`FrictionLaw::force`].
+    /// `self` has the displacement reached by the step; `weight` is that of [`FrictionLaw::force`].
     #[inline(always)]
     #[must_use]
     pub fn commit(
@@ -175,7 +171,7 @@ impl<S: Space> Stick<S> {
         if !overstretched.any() {
             return Self { slipping, ..self };
         }
-        // Where the weight is zero nothing touches, and the stick forgets anyway.
+        // A stick of weight zero has no contact and is reset anyway.
         let safe = S::Real::select(overstretched, stiffness, S::Real::splat(1.0));
         let cut = S::shorten(spring, held) * (S::Real::splat(1.0) / safe);
         let displacement = S::choose(overstretched, cut, self.displacement);

@@ -1,4 +1,4 @@
-//! What a contact pushes back with: the normal law and the friction law of an interface.
+//! Contact laws: the normal law and the friction law of an interface.
 
 mod friction;
 mod normal;
@@ -10,13 +10,12 @@ use crate::space::Space;
 pub use friction::{Friction, FrictionLaw, Stick};
 pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 
-/// What the stiffness and damping of an interface are stated for.
+/// Basis of the stiffness and damping of an interface.
 ///
-/// With constants per node, refining the nodes of a boundary stiffens the interface, so the number
-/// of nodes is then part of the physics (the paper states its constants this way).
-/// With constants per length, each node acts for its tributary length and refinement converges.
-/// With constants per seat, the nodes of a row that touch share one set of constants, so that their number changes
-/// where a seat presses and not how stiff it is.
+/// With constants per node, refining the nodes of a boundary stiffens the interface, so the number of nodes is part
+/// of the physics (the paper states its constants this way). With constants per length, each node acts for its
+/// tributary length and refinement converges. With constants per seat, the touching nodes of a row share one set of
+/// constants, so their number affects the location of the force but not the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Basis {
     /// Constants of one node (N/m, N·s/m).
@@ -25,13 +24,14 @@ pub enum Basis {
     Length,
     /// Constants of one seat (N/m, N·s/m): a place where two bodies touch, or a whole row of nodes on one surface.
     ///
-    /// A row is as deep as its deepest node, and its force is divided among its nodes in proportion to their depths.
+    /// The depth of a row is that of its deepest node, and its force is divided among its nodes in proportion to
+    /// their depths.
     Seat,
 }
 
 impl Basis {
-    /// What the constants of a node that stands for a length of boundary (m) are multiplied by; of a row of nodes on
-    /// the basis of a seat, what those of the whole row are.
+    /// Returns the factor of the constants of a node with a tributary length (m); for a row of nodes on the basis of
+    /// a seat, of those of the whole row.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {
@@ -40,7 +40,7 @@ impl Basis {
         }
     }
 
-    /// The word used in files and reports.
+    /// Returns the word used in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Node => "node",
@@ -50,8 +50,8 @@ impl Basis {
     }
 }
 
-/// Resistance to rolling: a moment against the spin ω of one body relative to the other, the normal force
-/// times a lever times `ω / √(ω² + ω₀²)`.
+/// Rolling resistance: a moment against the spin ω of one body relative to the other, the normal force times a lever
+/// times `ω / √(ω² + ω₀²)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling<R = f64> {
     /// The lever (m).
@@ -60,25 +60,26 @@ pub struct Rolling<R = f64> {
     pub spin: R,
 }
 
-/// How two kinds of surfaces push on each other.
+/// Contact laws between two kinds of surfaces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface<S: Space> {
-    /// The name, such as "rack-ground".
+    /// Name, such as "rack-ground".
     pub name: String,
-    /// Penetration and its rate to compressive force.
+    /// Normal law: compressive force from penetration and its rate.
     pub normal: NormalLaw<S::Real>,
-    /// What the surfaces meet beyond the stroke of that law; none where it has no end.
+    /// Second law beyond the stroke of the normal law; `None` for an unlimited stroke.
     pub stop: Option<Stop<S::Real>>,
-    /// How the normal force resists rolling; none where it does not.
+    /// Rolling resistance, if any.
     pub rolling: Option<Rolling<S::Real>>,
-    /// Slip to friction force.
+    /// Friction law: friction force from slip.
     pub friction: FrictionLaw<S::Real>,
-    /// What the constants are stated for.
+    /// Basis of the constants.
     pub basis: Basis,
 }
 
 impl<S: Space> Interface<S> {
-    /// The stiffness (N/m) at a penetration (m), along the normal or of the stick, whichever is more.
+    /// Returns the stiffness (N/m) at a penetration (m): that along the normal or that of the stick, whichever is
+    /// larger.
     #[inline(always)]
     pub fn stiffness(&self, depth: S::Real) -> S::Real {
         let mut normal = self.normal.tangent_stiffness(depth);

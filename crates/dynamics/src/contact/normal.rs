@@ -2,8 +2,8 @@
 
 use crate::real::{Mask, Real};
 
-/// A law for the compressive force of one node, δ its penetration (m) and δ̇ the rate (m/s,
-/// positive while approaching). No law ever pulls.
+/// Law of the compressive force of one node with penetration δ (m) and penetration rate δ̇ (m/s, positive while
+/// approaching). No law ever pulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw<R = f64> {
     /// Linear spring in parallel with a damper that acts only while the penetration grows:
@@ -40,17 +40,17 @@ pub enum NormalLaw<R = f64> {
         /// `n`.
         exponent: Exponent,
     },
-    /// An impact that gives back a stated share of its speed, whatever mass meets and however fast:
+    /// An impact that returns a given share of its speed, for any mass and speed:
     ///
     /// ```text
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
     /// ```
     ///
-    /// On approach it is the spring, on separation e² of it, so e² of the energy comes back: the loading
-    /// and unloading branches of Walton and Braun (1986), joined without memory over speeds of some `v`.
-    /// Slower than that the force is a damper besides the spring, and what it bears comes to rest.
-    /// The spring stiffens as that between round bodies does (Hertz), so that a light body rests softly
-    /// and a heavy one is stopped within millimeters.
+    /// On approach it is the spring, on separation e² of it, so e² of the energy is returned: the loading and
+    /// unloading branches of Walton and Braun (1986), joined without memory over speeds of about `v`. At lower speeds
+    /// the force is that of a spring and a damper, and bodies come to rest.
+    /// The spring stiffens as between round bodies (Hertz), so that a light body rests softly and a heavy one is
+    /// stopped within millimeters.
     Rebound {
         /// `k` (N/m^1.5).
         stiffness: R,
@@ -66,18 +66,17 @@ pub enum NormalLaw<R = f64> {
     },
 }
 
-/// The end of the stroke of a soft law: beyond a depth (m) a second law acts as well, on what the
-/// penetration is beyond it.
+/// End of the stroke of a soft law: beyond a depth (m) a second law acts as well, on the penetration in excess of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop<R = f64> {
-    /// Penetration (m) from which on it acts.
+    /// Penetration (m) beyond which it acts.
     pub depth: R,
-    /// The law that is added.
+    /// The additional law.
     pub law: NormalLaw<R>,
 }
 
 impl<R: Real> Stop<R> {
-    /// The force of the soft law, and that of the stop where it is reached, for a step (s).
+    /// Adds the force of the stop, where it is reached, to that of the soft law, for a step (s).
     #[inline(always)]
     pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
@@ -94,16 +93,16 @@ impl<R: Real> Stop<R> {
     }
 }
 
-/// How an elastic force grows with penetration.
+/// Growth of an elastic force with penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {
-    /// In proportion, `n = 1`.
+    /// Proportional, `n = 1`.
     Linear,
     /// As between spheres, `n = 3/2`.
     Hertzian,
 }
 
-/// A normal force and what of it can be got back.
+/// A normal force, and its recoverable part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalForce<R> {
     /// Compressive force (N), never negative.
@@ -115,21 +114,21 @@ pub struct NormalForce<R> {
 }
 
 impl<R: Real> NormalForce<R> {
-    /// The force that stands for a whole step (s) of central differences.
+    /// Returns the effective force of a whole step (s) of central differences.
     ///
-    /// The method takes a force as constant for half a step before and after its instant.
-    /// A spring met at a rate δ̇ has then pushed only for the time `δ/δ̇` of the half before, one that
-    /// is left will push only for the time `δ/|δ̇|` of the half after, with half its force in the mean;
-    /// and one that stiffens pushes with more than the mean of what it does along the way:
+    /// The method takes a force as constant for half a step before and after its instant. A spring engaged at a rate
+    /// δ̇ has acted only for the time `δ/δ̇` of the half before, and one that is released will act only for the time
+    /// `δ/|δ̇|` of the half after, with half its force on average; and the force of a stiffening spring exceeds its
+    /// average over the displacement:
     ///
     /// ```text
     /// elastic · (½ + (½ − b) δ/w)   where δ < w = |δ̇| Δt
     /// elastic · (1 − b (w/δ)²)      elsewhere, with the bend b = n (n − 1) / 12 of elastic ∝ δⁿ
     /// ```
     ///
-    /// So a linear spring met at a steady rate takes exactly the energy that it stores, wherever in
-    /// the step it is met, and the error of a bounce falls by orders of magnitude.
-    /// A step of zero leaves the force as it is.
+    /// So a linear spring engaged at a steady rate absorbs exactly the energy that it stores, wherever in the step it
+    /// is engaged, and the error of a bounce is smaller by orders of magnitude. A step of zero leaves the force
+    /// unchanged.
     #[inline(always)]
     #[must_use]
     pub fn within_step(self, bend: f64, depth: R, rate: R, step: R) -> Self {
@@ -152,8 +151,8 @@ impl<R: Real> NormalForce<R> {
 }
 
 impl<R: Real> NormalLaw<R> {
-    /// The force of a node with penetration `depth` (m, positive) and penetration rate `rate`
-    /// (m/s, positive while approaching).
+    /// Returns the force of a node with penetration `depth` (m, positive) and penetration rate `rate` (m/s, positive
+    /// while approaching).
     #[inline(always)]
     pub fn force(&self, depth: R, rate: R) -> NormalForce<R> {
         let zero = R::zero();
@@ -205,13 +204,13 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// The force that stands for a whole step (s): see [`NormalForce::within_step`].
+    /// Returns the effective force of a whole step (s): see [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn force_of_step(&self, depth: R, rate: R, step: R) -> NormalForce<R> {
         self.force(depth, rate).within_step(self.bend(), depth, rate, step)
     }
 
-    /// `n (n − 1) / 12` of its elastic force `∝ δⁿ`: see [`NormalForce::within_step`].
+    /// Returns `n (n − 1) / 12` of its elastic force `∝ δⁿ`: see [`NormalForce::within_step`].
     #[inline(always)]
     fn bend(&self) -> f64 {
         match self {
@@ -224,7 +223,7 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// The tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), rates left out.
+    /// Returns the tangent stiffness `∂fₙ/∂δ` (N/m) at a penetration (m), without the rate.
     #[inline(always)]
     pub fn tangent_stiffness(&self, depth: R) -> R {
         match *self {
@@ -239,7 +238,7 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// The damping `∂fₙ/∂δ̇` (N·s/m) at a penetration (m), while approaching.
+    /// Returns the damping `∂fₙ/∂δ̇` (N·s/m) at a penetration (m), on approach.
     pub fn tangent_damping(&self, depth: R) -> R {
         match *self {
             Self::SpeedGap { damping, .. } | Self::KelvinVoigt { damping, .. } => damping,
@@ -251,7 +250,7 @@ impl<R: Real> NormalLaw<R> {
                 };
                 elastic * dissipation
             }
-            // What it damps grows with the load, not with the penetration: see `Rebound`.
+            // Its damping grows with the load, not with the penetration: see `Rebound`.
             Self::Hertz { .. } | Self::Rebound { .. } => R::zero(),
         }
     }

@@ -1,22 +1,22 @@
-//! Restitution of a contact and the damping that gives it, both ways.
+//! Restitution of a contact from its damping, and the inverse.
 //!
-//! A mass `m` strikes a node of stiffness `k` and damping `c` without gravity;
-//! ζ = c / (2 √(k m)) is the damping ratio and e the ratio of the speeds after and before.
+//! For a mass `m` that strikes a node of stiffness `k` and damping `c` without gravity, ζ = c / (2 √(k m)) is the
+//! damping ratio and e the ratio of the speeds after and before.
 
 use crate::math;
 
-/// Damping ratio ζ = c / (2 √(k m)) from stiffness (N/m), damping (N·s/m) and mass (kg).
+/// Returns the damping ratio ζ = c / (2 √(k m)) from stiffness (N/m), damping (N·s/m) and mass (kg).
 pub fn damping_ratio(stiffness: f64, damping: f64, mass: f64) -> f64 {
     damping / (2.0 * (stiffness * mass).sqrt())
 }
 
-/// Damping (N·s/m) from stiffness (N/m), damping ratio (1) and mass (kg).
+/// Returns the damping (N·s/m) from stiffness (N/m), damping ratio (1) and mass (kg).
 pub fn damping(stiffness: f64, damping_ratio: f64, mass: f64) -> f64 {
     2.0 * damping_ratio * (stiffness * mass).sqrt()
 }
 
-/// Restitution of the speed-gap law at a damping ratio ζ ≥ 0:
-/// `e = exp(−ζ arccos ζ / √(1 − ζ²))`, continued by `arcosh` above ζ = 1.
+/// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`,
+/// continued by `arcosh` above ζ = 1.
 pub fn speed_gap(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let exponent = if (zeta - 1.0).abs() < 1e-7 {
@@ -30,29 +30,28 @@ pub fn speed_gap(damping_ratio: f64) -> f64 {
     math::exp(-exponent)
 }
 
-/// Restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
+/// Returns the restitution of the Kelvin–Voigt law without tension at a damping ratio ζ ≥ 0.
 ///
-/// Contact ends when the force returns to zero, before the penetration does:
-/// with `ω_d t = 2 arccos ζ` for ζ < 1, `e = exp(−2 ζ arccos ζ / √(1 − ζ²))`, which is the square of the
-/// speed-gap law's; above ζ = 1 arccos becomes arcosh.
+/// Contact ends when the force returns to zero, before the penetration does: with `ω_d t = 2 arccos ζ` for ζ < 1, `e
+/// = exp(−2 ζ arccos ζ / √(1 − ζ²))`, the square of the speed-gap law's; above ζ = 1 arccos becomes arcosh.
 pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
     let e = speed_gap(damping_ratio);
     e * e
 }
 
-/// The damping ratio ζ at which the speed-gap law shows a restitution `0 < e ≤ 1`.
+/// Returns the damping ratio ζ at which the speed-gap law has a restitution `0 < e ≤ 1`.
 ///
-/// Returns none for other values: no damping makes the rebound vanish (e → 0 only as ζ → ∞).
+/// Returns `None` for other values: no damping makes the rebound vanish (e → 0 only as ζ → ∞).
 pub fn speed_gap_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, speed_gap)
 }
 
-/// The damping ratio ζ at which the Kelvin–Voigt law shows a restitution `0 < e ≤ 1`.
+/// Returns the damping ratio ζ at which the Kelvin–Voigt law has a restitution `0 < e ≤ 1`.
 pub fn kelvin_voigt_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, kelvin_voigt)
 }
 
-/// Solves `law(ζ) = e` by bisection; the laws fall monotonically from 1.
+/// Solves `law(ζ) = e` by bisection; the laws decrease monotonically from 1.
 fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
     if !(restitution > 0.0 && restitution <= 1.0) {
         return None;
@@ -74,11 +73,11 @@ fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
     Some(0.5 * (low + high))
 }
 
-/// Restitution of the Hunt–Crossley law struck at `speed` (m/s) with dissipation `d` (s/m).
+/// Returns the restitution of the Hunt–Crossley law for an impact at `speed` (m/s) with dissipation `d` (s/m).
 ///
-/// Along the whole contact `u − ln(1 + u)`, with `u = d δ̇`, is a function of the penetration alone,
-/// so the speeds before and after satisfy `u₀ − ln(1 + u₀) = −e u₀ − ln(1 − e u₀)`.
-/// It depends on the speed: a property of the law, not of the solution.
+/// During the whole contact `u − ln(1 + u)`, with `u = d δ̇`, is a function of the penetration alone, so the speeds
+/// before and after satisfy `u₀ − ln(1 + u₀) = −e u₀ − ln(1 − e u₀)`. It depends on the speed: a property of the law,
+/// not of the solution.
 pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     let before = dissipation * speed;
     if before <= 0.0 {
@@ -96,7 +95,7 @@ pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// `u − ln(1 + u)`, by its series where the difference would cancel.
+/// Returns `u − ln(1 + u)`, by its series where the difference would cancel.
 fn excess(u: f64) -> f64 {
     if u.abs() < 1e-3 {
         u * u * (1.0 / 2.0 - u * (1.0 / 3.0 - u * (1.0 / 4.0 - u * (1.0 / 5.0 - u / 6.0))))
@@ -105,7 +104,7 @@ fn excess(u: f64) -> f64 {
     }
 }
 
-/// The Hunt–Crossley dissipation `d` (s/m) that shows a restitution `0 < e ≤ 1` at `speed` (m/s).
+/// Returns the Hunt–Crossley dissipation `d` (s/m) for a restitution `0 < e ≤ 1` at `speed` (m/s).
 pub fn hunt_crossley_dissipation(restitution: f64, speed: f64) -> Option<f64> {
     invert(restitution, |u| hunt_crossley(u, 1.0)).map(|u| u / speed)
 }

@@ -1,4 +1,4 @@
-//! The contacts of one pair: from gaps to forces on both bodies.
+//! Contacts of one pair: from gaps to forces on both bodies.
 
 mod meeting;
 mod patch;
@@ -21,10 +21,10 @@ use meeting::Meeting;
 pub(super) use meeting::Seen;
 use row::{Row, counting};
 
-/// The contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
+/// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// In lanes the paper's laws have a loop of their own, in which nothing is asked at every contact; a single number gains
-/// nothing from it.
+/// In lanes the paper's laws have a loop of their own, without dispatch per contact; single numbers gain nothing from
+/// it.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -86,7 +86,7 @@ struct Laws<R> {
     friction: FrictionLaw<R>,
 }
 
-/// The contacts of one pair by its laws.
+/// Adds the contacts of one pair for its laws.
 #[inline(always)]
 fn touch_by<S: Space>(
     pair: &ContactPair,
@@ -168,9 +168,10 @@ fn touch_by<S: Space>(
     scratch.pair_forces.push(PairForce { pair: group.pair, contactor, target, force });
 }
 
-/// Nodes of a pair that press into a surface, one after the other.
+/// Accumulator for the nodes of a pair that press into a surface.
 struct Press<'a, S: Space, L> {
-    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; none where it is infinite.
+    /// [`Substepping::whole_step_depth`](crate::model::Substepping::whole_step_depth) of the interface; `None` if
+    /// infinite.
     whole_step_depth: Option<S::Real>,
     /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
     resting_allowance: S::Real,
@@ -182,17 +183,17 @@ struct Press<'a, S: Space, L> {
     needs_substeps: <S::Real as Real>::Mask,
     /// [`Scratch::is_hard`].
     is_hard: <S::Real as Real>::Mask,
-    /// How normal forces resist rolling, if they do.
+    /// Rolling resistance of the pair, if any.
     rolling: Option<RollingPair<S::Real>>,
     stop: Option<Stop<S::Real>>,
-    /// Where the contacts of the pair count; none if everywhere.
+    /// Decision where the contacts of the pair count; `None` if everywhere.
     counted: Option<AtFace<S>>,
-    /// Told anew for every contact, so that it is known there which laws they are where that is known here.
+    /// Called once per contact, so that the compiler can specialize the loop for the laws where they are known.
     laws: L,
-    /// The step (s) that the forces stand for.
+    /// Step (s) of the effective forces.
     step: S::Real,
     frame: &'a PairFrame<S>,
-    /// How the bodies meet: known before the first node, since whether it is would be asked at every node.
+    /// Kinematics of the pair: computed before the first node, to avoid a test at every node.
     meeting: Meeting<'a, S>,
     pair: usize,
     elements: &'a ContactElements<S>,
@@ -203,8 +204,8 @@ struct Press<'a, S: Space, L> {
     contacts: Option<&'a mut Vec<Contact<S>>>,
 }
 
-/// A contact is at rest if within [`Scratch::lookahead`] its depth changes by less than this share of
-/// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
+/// A contact is at rest if its depth changes by less than this share of
+/// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance) within [`Scratch::lookahead`].
 const RESTING_SHARE: f64 = 0.01;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
@@ -293,8 +294,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Requests substeps where a node at `node` (m) will soon be deeper than whole time steps follow, wherever
-    /// it touches or is about to.
+    /// Requests substeps in lanes where a node at `node` (m) is predicted to exceed the depth that whole time steps
+    /// resolve.
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
@@ -314,7 +315,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.needs_substeps = self.needs_substeps | (near & deep);
     }
 
-    /// The moment by which a normal force (N) resists rolling.
+    /// Adds the moment by which a normal force (N) resists rolling.
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = &self.rolling else { return };
@@ -323,16 +324,16 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.sum.friction += Wrench { force: S::Vector::default(), moment };
     }
 
-    /// The forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the
-    /// target's surface. Returns the energy (J) that its spring would store if its share were one.
+    /// Adds the forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the target's
+    /// surface. Returns the energy (J) that its spring would store at full share.
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
         self.press(element, node, gap, share, None)
     }
 
-    /// The forces of a node at `node` (m) whose gap counts; its laws are asked at a depth (m) that it shares with others,
-    /// or at its own.
+    /// Adds the forces of a node at `node` (m) whose gap counts; its laws are evaluated at a depth (m) that it shares
+    /// with others, or at its own.
     #[inline(always)]
     fn press(
         &mut self,
@@ -389,12 +390,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 struct RollingPair<R> {
     /// [`Rolling::lever`].
     lever: R,
-    /// By how much (rad/s) a spin is divided to tell how much of the lever resists it.
+    /// Spin scale (rad/s): the spin over it is the active share of the lever.
     scale: R,
 }
 
 impl<R: Real> RollingPair<R> {
-    /// Of pairs that do not resist rolling no root is asked for.
+    /// Computed only for pairs with rolling resistance, since it takes a square root.
     #[inline(always)]
     fn new(rolling: Rolling<R>, spin: impl Linear<R>) -> Self {
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();
@@ -402,12 +403,12 @@ impl<R: Real> RollingPair<R> {
     }
 }
 
-/// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their
-/// moments about the contactor's center of mass.
+/// Sums of contact forces on the contactor of a pair, in the frame of the target's surface, with their moments about
+/// the contactor's center of mass.
 #[derive(Clone, Copy, Default)]
 struct PairWrench<S: Space> {
     normal: Wrench<S>,
-    /// The part of the normal forces that dampers make.
+    /// The part of the normal forces due to dampers.
     damped: Wrench<S>,
     friction: Wrench<S>,
 }

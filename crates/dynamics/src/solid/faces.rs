@@ -1,6 +1,6 @@
-//! Faces of two blocks on each other: the polygon that they share, and what each of its corners bears.
+//! Contact of the faces of two blocks: the polygon that they share, and the force share of each of its corners.
 //!
-//! As [`closest`](super::closest), all is single numbers.
+//! As in [`closest`](super::closest), all computations are scalar.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,10 +10,10 @@ use crate::math;
 use crate::shape::Gap;
 use crate::space::{Linear, Rotation3, Spatial, Vec2, Vec3};
 
-/// Corners of the polygon that two rectangles share.
+/// Maximum number of corners of the polygon that two rectangles share.
 pub(super) const MOST: usize = 8;
 
-/// How far (m) outside of a face a corner counts as one inside: corners of flush blocks coincide.
+/// Distance (m) outside of a face within which a corner counts as inside: corners of flush blocks coincide.
 const FLUSH: f64 = 1e-9;
 
 /// A corner of a shared polygon, in the frame of the target.
@@ -22,17 +22,17 @@ pub(super) struct Vertex {
     /// The point (m) of the contactor's surface.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
-    /// How many springs it stands for.
+    /// Number of springs that it represents.
     pub(super) share: f64,
-    /// By how much that grows (1/rad) as the contactor turns.
+    /// Derivative of `share` with respect to the rotation of the contactor (1/rad).
     pub(super) turning: Vec3,
 }
 
-/// What two blocks share.
+/// The shared polygon of two blocks.
 pub(super) struct Shared {
     pub(super) vertices: [Option<Vertex>; MOST],
-    /// How much of the contact the polygon bears: all where a face of either block is what meets the other,
-    /// none where an edge lies across an edge.
+    /// Share of the contact that the polygon bears: 1 where a face of either block meets the other, 0 where an edge
+    /// crosses an edge.
     pub(super) flat: f64,
     /// Unit vectors along the face of the target.
     pub(super) axes: [Vec3; 2],
@@ -45,7 +45,7 @@ enum Side {
     Target(usize),
 }
 
-/// Corners, each with the side that leaves it counterclockwise.
+/// Corners, each with the side that follows counterclockwise.
 #[derive(Clone, Copy)]
 struct Chain {
     corners: [(Vec2, Side); 2 * MOST],
@@ -60,7 +60,7 @@ impl Chain {
         }
     }
 
-    /// What of it lies before a line at a distance (m) along a unit normal: a side of the target.
+    /// Clips the polygon at a line at a distance (m) along a unit normal: a side of the target.
     fn cut(&self, normal: Vec2, distance: f64, side: usize) -> Self {
         let mut kept = Self { count: 0, ..*self };
         let past = |corner: Vec2| corner.x * normal.x + corner.z * normal.z - distance;
@@ -90,8 +90,8 @@ const SIDES: [(Vec2, Vec2); 4] = [
     (Vec2::new(0.0, -1.0), Vec2::new(-1.0, 0.0)),
 ];
 
-/// A face of a block in the frame of the target: its middle (m), two unit vectors along it and one out of
-/// it, and half its sides (m).
+/// A face of a block in the frame of the target: its middle (m), two unit vectors along it and one out of it, and
+/// half its sides (m).
 struct Face {
     middle: Vec3,
     along: [Vec3; 2],
@@ -100,8 +100,8 @@ struct Face {
 }
 
 impl Face {
-    /// The face of a block that a direction of its own frame leaves, `u × v` of its axes along `up` of the
-    /// target's frame, to which `frame` leads from `at`.
+    /// Returns the face of a block in a direction of its own frame; `frame` transforms from that frame, with its
+    /// origin at `at`, to the target's frame, where `u × v` of its axes points along `up`.
     fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
         let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let halves = [block.half.x, block.half.y, block.half.z];
@@ -121,22 +121,22 @@ impl Face {
         Self { middle, along, outward, half: [halves[next], halves[last]] }
     }
 
-    /// The corner (m) at which a side begins.
+    /// Returns the corner (m) at which a side begins.
     fn corner(&self, side: usize) -> Vec3 {
         let ends = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let (u, v) = ends[side % 4];
         self.middle + self.along[0] * (u * self.half[0]) + self.along[1] * (v * self.half[1])
     }
 
-    /// The unit vector along a side.
+    /// Returns the unit vector along a side.
     fn side(&self, side: usize) -> Vec3 {
         let along = SIDES[side % 4].0;
         self.along[0] * along.x + self.along[1] * along.z
     }
 }
 
-/// What a block with its origin at `at` (m) shares with a target, in the frame of the target, to which
-/// `frame` leads from that of the contactor; `normal` points out of the target where they are closest.
+/// Returns the polygon that a block with its origin at `at` (m) shares with a target, in the frame of the target, to
+/// which `frame` transforms from that of the contactor; `normal` points out of the target where they are closest.
 ///
 /// The two faces that meet there overlap in a polygon as seen across that of the target. Each corner of it
 /// bears like as many springs as right angles by which the polygon turns there, so the whole always bears

@@ -4,8 +4,8 @@
 //! on its support. All their other boundaries, and any other two bodies, meet in impacts only.
 //! A round barrel is tested against the solids of others with its deepest point; solids with corners are tested both
 //! ways, and every contact belongs to one round piece.
-//! A face with nodes is tested by its nodes while the body that it bears lies before it, and exactly once that body
-//! has moved beside it: so no contact is counted twice.
+//! A face with nodes is tested by its nodes while the body that it bears lies before it, and by the exact test once
+//! that body has moved beside it: so no contact is counted twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
