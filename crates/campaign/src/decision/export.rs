@@ -1,12 +1,13 @@
-//! Fragility and loss for other programs: `OpenQuake` (`nrml` 0.5) and Pelicun, with the provenance of the study.
+//! Fragility and loss for other programs, `OpenQuake` and Pelicun, with the provenance of the study.
+
+mod openquake;
 
 use std::fmt::Write as _;
 
 use barrelstack_fragility::Lognormal;
 use barrelstack_motion::STANDARD_GRAVITY;
 
-use super::cases::Case;
-use super::{Breakage, Decision};
+use super::Decision;
 use crate::scenario::quantity::plain;
 use crate::study::Provenance;
 
@@ -100,24 +101,26 @@ pub fn export(
     let imls: Vec<f64> = decision.curves[0].grid.iter().map(|x| foreign.scale * x).collect();
     found.notes.extend(crossings(&limits, &imls, measure.shown_unit));
     let about = provenance(decision, made);
-    // Pelicun uses the hyphen to divide the parts of an identifier.
-    let (openquake, in_pelicun) = (identity(asset), asset.replace('-', "."));
+    let asset = if asset.is_empty() { "stack" } else { asset };
+    let (openquake, in_pelicun) = (openquake::identity(asset), pelicun_identity(asset));
     for (program, name) in [("OpenQuake", &openquake), ("Pelicun", &in_pelicun)] {
         if name != asset {
             found.notes.push(format!("{program} takes no name like {asset}: there it is {name}"));
         }
     }
-    let fragility = fragility(&limits, &imls, &foreign, &openquake, &about);
-    found.files.push(("openquake-fragility.xml", fragility));
+    let fragility = openquake::fragility(&limits, &imls, &foreign, &openquake, &about);
+    found.files.push((openquake::FRAGILITY, fragility));
     found.files.push(("pelicun-fragility.csv", pelicun(&limits, &foreign, &in_pelicun)));
     match &decision.losses {
         Ok(_) => {
-            let text = vulnerability(decision, &foreign, &openquake, &about);
-            found.files.push(("openquake-vulnerability.xml", text));
+            let all = openquake::vulnerabilities(decision, &foreign, &openquake, &about);
+            found.files.extend(all);
         }
         Err(reason) => found.notes.push(format!("losses are left out: {reason}")),
     }
-    found.files.push(("README.txt", readme(&found.notes, &about)));
+    found.files.extend(openquake::exposure(decision, &openquake, &about));
+    let readme = readme(&found.notes, &about, &foreign, decision.losses.is_ok());
+    found.files.push(("README.txt", readme));
     Ok(found)
 }
 
@@ -150,121 +153,12 @@ fn provenance(decision: &Decision, made: &Provenance) -> String {
     )
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// Converts a name to an OpenQuake identifier: at most 75 letters, digits, colons, dashes and underscores with suffix.
-fn identity(text: &str) -> String {
-    let known = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | ':');
-    let room = 75 - "-barrels".len();
-    text.chars().take(room).map(|c| if known(c) { c } else { '_' }).collect()
-}
-
-fn numbers(values: impl IntoIterator<Item = f64>) -> String {
-    values.into_iter().map(plain).collect::<Vec<_>>().join(" ")
-}
-
-const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
-
-/// Returns mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
-fn moments(curve: &Lognormal) -> (f64, f64) {
-    let variance = curve.dispersion * curve.dispersion;
-    let mean = curve.median * libm::exp(0.5 * variance);
-    (mean, mean * libm::expm1(variance).sqrt())
-}
-
-fn fragility(
-    limits: &[(String, Lognormal)],
-    imls: &[f64],
-    foreign: &Foreign,
-    asset: &str,
-    about: &str,
-) -> String {
-    let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
-    // Outside of this range OpenQuake holds the probability constant, which changes none of four digits.
-    let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
-    let first = reaches(5e-5).fold(imls[0], f64::min);
-    let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
-    let mut text = format!(
-        "{HEAD}  <fragilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
-         <description>{}</description>\n    <limitStates>{}</limitStates>\n    \
-         <fragilityFunction id=\"{}\" format=\"continuous\" shape=\"logncdf\">\n      \
-         <imls imt=\"{}\" noDamageLimit=\"0\" minIML=\"{}\" maxIML=\"{}\"/>\n",
-        escaped(about),
-        names.join(" "),
-        asset,
-        foreign.imt,
-        plain(first),
-        plain(last)
-    );
-    for (name, curve) in limits {
-        let (mean, deviation) = moments(curve);
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "      <params ls=\"{name}\" mean=\"{}\" stddev=\"{}\"/>",
-            plain(mean),
-            plain(deviation)
-        );
-    }
-    text.push_str("    </fragilityFunction>\n  </fragilityModel>\n</nrml>\n");
-    text
-}
-
-/// Returns the share of the wine of a stack lost in burst barrels, by the central assumption; 0 without wine.
-fn wine_lost(case: &Case) -> f64 {
-    let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
-    // Start from 0: an empty sum of floats is -0.
-    let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
-    if case.wine > 0.0 { lost / case.wine } else { 0.0 }
-}
-
-/// Largest variance of a beta distribution on 0 to 1, as a share of mean × (1 − mean), which it cannot reach.
-const MOST_SCATTER: f64 = 0.999;
-
-fn vulnerability(decision: &Decision, foreign: &Foreign, asset: &str, about: &str) -> String {
-    let known = decision.cases.with_known_falls();
-    let groups = known.groups(known.main);
-    let mut text = format!(
-        "{HEAD}  <vulnerabilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
-         <description>{}; loss ratios: barrels on the floor, and wine lost (central assumption of breakage)\
-         </description>\n",
-        escaped(about)
-    );
-    let share_fallen: fn(&Case) -> f64 = Case::fallen_share;
-    for (name, of) in [("barrels", share_fallen), ("wine", wine_lost)] {
-        let (mut means, mut scatter) = (Vec::new(), Vec::new());
-        for (_, cases) in &groups {
-            let n = cases.len() as f64;
-            let mean = cases.iter().map(|case| of(case)).sum::<f64>() / n;
-            let square = cases.iter().map(|case| of(case) - mean).map(|off| off * off).sum::<f64>();
-            let variance = (square / (n - 1.0).max(1.0)).min(MOST_SCATTER * mean * (1.0 - mean));
-            means.push(mean);
-            scatter.push(if mean > 0.0 { variance.max(0.0).sqrt() / mean } else { 0.0 });
-        }
-        // Writing to a String cannot fail.
-        let _ = write!(
-            text,
-            "    <vulnerabilityFunction id=\"{}-{name}\" dist=\"BT\">\n      <imls imt=\"{}\">{}</imls>\n      \
-             <meanLRs>{}</meanLRs>\n      <covLRs>{}</covLRs>\n    </vulnerabilityFunction>\n",
-            asset,
-            foreign.imt,
-            numbers(groups.iter().map(|(x, _)| foreign.scale * x)),
-            numbers(means),
-            numbers(scatter)
-        );
-    }
-    text.push_str("  </vulnerabilityModel>\n</nrml>\n");
-    text
-}
-
-/// Writes a fragility database of one component with one damage state per limit state.
+/// A fragility database of one component, a limit state a damage state.
 fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> String {
     let mut head =
         "ID,Incomplete,Demand-Type,Demand-Unit,Demand-Offset,Demand-Directional".to_owned();
-    let quoted = asset.replace('"', "\"\"");
-    let mut row = format!("\"{quoted}\",0,{},{},0,0", foreign.demand, foreign.unit);
+    // Directional: of a demand that is not, Pelicun takes 1.2 times the largest of all directions.
+    let mut row = format!("{asset},0,{},{},0,1", foreign.demand, foreign.unit);
     for (number, (_, curve)) in (1..).zip(limits) {
         // Writing to a String cannot fail.
         let _ = write!(
@@ -276,7 +170,41 @@ fn pelicun(limits: &[(String, Lognormal)], foreign: &Foreign, asset: &str) -> St
     format!("{head}\n{row}\n")
 }
 
-fn readme(notes: &[String], about: &str) -> String {
+/// Converts a name to a Pelicun identifier: up to 75 letters, digits, underscores and, after the first sign, points; a hyphen divides the
+/// parts of an identity there.
+fn pelicun_identity(text: &str) -> String {
+    let known =
+        |(at, c): &(usize, char)| c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && *c == '.');
+    let name = text.chars().take(75).enumerate();
+    name.map(|sign| match sign {
+        sign if known(&sign) => sign.1,
+        (1.., '-') => '.',
+        _ => '_',
+    })
+    .collect()
+}
+
+fn readme(notes: &[String], about: &str, foreign: &Foreign, losses: bool) -> String {
+    use openquake::{BARRELS, EXPOSURE, FRAGILITY, MAPPING, WINE};
     let notes: Vec<String> = notes.iter().map(|note| format!("- {note}\n")).collect();
-    format!("{about}\n{}", notes.concat())
+    let risk = if losses {
+        format!(
+            " For scenario_risk: contents_vulnerability_file = {WINE} and nonstructural_vulnerability_file = {BARRELS}."
+        )
+    } else {
+        String::new()
+    };
+    format!(
+        "{about}\n{}\nIntensity: {} in {} of the horizontal component that the scenario names, as shaken, after processing \
+         and scaling. It is not the mean or the median of two components that most ground-motion models give: convert \
+         one to the other before they meet.\n\n\
+         OpenQuake: a job names exposure_file = {EXPOSURE}, taxonomy_mapping_csv = {MAPPING}, and for scenario_damage \
+         contents_fragility_file = {FRAGILITY}.{risk} The exposure is a stub, one stack at 0 E, 0 N: give places and \
+         numbers of your own. Its contents are wine (m3), what is nonstructural there are barrels.\n\n\
+         Pelicun: load pelicun-fragility.csv as a damage model. Demand-Directional is 1: a demand in the direction of \
+         the performance group is taken as it is.\n",
+        notes.concat(),
+        foreign.imt,
+        if foreign.unit == "cmps" { "cm/s" } else { foreign.unit },
+    )
 }

@@ -1,0 +1,253 @@
+//! What `OpenQuake` reads (`nrml` 0.5): fragility, vulnerability, a taxonomy mapping, and an exposure to begin with.
+
+use std::fmt::Write as _;
+
+use barrelstack_fragility::Lognormal;
+
+use super::Foreign;
+use crate::decision::cases::Case;
+use crate::decision::curve::interpolate;
+use crate::decision::{Breakage, Decision};
+use crate::scenario::quantity::plain;
+
+/// Names of the files, as the README of an export gives them.
+pub(super) const FRAGILITY: &str = "openquake-fragility.xml";
+pub(super) const WINE: &str = "openquake-vulnerability-wine.xml";
+pub(super) const BARRELS: &str = "openquake-vulnerability-barrels.xml";
+pub(super) const MAPPING: &str = "openquake-taxonomy-mapping.csv";
+pub(super) const EXPOSURE: &str = "openquake-exposure.xml";
+pub(super) const ASSETS: &str = "openquake-exposure.csv";
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Converts a name to an `OpenQuake` identifier: up to 75 letters, digits and underscores, and colons and dashes after the first.
+pub(super) fn identity(text: &str) -> String {
+    let known = |(at, c): &(usize, char)| {
+        c.is_ascii_alphanumeric() || *c == '_' || (*at > 0 && matches!(c, '-' | ':'))
+    };
+    let signs = text.chars().take(75).enumerate();
+    signs.map(|sign| if known(&sign) { sign.1 } else { '_' }).collect()
+}
+
+fn numbers(values: impl IntoIterator<Item = f64>) -> String {
+    values.into_iter().map(plain).collect::<Vec<_>>().join(" ")
+}
+
+const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<nrml xmlns=\"http://openquake.org/xmlns/nrml/0.5\">\n";
+
+/// Returns mean and standard deviation of a lognormal capacity, by which `OpenQuake` states a curve.
+fn moments(curve: &Lognormal) -> (f64, f64) {
+    let variance = curve.dispersion * curve.dispersion;
+    let mean = curve.median * libm::exp(0.5 * variance);
+    (mean, mean * libm::expm1(variance).sqrt())
+}
+
+pub(super) fn fragility(
+    limits: &[(String, Lognormal)],
+    imls: &[f64],
+    foreign: &Foreign,
+    asset: &str,
+    about: &str,
+) -> String {
+    let names: Vec<&str> = limits.iter().map(|(name, _)| name.as_str()).collect();
+    // Outside of this range OpenQuake holds the probability constant, which changes none of four digits.
+    let reaches = |p: f64| limits.iter().map(move |(_, curve)| curve.intensity(p));
+    let first = reaches(5e-5).fold(imls[0], f64::min);
+    let last = reaches(1.0 - 5e-5).fold(imls[imls.len() - 1], f64::max);
+    let mut text = format!(
+        "{HEAD}  <fragilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"contents\">\n    \
+         <description>{}</description>\n    <limitStates>{}</limitStates>\n    \
+         <fragilityFunction id=\"{}\" format=\"continuous\" shape=\"logncdf\">\n      \
+         <imls imt=\"{}\" noDamageLimit=\"0\" minIML=\"{}\" maxIML=\"{}\"/>\n",
+        escaped(about),
+        names.join(" "),
+        asset,
+        foreign.imt,
+        plain(first),
+        plain(last)
+    );
+    for (name, curve) in limits {
+        let (mean, deviation) = moments(curve);
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "      <params ls=\"{name}\" mean=\"{}\" stddev=\"{}\"/>",
+            plain(mean),
+            plain(deviation)
+        );
+    }
+    text.push_str("    </fragilityFunction>\n  </fragilityModel>\n</nrml>\n");
+    text
+}
+
+/// Returns the share of the wine of a stack that is lost in barrels that burst, by the central assumption; 0 where there is none.
+fn wine_lost(case: &Case) -> f64 {
+    let lost = |(fall, wine): (&f64, &f64)| wine * Breakage::RANGE[1].probability(*fall);
+    // From 0, since a sum of nothing is -0.
+    let lost = case.falls.iter().zip(&case.wines).map(lost).fold(0.0, |sum, lost| sum + lost);
+    if case.wine > 0.0 { lost / case.wine } else { 0.0 }
+}
+
+/// Largest share of the variance m (1 − m), which a ratio between 0 and 1 of mean m can have at most, that is written.
+///
+/// `OpenQuake` draws ratios from a beta distribution, which has less than all of it, and interpolates mean and
+/// coefficient of variation linearly, each by itself: some room is needed between two levels.
+const MOST_SCATTER: f64 = 0.99;
+
+/// The same between two levels that are written.
+const MOST_BETWEEN: f64 = 0.999;
+
+/// Largest difference of a mean that is interpolated linearly from ours, which is linear in the logarithm.
+const MEAN_TOLERANCE: f64 = 5e-4;
+
+/// A level of a vulnerability function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Level {
+    /// Intensity.
+    x: f64,
+    /// Mean loss ratio.
+    mean: f64,
+    /// Its coefficient of variation.
+    variation: f64,
+}
+
+/// Loss ratios against intensity: means, and their variance as a share of m (1 − m), at the levels of a study.
+struct Ratios {
+    means: Vec<(f64, f64)>,
+    shares: Vec<(f64, f64)>,
+}
+
+impl Ratios {
+    fn of(groups: &[(f64, Vec<&Case>)], of: impl Fn(&Case) -> f64) -> Self {
+        let (mut means, mut shares) = (Vec::new(), Vec::new());
+        for (x, cases) in groups {
+            let n = cases.len() as f64;
+            let mean = cases.iter().map(|case| of(case)).sum::<f64>() / n;
+            means.push((*x, mean));
+            // Where all or nothing is lost there is no scatter to be a share of.
+            if mean > 0.0 && mean < 1.0 {
+                let square = cases.iter().map(|case| of(case) - mean).map(|off| off * off);
+                let variance = square.sum::<f64>() / (n - 1.0).max(1.0);
+                shares.push((*x, (variance / (mean * (1.0 - mean))).min(MOST_SCATTER)));
+            }
+        }
+        Self { means, shares }
+    }
+
+    /// Returns the level at an intensity: between those of the study as everywhere in a decision, linear in the logarithm.
+    fn at(&self, x: f64) -> Level {
+        let mean = interpolate(&self.means, x);
+        // Held below the lowest level, where the mean alone goes to nothing.
+        let share =
+            self.shares.first().map_or(0.0, |(first, _)| interpolate(&self.shares, x.max(*first)));
+        let scatters = mean > 0.0 && mean < 1.0;
+        let variation = if scatters { (share * (1.0 - mean) / mean).sqrt() } else { 0.0 };
+        Level { x, mean, variation }
+    }
+
+    /// Returns the levels to be written: those of the study, and as many between them as linear interpolation needs.
+    fn levels(&self) -> Vec<Level> {
+        let Some((lowest, _)) = self.means.first() else { return Vec::new() };
+        let first = self.at(*lowest);
+        let mut found = Vec::new();
+        if first.mean > 0.0 {
+            // Below the lowest level losses are taken as in proportion to the intensity.
+            let part = 1e-3;
+            found.push(Level { x: part * first.x, mean: part * first.mean, ..first });
+        }
+        found.push(first);
+        for (x, _) in &self.means[1..] {
+            self.refine(found[found.len() - 1], self.at(*x), 0, &mut found);
+        }
+        found
+    }
+
+    /// Adds what is needed between two levels, and the second of them.
+    fn refine(&self, from: Level, to: Level, depth: u32, found: &mut Vec<Level>) {
+        let middle = self.at((from.x * to.x).sqrt());
+        if depth < 20 && !self.is_fine(from, to) {
+            self.refine(from, middle, depth + 1, found);
+            self.refine(middle, to, depth + 1, found);
+        } else {
+            found.push(to);
+        }
+    }
+
+    /// Whether what is interpolated linearly between two levels can be, and is near our own mean.
+    fn is_fine(&self, from: Level, to: Level) -> bool {
+        (1..16).map(|k| f64::from(k) / 16.0).all(|t| {
+            let between = |from: f64, to: f64| from + t * (to - from);
+            let mean = between(from.mean, to.mean);
+            let variation = between(from.variation, to.variation);
+            let off = mean - self.at(between(from.x, to.x)).mean;
+            variation * variation * mean <= MOST_BETWEEN * (1.0 - mean)
+                && off.abs() <= MEAN_TOLERANCE
+        })
+    }
+}
+
+/// Writes a vulnerability function; `loss` is what `OpenQuake` calls the kind of loss, and `ratio` the share that is lost.
+fn vulnerability(
+    decision: &Decision,
+    foreign: &Foreign,
+    asset: &str,
+    about: &str,
+    (loss, words): (&str, &str),
+    ratio: fn(&Case) -> f64,
+) -> String {
+    let known = decision.cases.with_known_falls();
+    let levels = Ratios::of(&known.groups(known.main), ratio).levels();
+    let values = |of: fn(&Level) -> f64| numbers(levels.iter().map(of));
+    format!(
+        "{HEAD}  <vulnerabilityModel id=\"barrelstack\" assetCategory=\"contents\" lossCategory=\"{loss}\">\n    \
+         <description>{}; loss ratio: {words}</description>\n    \
+         <vulnerabilityFunction id=\"{asset}\" dist=\"BT\">\n      <imls imt=\"{}\">{}</imls>\n      \
+         <meanLRs>{}</meanLRs>\n      <covLRs>{}</covLRs>\n    </vulnerabilityFunction>\n  \
+         </vulnerabilityModel>\n</nrml>\n",
+        escaped(about),
+        foreign.imt,
+        numbers(levels.iter().map(|level| foreign.scale * level.x)),
+        values(|level| level.mean),
+        values(|level| level.variation)
+    )
+}
+
+/// Writes both vulnerability functions: of the barrels and of the wine.
+pub(super) fn vulnerabilities(
+    decision: &Decision,
+    foreign: &Foreign,
+    asset: &str,
+    about: &str,
+) -> [(&'static str, String); 2] {
+    let barrels = ("nonstructural", "share of the barrels that fall");
+    let wine = ("contents", "share of the wine that is lost (central assumption of breakage)");
+    [
+        (BARRELS, vulnerability(decision, foreign, asset, about, barrels, Case::fallen_share)),
+        (WINE, vulnerability(decision, foreign, asset, about, wine, wine_lost)),
+    ]
+}
+
+/// Writes a stub of an exposure, one stack at 0° E, 0° N, with its taxonomy mapping: its wine (m³) as contents, its barrels as what is nonstructural.
+pub(super) fn exposure(
+    decision: &Decision,
+    asset: &str,
+    about: &str,
+) -> [(&'static str, String); 3] {
+    let model = format!(
+        "{HEAD}  <exposureModel id=\"barrelstack\" category=\"contents\" taxonomySource=\"barrelstack\">\n    \
+         <description>{}</description>\n    <conversions>\n      <costTypes>\n        \
+         <costType name=\"contents\" type=\"per_asset\" unit=\"m3\"/>\n        \
+         <costType name=\"nonstructural\" type=\"per_asset\" unit=\"barrels\"/>\n      </costTypes>\n    \
+         </conversions>\n    <assets>{ASSETS}</assets>\n  </exposureModel>\n</nrml>\n",
+        escaped(about)
+    );
+    let assets = format!(
+        "id,lon,lat,taxonomy,number,contents,nonstructural\nstack_1,0,0,{asset},1,{},{}\n",
+        plain(decision.cases.most_wine()),
+        decision.cases.most_barrels()
+    );
+    let mapping = format!("taxonomy,risk_id,weight\n{asset},{asset},1\n");
+    [(EXPOSURE, model), (ASSETS, assets), (MAPPING, mapping)]
+}
