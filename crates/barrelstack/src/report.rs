@@ -13,6 +13,7 @@ mod words;
 use barrelstack_report::{Block, Document, Tone, Verdict};
 
 pub(crate) use drawing::ground_histories;
+pub use drawing::ground_history;
 pub use drawing::{legend, scene};
 
 use crate::assemble::{AssembleError, Assembly, assemble};

@@ -196,6 +196,15 @@ pub(super) fn envelope(run: &Run, number: u32, id: &str, caption: &str) -> Optio
     Some(Block::Figure(Figure { id: id.to_owned(), caption: caption.to_owned(), ..figure }))
 }
 
+/// Returns the displacement (m) along `x` of a body relative to the ground when it had fallen.
+pub(super) fn place_at_fall(run: &Run, name: &str) -> Option<f64> {
+    let body = run.assembly.parts.iter().position(|part| part.name == name)?;
+    let fell = run.fates.fate(body).fell_at?;
+    let (times, channel) = (&run.recording.times, run.recording.displacement(name)?);
+    let at = times.iter().position(|time| *time >= fell).or(times.len().checked_sub(1))?;
+    channel.values.get(at).copied()
+}
+
 /// Returns the lengths of boundary (m) under stress at rest and at any time while the stack stood, on the upper or
 /// the lower half of a barrel.
 pub(super) fn footprint(run: &Run, name: &str, upper: bool) -> Option<[f64; 2]> {

@@ -17,6 +17,7 @@ mod pool;
 mod racks;
 mod results;
 mod rows;
+mod stress;
 mod study;
 mod tornado;
 mod vary;

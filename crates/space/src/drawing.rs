@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use barrelstack::assemble::PartKind;
+use barrelstack::motion::STANDARD_GRAVITY;
 use barrelstack::outcome::Outcome;
+use barrelstack::report::ground_history;
 use barrelstack::scenario;
 use barrelstack::watch::ElementFate;
 use barrelstack_dynamics::{
@@ -298,29 +300,12 @@ fn moment(run: &Run, first: &[usize]) -> Option<Moment> {
 
 /// Returns the acceleration of the ground along each axis of the stack, over gravity.
 pub fn ground_histories(run: &Run) -> Vec<History> {
-    use barrelstack_dynamics::Drive as _;
-    /// Time step (s) of the values.
-    const STEP: f64 = 0.02;
-    if run.ground.first.motion.is_none() {
-        return Vec::new();
-    }
-    let gravity = run.scenario.run.gravity;
-    let mut times = Vec::new();
-    while times.len() as f64 * STEP <= run.end_time {
-        times.push(times.len() as f64 * STEP);
-    }
-    let speed = |time: f64| run.ground.at(time).1;
-    let history = |words: &str, of: &dyn Fn(Vec3) -> f64| History {
-        label: format!("ground acceleration, {words}"),
-        unit: "g".to_owned(),
-        values: times
-            .iter()
-            .map(|time| {
-                let (from, to) = ((time - 0.5 * STEP).max(0.0), time + 0.5 * STEP);
-                (of(speed(to)) - of(speed(from))) / (to - from) / gravity
-            })
-            .collect(),
-        times: times.clone(),
+    let Some(motion) = &run.ground.first.motion else { return Vec::new() };
+    let step = motion.horizontal.natural_step();
+    let history = |words: &str, of: &dyn Fn(Vec3) -> f64| {
+        let value = |time: f64| of(run.ground.acceleration(time)) / STANDARD_GRAVITY;
+        let label = format!("ground acceleration, {words}");
+        ground_history(&label, "g", (step, run.end_time), &value)
     };
     let free = run.stack.is_free();
     vec![

@@ -124,8 +124,14 @@ impl From<barrelstack::Ground> for Ground {
     }
 }
 
-impl Drive<Spatial> for Ground {
-    fn at(&self, time: f64) -> (Vec3, Vec3) {
+impl Ground {
+    /// Acceleration (m/s²) at a time (s).
+    pub fn acceleration(&self, time: f64) -> Vec3 {
+        self.kinematics(time)[2]
+    }
+
+    /// Displacement (m), velocity (m/s) and acceleration (m/s²) at a time (s).
+    fn kinematics(&self, time: f64) -> [Vec3; 3] {
         let Some(motion) = &self.first.motion else { return Default::default() };
         let first = motion.horizontal.at(time);
         let second = self.second.as_ref().and_then(|ground| ground.motion.as_ref());
@@ -136,9 +142,17 @@ impl Drive<Spatial> for Ground {
             let b = hand * other;
             Vec3::new(cos * a + sin * b, cos * b - sin * a, up)
         };
-        (
+        [
             turned(first.displacement, second.displacement, up.displacement),
             turned(first.velocity, second.velocity, up.velocity),
-        )
+            turned(first.acceleration, second.acceleration, up.acceleration),
+        ]
+    }
+}
+
+impl Drive<Spatial> for Ground {
+    fn at(&self, time: f64) -> (Vec3, Vec3) {
+        let [displacement, velocity, _] = self.kinematics(time);
+        (displacement, velocity)
     }
 }

@@ -268,18 +268,44 @@ fn events(run: &Run) -> Vec<Event> {
 
 /// Returns acceleration and velocity of the ground; empty without a motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
-    if run.ground.motion.is_none() {
-        return Vec::new();
+    let Some(motion) = &run.ground.motion else { return Vec::new() };
+    let horizontal = &motion.horizontal;
+    let step = horizontal.natural_step();
+    let acceleration = |time: f64| horizontal.at(time).acceleration / STANDARD_GRAVITY;
+    let velocity = |time: f64| 100.0 * horizontal.at(time).velocity;
+    vec![
+        ground_history("ground acceleration", "g", (step, run.end_time), &acceleration),
+        ground_history("ground velocity", "cm/s", (step, run.end_time), &velocity),
+    ]
+}
+
+/// The history of a quantity of the ground, thinned for a picture: of the samples of the motion, `step` (s) apart until
+/// `end` (s), the largest in size of every fiftieth of a second at its own time, so that peaks are those of the motion.
+pub fn ground_history(
+    label: &str,
+    unit: &str,
+    (step, end): (f64, f64),
+    value: &dyn Fn(f64) -> f64,
+) -> History {
+    /// Samples of a picture per second.
+    const RATE: f64 = 50.0;
+    let (mut times, mut values): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let step = step.max(1e-4);
+    let samples = (0..).map(|sample| f64::from(sample) * step);
+    for time in samples.take_while(|time| *time <= end) {
+        let sample = value(time);
+        let bin = |time: f64| (time * RATE + 1e-6).floor();
+        match (times.last_mut(), values.last_mut()) {
+            (Some(last), Some(most)) if bin(*last) == bin(time) => {
+                if sample.abs() > most.abs() {
+                    (*last, *most) = (time, sample);
+                }
+            }
+            _ => {
+                times.push(time);
+                values.push(sample);
+            }
+        }
     }
-    let recording = &run.recording;
-    let history = |(channel, label, unit, factor): (&str, &str, &str, f64)| {
-        let values = recording.channel(channel)?.values.iter().map(|v| v * factor).collect();
-        let (label, unit) = (label.to_owned(), unit.to_owned());
-        Some(History { label, unit, times: recording.times.clone(), values })
-    };
-    let shown = [
-        ("ground acceleration x", "ground acceleration", "g", 1.0 / STANDARD_GRAVITY),
-        ("ground velocity x", "ground velocity", "cm/s", 100.0),
-    ];
-    shown.into_iter().filter_map(history).collect()
+    History { label: label.to_owned(), unit: unit.to_owned(), times, values }
 }
