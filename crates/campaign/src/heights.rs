@@ -5,8 +5,11 @@
 
 mod field;
 mod json;
+mod margin;
 mod page;
 mod plan;
+#[cfg(test)]
+mod tests;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -15,6 +18,7 @@ use barrelstack_fragility::{Interval, Stripe, clopper_pearson};
 use barrelstack_report::Document;
 
 use crate::decision::{Case, Cases, DecisionError, LimitCurve, LimitState};
+use crate::run::RunFailure;
 use crate::study::{Collected, Progress, RunOptions, Study, StudyError, Value};
 use crate::system;
 
@@ -63,6 +67,9 @@ pub struct Height {
     pub by_acceleration: LimitCurve,
     /// Share of the barrels that fall, one for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
+    /// Static margin (m/s²): the horizontal acceleration at which it comes apart when that grows slowly, with the friction
+    /// of the catalog; none where it stands until 1 g.
+    pub static_margin: Option<f64>,
 }
 
 /// Results of stacks of one height in one direction at one level of PGV.
@@ -166,6 +173,9 @@ pub enum HeightsError {
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A stack cannot be built, or does not come to rest.
+    #[error(transparent)]
+    Stack(RunFailure),
     /// Its cases do not support a decision.
     #[error(transparent)]
     Decision(#[from] DecisionError),
@@ -204,7 +214,16 @@ pub fn heights(
         found.push((*view, *recorded, study.run(&place, options, &report)?));
         before += study.cases();
     }
-    gather(request, &found)
+    let stacks: Vec<(u32, View)> =
+        View::ALL.into_iter().flat_map(|view| HEIGHTS.map(|levels| (levels, view))).collect();
+    let margins = margin::margins(request, &stacks, &|| tell(all, all))?;
+    let mut found = gather(request, &found)?;
+    for height in &mut found.heights {
+        let at = stacks.iter().position(|of| *of == (height.levels, height.view));
+        height.static_margin = at.and_then(|at| margins[at]);
+    }
+    found.document = page::document(&found);
+    Ok(found)
 }
 
 /// Gathers the results from the tables.
@@ -241,7 +260,6 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
         document: Document::default(),
     };
     all.warnings = page::warnings(&all);
-    all.document = page::document(&all);
     Ok(all)
 }
 
@@ -255,6 +273,7 @@ fn height(cases: &Cases, levels: u32, view: View) -> Height {
         levels,
         view,
         fallen: fallen.collect(),
+        static_margin: None,
         by_velocity: LimitCurve::of(cases, LimitState::SeatLost, cases.main),
         by_acceleration: LimitCurve::of(cases, LimitState::SeatLost, pga.unwrap_or(cases.main)),
     }

@@ -81,6 +81,22 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     assert_eq!(json(&found), json(&resumed));
     assert_eq!(html(&found.document), html(&resumed.document));
 
+    // One count of what was tried, in the sentence, on the page and in the numbers; the stack as it is is none of it.
+    let tries = (found.all.len() - 1).to_string();
+    let said = &found.document.verdict.sentences;
+    assert!(
+        said.iter().any(|one| one.starts_with(&format!("{tries} protections were tried"))),
+        "{said:?}"
+    );
+    let of_page =
+        found.document.provenance.iter().find(|(name, _)| name.starts_with("protections tried"));
+    assert_eq!(of_page.map(|(_, value)| value), Some(&tries));
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&json(&found)).unwrap()["tries"].to_string(),
+        tries
+    );
+    assert!(!html(&found.document).contains("-0.00"));
+
     // Every tried protection is a change of the scenario that is valid on its own.
     let mut kinds = BTreeMap::<&str, usize>::new();
     for one in &found.all {

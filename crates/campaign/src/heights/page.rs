@@ -6,7 +6,7 @@ use barrelstack_report::{
 };
 
 use super::plan::{HEIGHTS, VELOCITIES};
-use super::{AtLevel, Heights, field};
+use super::{AtLevel, Height, Heights, field};
 use crate::decision::{
     LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
     text,
@@ -105,11 +105,12 @@ fn fewest_motions() -> u32 {
 }
 
 fn headline(all: &Heights) -> String {
+    let racks = format!("on {} racks", all.request.rack);
     let motions = u32::try_from(all.motions).unwrap_or(u32::MAX);
     if motions < fewest_motions() {
         let more = fewest_motions() - motions;
         return format!(
-            "Too few motions to call anything low in risk: {motions} shook every stack, and {more} more would do."
+            "Too few motions to call any stack {racks} low in risk: {motions} shook every stack, and {more} more would do."
         );
     }
     // From the weakest shaking up to the first level that is not low: if each level were tested independently,
@@ -117,16 +118,32 @@ fn headline(all: &Heights) -> String {
     let low =
         VELOCITIES.into_iter().map_while(|velocity| Some((velocity, highest_low(all, velocity)?)));
     let Some((velocity, levels)) = low.last() else {
-        return format!("Not even two levels are low in risk in {}.", named(VELOCITIES[0]));
+        return format!(
+            "Not even two levels {racks} are low in risk in {}{}.",
+            named(VELOCITIES[0]),
+            weaker(all, VELOCITIES[0])
+        );
     };
     let next = VELOCITIES.into_iter().find(|other| *other > velocity);
     format!(
-        "Up to {levels} levels are low in risk in {}: {}{}.",
+        "Up to {levels} levels {racks} are low in risk in {}, across the barrels and along them: {}{}.",
         named(velocity),
         found(all, levels, velocity),
-        next.map(|next| format!("; in {} not even two levels are", named(next)))
-            .unwrap_or_default()
+        next.map(|next| {
+            format!("; in {} not even two levels are{}", named(next), weaker(all, next))
+        })
+        .unwrap_or_default()
     )
+}
+
+/// Names the directions in which two levels are not low in risk at a level of PGV (m/s): ", along the barrels".
+fn weaker(all: &Heights, velocity: f64) -> String {
+    let low = |view: &View| {
+        let at = all.of(HEIGHTS[0], *view).and_then(|height| height.at(velocity));
+        at.is_none_or(|at| rating(&at) == Rating::Good)
+    };
+    let not: Vec<&str> = View::ALL.into_iter().filter(|view| !low(view)).map(View::words).collect();
+    if not.is_empty() { String::new() } else { format!(", {}", not.join(" and ")) }
 }
 
 /// Describes the worst of all stacks of up to some levels at a level of PGV (m/s), all of which were counted:
@@ -167,7 +184,31 @@ fn sentences(all: &Heights) -> Vec<String> {
             percent(high)
         ));
     }
+    // None has no limit below 1 g.
+    let least = |height: &&Height| height.static_margin.unwrap_or(f64::INFINITY);
+    let weakest = all.heights.iter().min_by(|a, b| least(a).total_cmp(&least(b)));
+    if let Some((height, margin)) = weakest.and_then(|height| Some((height, height.static_margin?)))
+    {
+        said.push(format!(
+            "{} levels have the smallest static margin, {}: they come apart under a steady push of {}, as on a floor \
+             tilted by {:.0} degrees.",
+            height.levels,
+            height.view.words(),
+            gravities(margin),
+            tilt(margin)
+        ));
+    }
     said
+}
+
+/// An acceleration (m/s²) over gravity: "0.12 g".
+fn gravities(acceleration: f64) -> String {
+    format!("{:.2} g", acceleration / barrelstack_motion::STANDARD_GRAVITY)
+}
+
+/// The tilt (degrees) of a floor on which gravity pulls sideways as an acceleration (m/s²) does.
+fn tilt(acceleration: f64) -> f64 {
+    libm::atan(acceleration / barrelstack_motion::STANDARD_GRAVITY).to_degrees()
 }
 
 fn blocks(all: &Heights) -> Vec<Block> {
@@ -190,6 +231,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
         ),
         Block::Figure(chart(all)),
         heading("Both directions"),
+        Block::Table(static_margins(all)),
     ];
     for view in View::ALL {
         blocks.push(Block::Table(direction(all, view)));
@@ -257,6 +299,30 @@ fn direction(all: &Heights, view: View) -> Table {
                 }),
             )
         },
+    )
+}
+
+/// What each height bears of a push that grows slowly, beside the shaking at which it begins to collapse.
+fn static_margins(all: &Heights) -> Table {
+    let first = |height: &Height| {
+        let falls = |at: &AtLevel| at.stripe.failures > 0;
+        let level = VELOCITIES.into_iter().find(|v| height.at(*v).as_ref().is_some_and(falls));
+        level.map_or_else(|| "at none".to_owned(), shaking)
+    };
+    Table::of(
+        "Static margin: the horizontal acceleration at which a stack comes apart when it grows slowly, within a minute, and \
+         the tilt of a floor that does the same; with the friction and the seats of the catalog. Shaking whose pulses last \
+         as long as the stack takes to tip fells it little above that.",
+        &all.heights,
+        &[
+            ("levels", "", &|height| Cell::text(height.levels.to_string())),
+            ("pushed", "", &|height| Cell::text(height.view.words())),
+            ("static margin", "", &|height| {
+                Cell::text(height.static_margin.map_or_else(|| "above 1 g".to_owned(), gravities))
+            }),
+            ("tilt", "degrees", &|height| Cell::number(height.static_margin.map(tilt), 2)),
+            ("some collapse from", "", &|height| Cell::text(first(height))),
+        ],
     )
 }
 

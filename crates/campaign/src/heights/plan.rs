@@ -21,22 +21,7 @@ pub(super) fn name(view: View, recorded: bool) -> String {
 
 /// Returns the text of a study: every height under every motion at every level, or under the bundled record unscaled.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
-    let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
-        let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
-        HeightsError::Rack(request.rack.clone(), known.join(", "))
-    })?;
-    if catalog::barrel(&request.barrel).is_none() {
-        let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
-        return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
-    }
-    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge needs
-    // only a closer node spacing.
-    let (columns, rack) = match view {
-        View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
-        View::Longitudinal => {
-            (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.base))
-        }
-    };
+    let (columns, rack) = columns_and_rack(request, view)?;
     let levels: Vec<String> = HEIGHTS.iter().map(u32::to_string).collect();
     let mut text = format!(
         "schema = 1\n\
@@ -62,12 +47,7 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         levels.join(", ")
     );
     if !recorded {
-        let stack = format!(
-            "schema = 1\n[stack]\nlevels = 2\ncolumns = {columns}\nview = \"{}\"\nbarrel = \"{}\"\nrack = {rack}\n\
-             [motion]\nnone = true\n",
-            view.name(),
-            request.barrel
-        );
+        let stack = format!("schema = 1\n{}[motion]\nnone = true\n", stack(request, view, 2)?);
         let stack = Scenario::from_str(&stack).map_err(StudyError::from)?;
         text.push_str(&factors(&stack));
     }
@@ -88,6 +68,36 @@ pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<Stri
         velocities.join(", ")
     );
     Ok(text)
+}
+
+/// Returns the columns of a stack in a direction, and its rack as TOML.
+fn columns_and_rack(request: &Request, view: View) -> Result<(u32, String), HeightsError> {
+    let catalog::CatalogRack { rack, .. } = catalog::rack(&request.rack).ok_or_else(|| {
+        let known: Vec<&str> = catalog::RACKS.iter().map(|known| known.rack.base).collect();
+        HeightsError::Rack(request.rack.clone(), known.join(", "))
+    })?;
+    if catalog::barrel(&request.barrel).is_none() {
+        let known: Vec<&str> = catalog::BARRELS.iter().map(|known| known.name).collect();
+        return Err(HeightsError::Barrel(request.barrel.clone(), known.join(", ")));
+    }
+    // Along the barrels one rack is one column, and a rail that touches a bulged stave at its inner edge needs
+    // only a closer node spacing.
+    Ok(match view {
+        View::Transverse => (rack.barrels, format!("\"{}\"", rack.base)),
+        View::Longitudinal => {
+            (1, format!("{{ base = \"{}\", node_spacing = \"5 mm\" }}", rack.base))
+        }
+    })
+}
+
+/// Returns the table `[stack]` of a number of levels.
+pub(super) fn stack(request: &Request, view: View, levels: u32) -> Result<String, HeightsError> {
+    let (columns, rack) = columns_and_rack(request, view)?;
+    Ok(format!(
+        "[stack]\nlevels = {levels}\ncolumns = {columns}\nview = \"{}\"\nbarrel = \"{}\"\nrack = {rack}\n",
+        view.name(),
+        request.barrel
+    ))
 }
 
 /// Returns a path as a string of TOML, absolute so that it is valid wherever the study lies.

@@ -32,7 +32,7 @@ pub(super) fn document(all: &Ranking, before_and_after: Vec<Block>) -> Document 
         },
         blocks,
         provenance: vec![
-            ("protections tried".into(), all.all.len().to_string()),
+            ("protections tried beside the stack as it is".into(), all.tries().to_string()),
             ("runs".into(), all.runs.to_string()),
             ("seed".into(), all.request.seed.to_string()),
             ("program".into(), format!("barrelstack {}", env!("CARGO_PKG_VERSION"))),
@@ -179,7 +179,11 @@ fn table(all: &Ranking) -> Table {
         one.worn.as_ref().map(|(words, worn)| format!("{} {words}", interval(all, worn)))
     };
     Table::of(
-        format!("Every protection that was tried, {}; in brackets 95 % intervals.", per(all)),
+        format!(
+            "The stack as it is and every one of the {} protections that were tried, {}; in brackets 95 % intervals.",
+            all.tries(),
+            per(all)
+        ),
         &all.all,
         &[
             ("protection", "", &|one| name(one)),

@@ -120,9 +120,11 @@ impl Runs {
         tries: usize,
     ) -> Option<Estimate> {
         let (own, other) = (self.by_motion(quantity, weights), other.by_motion(quantity, weights));
-        let differences: Vec<f64> =
-            own.iter().filter_map(|(name, value)| Some(other.get(name)? - value)).collect();
         let most = most * weights.iter().sum::<f64>();
+        // What rounding leaves of two that are equal is no difference.
+        let exact = |less: f64| if less.abs() > 1e-12 * most { less } else { 0.0 };
+        let differences: Vec<f64> =
+            own.iter().filter_map(|(name, value)| Some(exact(other.get(name)? - value))).collect();
         let Interval { low, high } = mean_difference(&differences, most, LEVEL, tries)?;
         let mean = differences.iter().sum::<f64>() / differences.len() as f64;
         Some(Estimate { mean, low, high })
@@ -233,6 +235,9 @@ mod tests {
         // Two records once gave 2.00 (2.00 to 2.00) as significant.
         let two = less(&[2.0, 2.0], &[4.0, 4.0], 1);
         assert!(two.mean == 2.0 && two.low < 0.0 && two.high > 4.0, "{two:?}");
+        // Two that differ by rounding alone do not differ, and zero has no sign.
+        let same = less(&[0.1 + 0.2, 0.3], &[0.3, 0.3], 1);
+        assert!(same.mean == 0.0 && same.mean.is_sign_positive(), "{same:?}");
         let falls = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0];
         let all = [8.0, 6.0, 4.0, 6.0, 7.0, 5.0, 4.0, 8.0, 8.0, 4.0, 2.0, 5.0];
         let [one, many] = [1, 60].map(|tries| less(&falls, &all, tries));

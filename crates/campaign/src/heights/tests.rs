@@ -1,0 +1,113 @@
+//! What the page of heights says of given counts.
+
+use barrelstack_fragility::{FitError, Monotony, Stripe};
+use barrelstack_report::{Document, markdown};
+
+use super::page::document;
+use super::*;
+use crate::decision::BandKind;
+
+/// A curve of counts alone, of 24 motions at each level of shaking.
+fn curve(failures: impl Fn(f64) -> u32) -> LimitCurve {
+    let stripe =
+        |velocity: f64| Stripe { intensity: velocity, cases: 24, failures: failures(velocity) };
+    let stripes: Vec<Stripe> = VELOCITIES.into_iter().map(stripe).collect();
+    let monotony = Monotony {
+        stripes: stripes.clone(),
+        isotonic: Vec::new(),
+        deviance: 0.0,
+        p: 1.0,
+        falls: Vec::new(),
+    };
+    LimitCurve {
+        limit: LimitState::SeatLost,
+        measure: 0,
+        stripes,
+        intervals: Vec::new(),
+        fit: Err(FitError::Empty),
+        grid: Vec::new(),
+        band: Vec::new(),
+        median: None,
+        band_kind: BandKind::None,
+        left_out: None,
+        goodness: None,
+        monotony,
+        returned: Vec::new(),
+    }
+}
+
+/// Heights of which `failures` fall at a level of shaking, by levels and direction.
+fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
+    let height = |levels: u32, view: View| Height {
+        levels,
+        view,
+        by_velocity: curve(|velocity| failures(levels, view, velocity)),
+        by_acceleration: curve(|velocity| failures(levels, view, velocity)),
+        fallen: vec![0.0; VELOCITIES.len()],
+        static_margin: (view == View::Longitudinal).then(|| 9.806_65 * 0.6 / f64::from(levels)),
+    };
+    let heights =
+        View::ALL.into_iter().flat_map(|view| HEIGHTS.map(|levels| height(levels, view))).collect();
+    Heights {
+        request: Request::default(),
+        heights,
+        recorded: Vec::new(),
+        motions: 24,
+        runs: 1440,
+        left_out: 0,
+        fallen_at_rest: 0,
+        ends: Vec::new(),
+        warnings: Vec::new(),
+        document: Document::default(),
+    }
+}
+
+#[test]
+fn every_headline_says_the_rack_and_the_direction() {
+    // Along the barrels all fall beyond 24 cm/s, and one stack of six levels at 24 cm/s.
+    let along = |levels: u32, view: View, velocity: f64| match view {
+        View::Transverse => 0,
+        View::Longitudinal if velocity > 0.3 => 24,
+        View::Longitudinal => u32::from(levels == 6 && velocity > 0.2),
+    };
+    let page = document(&made(along));
+    assert_eq!(
+        page.verdict.headline,
+        "Up to 5 levels on two-barrel racks are low in risk in very strong shaking (24 cm/s), across the barrels and \
+         along them: in 24 motions none fell: at most 12 % (95 %); in severe shaking (36 cm/s) not even two levels are, \
+         along the barrels."
+    );
+    // One of 24 leaves up to 18 % possible and is not low.
+    let one = document(&made(|_, view, _| u32::from(view == View::Transverse)));
+    assert_eq!(
+        one.verdict.headline,
+        "Not even two levels on two-barrel racks are low in risk in strong shaking (12 cm/s), across the barrels."
+    );
+    let few = document(&Heights { motions: 5, ..made(along) });
+    assert!(
+        few.verdict
+            .headline
+            .contains("any stack on two-barrel racks low in risk: 5 shook every stack")
+    );
+}
+
+#[test]
+fn static_margins_stand_beside_each_height() {
+    let page = document(&made(|levels, view, velocity| {
+        u32::from(view == View::Longitudinal && (levels == 6 || velocity > 0.2))
+    }));
+    let last = page.verdict.sentences.last().unwrap();
+    assert_eq!(
+        last,
+        "6 levels have the smallest static margin, along the barrels: they come apart under a steady push of 0.10 g, as \
+         on a floor tilted by 6 degrees."
+    );
+    let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
+    for row in [
+        "| 6 | along the barrels | 0.10 g | 5.7 | 12 cm/s |",
+        "| 2 | along the barrels | 0.30 g | 17 | 24 cm/s |",
+        "| 2 | across the barrels | above 1 g | – | at none |",
+    ] {
+        assert!(text.contains(row), "{row}\n{text}");
+    }
+}
