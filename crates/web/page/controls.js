@@ -115,7 +115,11 @@ function makeControls(find, catalog, changed) {
         // Not while it is being moved.
         if (document.activeElement !== strength) strength.value = stepAt(velocity);
         feel(velocity);
-        find("motion").textContent = `${motion.name}, ${motion.duration.toFixed(0)} s, peak acceleration ${(motion.pga / 9.80665).toPrecision(2)} g`;
+        // Each plane has a component of its own.
+        const shaken = look.checked.filter((plane) => plane.motion), several = shaken.length > 1;
+        const place = ({ view }) => (several ? (view === "longitudinal" ? "along the barrels " : "across the barrels ") : "");
+        const planes = shaken.map((plane) => `${place(plane)}${plane.motion.name}, peak acceleration ${(plane.motion.pga / 9.80665).toPrecision(2)} g`);
+        find("motion").textContent = `${planes.join("; ")}; ${motion.duration.toFixed(0)} s`;
       } else {
         find("feels").textContent = "Nothing shakes it.";
         find("motion").textContent = "Drop a record here.";

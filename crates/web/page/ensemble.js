@@ -1,6 +1,7 @@
 // All variants of a stack, shared among the engines; what they say so far is told by one of them after each share.
 
 const SHARE = 4; // variants that an engine takes at once: half a second of work for a stack of the catalog
+const FEWEST = 8; // variants from which a verdict is stated before all are in
 
 // Numbers in the order in which they are run: the stack as it is stated first, then from both halves in turn, since the
 // second half of a stack that is looked at in both planes has the components of the record exchanged.
@@ -18,9 +19,9 @@ function makeTally(desk, cellar, reports) {
   const results = new Map(); // by number, a result in each plane
   const trails = []; // where barrels were, as bytes, for a report
   const planes = () => (results.get(0) || []).length;
-  // What is known, as the engine takes it.
-  const given = () => {
-    const numbers = [...results.keys()].sort((a, b) => a - b);
+  // The results of these numbers, or all that are known, as the engine takes them.
+  const given = (some) => {
+    const numbers = [...(some ?? results.keys())].sort((a, b) => a - b);
     return { numbers, cases: Array.from({ length: planes() }, (_, plane) => numbers.map((number) => results.get(number)[plane])) };
   };
   return {
@@ -33,17 +34,23 @@ function makeTally(desk, cellar, reports) {
       numbers.forEach((number, at) => results.set(number, head.map((plane) => plane[at])));
       if (reports) trails.push(rest);
     },
-    // What they say; none before the stack as it is stated is among them.
-    async verdict(group) {
+    // The verdict of these numbers, or of all that are known; none before the stack as it is stated is among them.
+    async verdict(group, numbers) {
       if (!results.has(0)) return null;
-      return jsonOf(await desk.ask(headOf(cellar, "verdict", given()), { records: cellar.records, urgency: 1, group }));
+      return jsonOf(await desk.ask(headOf(cellar, "verdict", given(numbers)), { records: cellar.records, urgency: 1, group }));
     },
   };
 }
 
-// Runs all variants that a tally has not; `heard` gets what they say after each share, and whether that was the last one.
+// Runs all variants that a tally has not; after each share `heard` gets the verdict so far, how many results there are, and
+// whether that was the last share. There is no verdict of fewer than FEWEST variants while more are to come, and it counts
+// those alone that lead the order without a gap: what ends first is no fair sample, since runs that collapse end sooner.
 async function runAll({ crew, cellar, tally, count, group, heard }) {
-  const order = orderOf(count).filter((number) => !tally.has(number));
+  const whole = orderOf(count), order = whole.filter((number) => !tally.has(number));
+  const leading = () => {
+    const gap = whole.findIndex((number) => !tally.has(number));
+    return gap < 0 ? whole : whole.slice(0, gap);
+  };
   const shares = [];
   for (let at = 0; at < order.length; at += SHARE) shares.push(order.slice(at, at + SHARE));
   if (shares.length === 0) return heard(await tally.verdict(group), tally.count(), true);
@@ -60,8 +67,9 @@ async function runAll({ crew, cellar, tally, count, group, heard }) {
     do {
       behind = false;
       const last = left === 0;
-      const verdict = await tally.verdict(group);
-      if (verdict) heard(verdict, tally.count(), last);
+      const numbers = leading();
+      const verdict = last || numbers.length > FEWEST ? await tally.verdict(group, numbers) : null;
+      if (tally.has(0)) heard(verdict, tally.count(), last);
       if (last) ended.resolve();
     } while (behind);
     asking = false;

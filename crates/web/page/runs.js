@@ -27,10 +27,12 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     find("go").textContent = on ? "Shake it again" : "Shake it";
   }
 
+  // Stopped work has no verdict.
   function stop() {
     crew.stop("run");
     desk.stop("run");
     busy(false);
+    if (now && !now.done) Object.assign(now, { stopped: true, verdict: null });
   }
 
   const previous = () => past[past.indexOf(now) - 1];
@@ -39,8 +41,11 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     const before = past[past.indexOf(run) - 1];
     const cards = [];
     // The picture keeps its place when words come.
-    if (!run.verdict && run.look.variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, `Shaking it, and ${run.look.variants} like it.`)));
-    if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${run.label}` : run.label, false));
+    const { variants } = run.look, done = Math.max(run.tally ? run.tally.count() - 1 : 0, 0);
+    const waits = run.stopped ? `Stopped after ${done} of ${variants} variants: that makes no verdict.` : `Shaking it, and ${variants} like it.`;
+    if (!run.verdict && variants > 0) cards.push(make("div", { class: "card waits" }, make("p", { class: "when" }, run.label), make("p", { class: "headline" }, waits)));
+    const label = run.done ? run.label : `${run.label}, variants so far`;
+    if (run.verdict) cards.push(cardOf(run.verdict, before ? `now: ${label}` : label, false));
     if (run.verdict && before && before.verdict) cards.push(cardOf(before.verdict, `before: ${before.label}`, true));
     find("verdicts").replaceChildren(...cards);
     find("sentences").textContent = run.shown ? run.shown.sentences.slice(run.verdict ? 1 : 0).join(" ") : "";
@@ -94,7 +99,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
     find("past").hidden = past.length < 2;
     find("undo").disabled = !previous();
     find("history").replaceChildren(...past.map((run) => {
-      const button = make("button", { type: "button" }, make("span", {}, run.label), make("span", {}, run.verdict ? briefly(run.verdict) + (run.done ? "" : " so far") : "stopped"));
+      const button = make("button", { type: "button" }, make("span", {}, run.label), make("span", {}, run.verdict ? briefly(run.verdict) + (run.done ? "" : " so far") : run.stopped ? "stopped" : run.done ? "shaken once" : "being shaken"));
       if (run === now) button.setAttribute("aria-current", "true");
       button.addEventListener("click", () => back(run));
       return make("li", {}, button);
@@ -214,9 +219,7 @@ function makeRuns(find, { crew, desk, picture, state, apply, change, refuse, con
   });
   find("stop").addEventListener("click", () => {
     stop();
-    if (!now) return;
-    now.stopped = true;
-    tell(now);
+    if (now) tell(now);
   });
   find("undo").addEventListener("click", () => { if (previous()) back(previous()); });
   return { run, stop, forecast, lasts, tallyOf, past: () => past, now: () => now };
