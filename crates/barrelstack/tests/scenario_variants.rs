@@ -378,4 +378,11 @@ fn a_title_says_what_is_run() {
     );
     let inherited = "schema = 1\nextends = \"candia-8-barrels\"\n[stack]\nlevels = 3";
     assert_eq!(title(inherited, &[]), "Six barrels on three levels, sine of 1.07 s");
+    // In space the rows behind each other count, in a plane what it cuts.
+    let rows = ["stack.levels=4", "stack.columns=4", "stack.columns_along=3"];
+    let of = |view: &str| {
+        title(own, &[&[view], &rows[..2 + usize::from(view.contains("spatial"))]].concat())
+    };
+    assert_eq!(of("stack.view=spatial"), "48 barrels on four levels, South Napa 2014-08-24 M6.0");
+    assert!(of("stack.view=transverse").starts_with("16 barrels on four levels"));
 }

@@ -1,14 +1,16 @@
-//! Envelopes of contact stress, and largest forces before and after the first loss of seat.
+//! Envelopes of contact stress, largest forces before and after the first loss of seat, and other largest values that
+//! pages state.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
 
 use barrelstack::assemble::{PartKind, assemble};
+use barrelstack::motion::AccelerationUnit;
 use barrelstack::outcome::Outcome;
-use barrelstack::report::stress_figure;
+use barrelstack::report::{document, scene, stress_figure};
 use barrelstack::scenario::View;
 use barrelstack::watch::StressEnvelope;
-use barrelstack::{Run, Scenario, Summary};
+use barrelstack::{Record, Run, Scenario, Summary};
 use barrelstack_dynamics::{Scratch, State, evaluate, settle};
-use barrelstack_report::FigureKind;
+use barrelstack_report::{FigureKind, markdown};
 
 const RACKS: [&str; 7] = [
     "two-barrel",
@@ -170,4 +172,73 @@ fn bodies_that_meet_only_while_shaken_are_among_the_forces() {
         let most = history.horizontal.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
         assert!(most <= one.peak_horizontal_whole_run.abs());
     }
+}
+
+/// The largest size among values.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+/// Samples (m/s²) at 200 Hz, of which one, between two pictures at any usual rate, is five times as large as all
+/// others.
+fn spike() -> Vec<f64> {
+    let wave = |k: usize| if k == 171 { -3.0 } else { 0.6 * (k as f64 * 0.09).sin() };
+    (0..400).map(wave).collect()
+}
+
+#[test]
+fn peaks_of_the_ground_in_pictures_are_those_of_the_motion() {
+    let record = Record::of_samples(
+        "spike",
+        &[("E", &spike()), ("UP", &[0.0; 400])],
+        0.005,
+        AccelerationUnit::MetersPerSecondSquared,
+    )
+    .unwrap();
+    let changes = [
+        "stack.view=transverse",
+        "stack.levels=1",
+        "motion.component=E",
+        "motion.processing=none",
+        "run.duration=2 s",
+    ];
+    let changes = changes.map(str::to_owned);
+    let scenario = Scenario::builtin("demo-napa", &changes).unwrap().with_record(&record).unwrap();
+    let run = scenario.run().unwrap();
+    let exact = run.ground.motion.as_ref().unwrap().horizontal.pga() / 9.806_65;
+    let drawn = scene(&run);
+    let [acceleration, velocity] = drawn.ground.as_slice() else { panic!("two histories") };
+    println!("{exact} g, drawn {}", largest(&acceleration.values));
+    assert!((largest(&acceleration.values) / exact - 1.0).abs() < 1e-9);
+    assert!(acceleration.times.is_sorted() && acceleration.times.len() < 110);
+    assert_eq!(velocity.unit, "cm/s");
+    // The figure of the page is of the same samples.
+    let page = markdown(&document(&run, &Summary::of(&run, None)), "figures");
+    let file = page.files.iter().find(|file| file.name == "ground-acceleration.csv").unwrap();
+    let text = std::str::from_utf8(&file.bytes).unwrap();
+    let cells =
+        text.lines().flat_map(|line| line.split(',').nth(1)).filter_map(|cell| cell.parse().ok());
+    let figure = largest(&cells.collect::<Vec<f64>>());
+    assert!((figure / exact - 1.0).abs() < 1e-3, "{figure} {exact}");
+}
+
+#[test]
+fn crushed_staves_are_in_the_verdict_of_a_run_that_stands() {
+    let changes =
+        ["stack.view=transverse", "stack.levels=2", "motion.scale.factor=0.2", "run.duration=8 s"];
+    let said = |capacity: &str| {
+        let capacity = format!("stack.barrel.stave_capacity={capacity}");
+        let changes: Vec<String> =
+            changes.iter().copied().chain([capacity.as_str()]).map(str::to_owned).collect();
+        let run = Scenario::builtin("demo-napa", &changes).unwrap().run().unwrap();
+        let summary = Summary::of(&run, None);
+        (document(&run, &summary).verdict.headline, summary.demands.stave_utilization.unwrap())
+    };
+    let (headline, load) = said("1 kN");
+    assert!(load > 1.0, "{load}");
+    let stated = format!("they bear up to {:.0} % of what they are stated to bear.", 100.0 * load);
+    assert_eq!(headline, format!("The stack stands, but staves are crushed: {stated}"));
+    let (headline, load) = said("1 MN");
+    assert!(load < 1.0, "{load}");
+    assert_eq!(headline, "The stack stands.");
 }
