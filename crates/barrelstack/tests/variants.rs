@@ -7,8 +7,10 @@ use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
 use barrelstack::outcome::Outcome;
+use barrelstack::report::answer_document;
 use barrelstack::scenario::{BodyOverride, MotionSource, Scale, Scene, StackBody, View};
 use barrelstack::variants::{Answer, Asked, Plane, Spread, Variants, answer, planes, run};
+use barrelstack_report::{capital, markdown};
 
 fn scenario(name: &str, changes: &[&str]) -> Scenario {
     let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
@@ -233,4 +235,45 @@ fn the_share_does_not_hang_on_the_step() {
             assert!(low <= share && share <= high, "{share} is not in {low} to {high}");
         }
     }
+}
+
+#[test]
+fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_each() {
+    let changes = ["stack.levels=1", "run.duration=0.5 s", "imperfections.variants=1"];
+    let scenario = scenario("demo-napa", &changes);
+    let answer = answered(&scenario, Asked::Typical);
+    let (own, other) = (&answer.decides, answer.other.as_ref().unwrap());
+    // Inputs and fingerprint are those of the scenario, not those of the plane that decides.
+    for shown in [own, other] {
+        let given = shown.run.stated.settings();
+        let value = |path: &str| given.iter().find(|one| one.path == path).unwrap().value.clone();
+        assert_eq!(value("stack.view"), "both");
+        assert_eq!(value("stack.columns"), "2");
+        assert_eq!(value("motion.component"), "horizontal-1");
+        let hash = format!("{:016x}", scenario.fingerprint());
+        assert_eq!(shown.summary.provenance.scenario_hash, hash);
+    }
+    let page = markdown(&answer_document(&answer, None), "figures");
+    for view in ["Across the barrels", "Along the barrels"] {
+        let part = format!("{view}: bodies, demands, stresses, forces, motion, energies");
+        assert!(page.text.contains(&part), "{part}");
+    }
+    assert!(page.text.contains("| stack.view | both |"), "{}", page.text);
+    // A figure of each plane, and none over the other.
+    let mut names: Vec<&str> = page.files.iter().map(|file| file.name.as_str()).collect();
+    let plane = other.run.assembly.view.unwrap().name();
+    for name in ["ground-acceleration.svg".to_owned(), format!("ground-acceleration-{plane}.svg")] {
+        assert!(names.contains(&name.as_str()), "{name}: {names:?}");
+    }
+    let all = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all);
+    // The sentence about the motion says which plane it shakes.
+    let said = answer_document(&answer, None).verdict.sentences.join(" ");
+    let view = own.run.assembly.view.unwrap().words();
+    assert!(
+        said.contains(&format!("{}, in the run that is shown, it is shaken", capital(view))),
+        "{said}"
+    );
 }

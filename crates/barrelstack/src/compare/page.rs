@@ -1,6 +1,5 @@
 //! The page of a comparison: verdict, players on one clock, tables, superimposed histories.
 
-use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, Document, Figure, History, Mark, Pane, Players, Plot, Series, SeriesStyle,
     Verdict, capital, listed, significant,
@@ -155,7 +154,8 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
     let of = |(at, other): (usize, &Side)| {
         let second = letter(at + 1);
         let sentence = move |pair: &Paired| {
-            let points = |share: f64| format!("{:.0}", 100.0 * share);
+            // Rounded, and a zero without its sign.
+            let points = |share: f64| format!("{}", (100.0 * share).round() + 0.0);
             let [low, high] = pair.interval;
             let lost = match pair.without_verdict {
                 0 => String::new(),
@@ -359,32 +359,36 @@ fn lanes(sides: &[Side]) -> Vec<History> {
 /// Plots histories of all runs superimposed, a color and a dash for each run.
 fn histories(sides: &[Side]) -> Vec<Block> {
     let mut blocks = Vec::new();
-    let mut add = |id: &str, caption: &str, y: Axis, values: &dyn Fn(&Side) -> Option<Vec<f64>>| {
-        let lines: Vec<(&Side, Series)> = sides
-            .iter()
-            .enumerate()
-            .filter_map(|(at, side)| {
-                let name = format!("{}: {}", letter(at), side.name);
-                let line = Series::new(name, side.run.recording.times.clone(), values(side)?);
-                let style = SeriesStyle { index: Some(at), ..SeriesStyle::default() };
-                Some((side, Series { style, ..line }))
-            })
-            .collect();
-        if !lines.is_empty() {
-            blocks.push(history(sides, id, caption, y, lines));
-        }
-    };
+    let mut add =
+        |id: &str, caption: &str, y: Axis, of: &dyn Fn(&Side) -> Option<[Vec<f64>; 2]>| {
+            let lines: Vec<(&Side, Series)> = sides
+                .iter()
+                .enumerate()
+                .filter_map(|(at, side)| {
+                    let name = format!("{}: {}", letter(at), side.name);
+                    let [times, values] = of(side)?;
+                    let line = Series::new(name, times, values);
+                    let style = SeriesStyle { index: Some(at), ..SeriesStyle::default() };
+                    Some((side, Series { style, ..line }))
+                })
+                .collect();
+            if !lines.is_empty() {
+                blocks.push(history(sides, id, caption, y, lines));
+            }
+        };
     add(
         "top-displacements",
         "Horizontal displacement of the top left barrel relative to the ground.",
         Axis::new("displacement", "cm"),
-        &|side| displacement(side, PartKind::Barrel, side.run.assembly.levels),
+        &|side| {
+            Some(recorded(side, displacement(side, PartKind::Barrel, side.run.assembly.levels)?))
+        },
     );
     add(
         "base-displacements",
         "Slip of the bottom rack on the ground.",
         Axis::new("slip", "cm"),
-        &|side| displacement(side, PartKind::Rack, 1),
+        &|side| Some(recorded(side, displacement(side, PartKind::Rack, 1)?)),
     );
     add(
         "base-forces",
@@ -392,12 +396,12 @@ fn histories(sides: &[Side]) -> Vec<Block> {
         Axis::new("force", "kN"),
         &|side| {
             let base = side.run.recording.joints.first()?;
-            Some(base.vertical.iter().map(|v| 1e-3 * v).collect())
+            Some(recorded(side, base.vertical.iter().map(|v| 1e-3 * v).collect()))
         },
     );
     let acceleration = |side: &Side| {
-        let channel = side.run.recording.channel("ground acceleration x")?;
-        Some(channel.values.iter().map(|v| v / STANDARD_GRAVITY).collect::<Vec<f64>>())
+        let first = report::ground_histories(&side.run).into_iter().next()?;
+        Some([first.times, first.values])
     };
     if !one_motion(sides) {
         add(
@@ -408,6 +412,11 @@ fn histories(sides: &[Side]) -> Vec<Block> {
         );
     }
     blocks
+}
+
+/// Pairs a recorded quantity of a run with its times.
+fn recorded(side: &Side, values: Vec<f64>) -> [Vec<f64>; 2] {
+    [side.run.recording.times.clone(), values]
 }
 
 /// Returns the displacement (cm) along x of the first body of a kind on a level.

@@ -11,6 +11,7 @@ use barrelstack_report::{
 
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::device::FREE;
+use crate::motion;
 use crate::outcome::Outcome;
 use crate::run::Run;
 use crate::variants::Variants;
@@ -266,21 +267,23 @@ fn events(run: &Run) -> Vec<Event> {
     events
 }
 
-/// Returns acceleration and velocity of the ground; empty without a motion.
+/// Returns acceleration and velocity of the ground along the plane; empty without a motion.
 pub(crate) fn ground_histories(run: &Run) -> Vec<History> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
-    let horizontal = &motion.horizontal;
-    let step = horizontal.natural_step();
-    let acceleration = |time: f64| horizontal.at(time).acceleration / STANDARD_GRAVITY;
-    let velocity = |time: f64| 100.0 * horizontal.at(time).velocity;
-    vec![
-        ground_history("ground acceleration", "g", (step, run.end_time), &acceleration),
-        ground_history("ground velocity", "cm/s", (step, run.end_time), &velocity),
-    ]
+    let span = (motion.horizontal.natural_step(), run.end_time);
+    let velocity = |time: f64| 100.0 * motion.horizontal.at(time).velocity;
+    let first = ground_acceleration("ground acceleration", &motion.horizontal, run.end_time);
+    vec![first, ground_history("ground velocity", "cm/s", span, &velocity)]
 }
 
-/// The history of a quantity of the ground, thinned for a picture: of the samples of the motion, `step` (s) apart until
-/// `end` (s), the largest in size of every fiftieth of a second at its own time, so that peaks are those of the motion.
+/// Returns the acceleration (g) of a component of the ground until `end` (s).
+pub(crate) fn ground_acceleration(label: &str, component: &motion::History, end: f64) -> History {
+    let value = |time: f64| component.at(time).acceleration / STANDARD_GRAVITY;
+    ground_history(label, "g", (component.natural_step(), end), &value)
+}
+
+/// Thins a quantity of the ground for a picture: from every fiftieth of a second until `end` (s) it keeps the sample of
+/// the motion, `step` (s) apart, that is largest in size, at its own time, so that peaks are those of the motion.
 pub fn ground_history(
     label: &str,
     unit: &str,

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use barrelstack_motion::STANDARD_GRAVITY;
 use barrelstack_report::{
     Axis, Block, BoundarySample, Cell, Envelope, Figure, Mark, Player, Plot, Scene, Series,
     SeriesStyle, Strip, Table, Trace, capital, significant,
@@ -13,6 +12,7 @@ use super::{drawing, inputs, planes, spectrum, trust};
 use crate::assemble::PartKind;
 use crate::ensemble::RATE;
 use crate::run::Run;
+use crate::scenario::View;
 use crate::summary::Summary;
 use crate::variants::{Range, Shown, Variants};
 use crate::verify::Verification;
@@ -33,12 +33,33 @@ pub(super) fn all(
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();
     section(&mut blocks, 2, "How far to trust this run", trusted);
-    let folded = Block::details(
-        "Bodies, demands, stresses, forces, motion, energies and inputs",
-        engineering(run, summary, variants),
-    );
-    section(&mut blocks, 2, "For the engineer", vec![folded]);
+    section(&mut blocks, 2, "For the engineer", for_engineers((run, summary, variants), other));
     blocks
+}
+
+/// Builds the folded part for engineers: results of each plane, and the inputs, which both planes share.
+fn for_engineers(own: (&Run, &Summary, Option<&Variants>), other: Option<&Shown>) -> Vec<Block> {
+    const PARTS: &str = "odies, demands, stresses, forces, motion, energies";
+    let Some(other) = other else {
+        let blocks = engineering(own).into_iter().chain(inputs(own.0)).collect();
+        return vec![Block::details(format!("B{PARTS} and inputs"), blocks)];
+    };
+    let of = |plane: (&Run, &Summary, Option<&Variants>), mark: &str| {
+        let view = plane.0.assembly.view.map_or("", View::words);
+        let mut blocks = engineering(plane);
+        for block in &mut blocks {
+            if let Block::Figure(figure) = block {
+                figure.id += mark;
+            }
+        }
+        Block::details(format!("{}: b{PARTS}", capital(view)), blocks)
+    };
+    let mark = other.run.assembly.view.map_or_else(String::new, |view| format!("-{}", view.name()));
+    vec![
+        of(own, ""),
+        of((&other.run, &other.summary, other.variants.as_ref()), &mark),
+        Block::details("Inputs", inputs(own.0)),
+    ]
 }
 
 /// Returns the moving picture: of one plane, or of both beside each other.
@@ -54,8 +75,8 @@ pub(super) fn stage(
     }
 }
 
-/// Builds the sections for engineers.
-fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec<Block> {
+/// Builds the sections of one plane for engineers.
+fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) -> Vec<Block> {
     let mut blocks = Vec::new();
     section(&mut blocks, 3, "What became of every body", vec![Block::Table(fates(summary))]);
     section(&mut blocks, 3, "Displacements", displacements(run, variants));
@@ -69,6 +90,11 @@ fn engineering(run: &Run, summary: &Summary, variants: Option<&Variants>) -> Vec
     }
     section(&mut blocks, 3, "Ground motion", motion(run));
     section(&mut blocks, 3, "Energy books", energy(run, summary));
+    blocks
+}
+
+fn inputs(run: &Run) -> Vec<Block> {
+    let mut blocks = Vec::new();
     section(&mut blocks, 3, "Inputs", inputs::inputs(run));
     blocks
 }
@@ -323,14 +349,13 @@ fn forces(run: &Run, summary: &Summary) -> Vec<Block> {
 
 fn motion(run: &Run) -> Vec<Block> {
     let Some(motion) = &run.ground.motion else { return Vec::new() };
-    let recording = &run.recording;
-    let vertical = motion.vertical.as_ref().map(|_| ("ground acceleration z", "vertical"));
-    let shown = std::iter::once(("ground acceleration x", "horizontal")).chain(vertical);
-    let line = |(channel, label): (&str, &str)| {
-        let values = recording.channel(channel)?.values.iter().map(|v| v / STANDARD_GRAVITY);
-        Some(Series::new(label, recording.times.clone(), values.collect()))
+    let vertical = motion.vertical.as_ref().map(|vertical| ("vertical", vertical));
+    let line = |(label, component)| {
+        let drawn = drawing::ground_acceleration(label, component, run.end_time);
+        Series::new(label, drawn.times, drawn.values)
     };
-    let series = shown.filter_map(line).collect();
+    let series = std::iter::once(("horizontal", &motion.horizontal)).chain(vertical);
+    let series = series.map(line).collect();
     let mut blocks = Vec::new();
     blocks.push(history(
         run,

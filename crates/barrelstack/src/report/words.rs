@@ -143,9 +143,12 @@ fn shaking(motion: &MotionSummary) -> String {
 
 /// Returns details behind the sentences: strength of the motion, number of the shown variant, differences of variants.
 pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
+    let view = run.assembly.view.filter(|_| summary.other_plane.is_some());
+    let place =
+        view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
         format!(
-            "The motion that is shown reaches {:.2} g and {:.0} cm/s.",
+            "{place} motion that is shown reaches {:.2} g and {:.0} cm/s.",
             motion.pga / STANDARD_GRAVITY,
             100.0 * motion.pgv
         )
@@ -229,7 +232,9 @@ pub(super) fn details(
         sentences.push(behind(&shown(run, summary), &sentence));
     }
     sentences.extend(summary.devices.0.iter().filter_map(device));
-    sentences.extend(summary.motion.as_ref().map(shaking));
+    // Each plane, and half of the variants, have a component of their own.
+    let shaken = summary.motion.as_ref().map(shaking);
+    sentences.extend(shaken.map(|sentence| behind(&shown(run, summary), &sentence)));
     let judged = matches!(run.outcome, Outcome::Stable | Outcome::Collapse { .. });
     sentences.extend(variants::words::sentences(summary));
     if let Some(found) = verification {

@@ -7,7 +7,7 @@ use super::typical::typical;
 use super::{Plane, Spread, Variants, planes, run_as_far, together};
 use crate::check::check;
 use crate::ensemble::CaseResult;
-use crate::ground::GroundError;
+use crate::ground::{GroundError, from_disk};
 use crate::outcome::Outcome;
 use crate::pool;
 use crate::report::headline;
@@ -163,7 +163,7 @@ fn answered(
     known: Option<Vec<Vec<CaseResult>>>,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
-    let scenario = &scenario.with_event()?;
+    let scenario = &scenario.with_event()?.with_records(&mut from_disk)?;
     let planes = planes(scenario)?;
     let observer = Mutex::new(observer);
     let tell = |reached: Advance| match observer.lock() {
@@ -203,7 +203,7 @@ fn answered(
         .map(|(plane, (variants, _))| (plane, number(asked, variants.as_ref())))
         .collect();
     let mut shown = Vec::new();
-    let runs = seen(&tasks, &tell)?;
+    let runs = seen(scenario, &tasks, &tell)?;
     for (((plane, number), run), (variants, stopped)) in tasks.iter().zip(runs).zip(all) {
         let mut run = run;
         run.warnings.extend(plane.warning(planes.len()));
@@ -236,14 +236,16 @@ fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
     }
 }
 
-/// Runs the selected variants, each on a core of its own.
+/// Runs the selected variants of a scenario, each on a core of its own.
 fn seen(
+    scenario: &Scenario,
     tasks: &[(&Plane, u32)],
     tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Run>, RunFailure> {
     let scenarios: Vec<Scenario> =
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
-    let stated = |at: usize, run| Run { stated: Box::new(tasks[at].0.variant(0)), ..run };
+    // As it was given, both planes together.
+    let stated = |_, run| Run { stated: Box::new(scenario.clone()), ..run };
     run_together(&scenarios, 0.0, &mut |now| tell(Advance::Run(now)), &stated)
 }
 

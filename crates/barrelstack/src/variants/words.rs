@@ -465,4 +465,17 @@ mod tests {
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(0, 0))]);
         assert!(none.ends_with("along them no variant has a verdict."), "{none}");
     }
+    #[test]
+    fn crushed_staves_follow_the_verdict_of_their_plane() {
+        let mut one = spread(64, 0);
+        one.stave_utilization = Some(0.97);
+        assert!(!headline(&[(View::Transverse, &one)]).contains("staves"));
+        (one.staves_overloaded, one.stave_utilization) = (5, Some(1.308));
+        let crushed = "5 of 64 variants staves are crushed before any seat is lost: they bear up to 131 % of what they \
+                       are stated to bear.";
+        let said = headline(&[(View::Transverse, &one)]);
+        assert!(said.ends_with(&format!("at most 6 % fall. In {crushed}")), "{said}");
+        let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
+        assert!(both.ends_with(&format!("it stands. Along the barrels, in {crushed}")), "{both}");
+    }
 }
