@@ -84,9 +84,10 @@ pub(crate) fn heights(
     })?;
     let found = found.map_err(|error| match error {
         HeightsError::Study(error) => errors::study(error),
-        other @ (HeightsError::Rack(..) | HeightsError::Barrel(..) | HeightsError::Decision(_)) => {
-            errors::told(other)
-        }
+        other @ (HeightsError::Rack(..)
+        | HeightsError::Barrel(..)
+        | HeightsError::Stack(_)
+        | HeightsError::Decision(_)) => errors::told(other),
     })?;
     let mut document = found.document.clone();
     document.warnings.clone_from(&found.warnings);
