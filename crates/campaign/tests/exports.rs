@@ -1,10 +1,12 @@
 //! What other programs read: the files themselves, and `OpenQuake` and Pelicun run on them.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::print_stdout, reason = "numbers of other programs are read with --nocapture")]
 
 mod common;
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -87,9 +89,8 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
         over if record == 0 || over < 1.3 => 1,
         _ => 6,
     });
-    let some_fall_early = study(|record, level| match level >= capacity(record) {
-        true => 6,
-        false => usize::from(record % 2 == 0 && level > 0.25),
+    let some_fall_early = study(|record, level| {
+        if level >= capacity(record) { 6 } else { usize::from(record % 2 == 0 && level > 0.25) }
     });
     for collected in [ordinary(), gradual(), rare, some_fall_early] {
         let (decision, found) = exported(&collected, "stack");
@@ -187,7 +188,7 @@ fn python(module: &str) -> Option<String> {
     None
 }
 
-fn write(folder: &Path, found: &Exported) {
+fn put_all(folder: &Path, found: &Exported) {
     for (name, text) in &found.files {
         std::fs::write(folder.join(name), text).unwrap();
     }
@@ -223,7 +224,7 @@ fn pelicun_computes_the_damage_that_we_compute() {
     let Some(python) = python("pelicun.assessment") else { return };
     let (decision, found) = exported(&gradual(), "stack");
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), &found);
+    put_all(folder.path(), &found);
     let mut command = Command::new(python);
     command.arg("-c").arg(PELICUN).arg(folder.path().join("pelicun-fragility.csv"));
     let output = command.args(INTENSITIES.map(|x| (100.0 * x).to_string())).output().unwrap();
@@ -258,7 +259,7 @@ fn openquake(
 ) -> Vec<BTreeMap<String, f64>> {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    write(folder, found);
+    put_all(folder, found);
     let put = |name: &str, text: String| std::fs::write(folder.join(name), text).unwrap();
     // The stub with places and stacks of our own.
     let stub = text(found, "openquake-exposure.csv");
@@ -267,10 +268,10 @@ fn openquake(
     let mut shaking = "sid,eid,gmv_PGV\n".to_owned();
     for (k, x) in INTENSITIES.iter().enumerate() {
         let place = format!("stack_{k},0.{k},0,");
-        assets += &format!("\n{}", stack.replacen("stack_1,0,0,", &place, 1));
-        sites += &format!("\n{k},0.{k},0");
+        write!(assets, "\n{}", stack.replacen("stack_1,0,0,", &place, 1)).unwrap();
+        write!(sites, "\n{k},0.{k},0").unwrap();
         for event in 0..EVENTS {
-            shaking += &format!("{k},{event},{}\n", 100.0 * x);
+            writeln!(shaking, "{k},{event},{}", 100.0 * x).unwrap();
         }
     }
     put("openquake-exposure.csv", assets);
