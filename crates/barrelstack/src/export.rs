@@ -1,8 +1,9 @@
 //! The files of a run, in one folder.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use barrelstack_report::{
@@ -78,6 +79,12 @@ impl ExportError {
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
+    /// Whether it was there already.
+    existed: bool,
+    /// Whether nothing that is there may be replaced.
+    fresh: bool,
+    /// Whether this run has begun to write in it.
+    claimed: Arc<AtomicBool>,
 }
 
 impl Folder {
@@ -95,15 +102,40 @@ impl Folder {
             let reason = format!("{} is a file, not a folder", file.display());
             return Err(ExportError::write(path, reason));
         }
-        let first = || {
-            let names = std::fs::read_dir(path).into_iter().flatten().flatten();
-            names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
-        };
-        if let (false, Some(file)) = (overwrite, first()) {
+        if let (false, Some(file)) = (overwrite, first_in(path)) {
             return Err(ExportError::Occupied { folder: path.to_owned(), file });
         }
+        // What is known to be read already is refused before the work is done.
+        for name in FILES {
+            let file = path.join(name);
+            system::replaceable(&file).map_err(|error| ExportError::refused(&file, &error))?;
+        }
         system::writable(path).map_err(|reason| ExportError::write(path, reason))?;
-        Ok(Self { path: path.to_owned() })
+        let claimed = Arc::new(AtomicBool::new(false));
+        Ok(Self { path: path.to_owned(), existed: path.exists(), fresh: !overwrite, claimed })
+    }
+
+    /// Makes the folder where it is missing and returns whether it did; refuses one that another run has made or filled
+    /// since it was checked.
+    fn claim(&self) -> Result<bool, ExportError> {
+        let refused = |error: std::io::Error| ExportError::refused(&self.path, &error);
+        if let Some(above) = self.path.parent() {
+            std::fs::create_dir_all(above).map_err(refused)?;
+        }
+        let first = self.fresh && !self.claimed.swap(true, Ordering::Relaxed);
+        // Of several that make it only one succeeds.
+        match std::fs::create_dir(&self.path) {
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+                let theirs = first_in(&self.path);
+                let theirs =
+                    theirs.or((!self.existed).then(|| "what another run writes".to_owned()));
+                match theirs.filter(|_| first) {
+                    Some(file) => Err(ExportError::Occupied { folder: self.path.clone(), file }),
+                    None => Ok(false),
+                }
+            }
+            made => made.map(|()| true).map_err(refused),
+        }
     }
 
     /// Checks a folder like [`Folder::prepare`]; files of an earlier run are replaced, and no others.
@@ -114,7 +146,7 @@ impl Folder {
         let folder = Self::prepare(path, true)?;
         let changed =
             |name: &str| std::fs::metadata(path.join(name)).and_then(|m| m.modified()).ok();
-        let summary = system::read(&path.join(FILES[0]), SUMMARY_LIMIT).unwrap_or_default();
+        let summary = system::read_result(&path.join(FILES[0]), SUMMARY_LIMIT).unwrap_or_default();
         let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
         let written =
             changed(FILES[0]).filter(|_| summary["provenance"]["program"] == "barrelstack");
@@ -169,8 +201,6 @@ impl Folder {
             bundle.files.iter().map(|file| format!("{FIGURES}/{}", file.name)).collect();
         let figures = names.iter().map(String::as_str);
         let figures = figures.zip(bundle.files.iter().map(|file| file.bytes.as_slice()));
-        system::folder_below(&self.path, Path::new(FIGURES))
-            .map_err(|error| self.refused(FIGURES, &error))?;
         let texts = [("report.html", page.as_bytes()), ("report.md", bundle.text.as_bytes())];
         self.put(&figures.chain(texts))
     }
@@ -178,34 +208,28 @@ impl Folder {
     /// Writes files under temporary names, then renames them all.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When the system refuses, when a file was read as an input, and when another run has written here since the
+    /// folder was checked.
     pub fn put<'a>(
         &self,
         files: &(impl Iterator<Item = (&'a str, &'a [u8])> + Clone),
     ) -> Result<(), ExportError> {
-        std::fs::create_dir_all(&self.path).map_err(|error| self.refused("", &error))?;
-        let names = || files.clone().map(|(name, _)| name);
-        let written = files
-            .clone()
-            .try_for_each(|(name, bytes)| {
-                let write = system::begin(&self.temporary(name));
-                write
-                    .and_then(|mut file| file.write_all(bytes))
-                    .map_err(|error| self.refused(name, &error))
-            })
+        let new = self.claim()?;
+        let below = || files.clone().filter_map(|(name, _)| Path::new(name).parent());
+        let written = below()
+            .try_for_each(|part| system::folder_below(&self.path, part).map(drop))
+            .map_err(|error| (self.path.clone(), error))
             .and_then(|()| {
-                names().try_for_each(|name| {
-                    let rename = std::fs::rename(self.temporary(name), self.path.join(name));
-                    rename.map_err(|error| self.refused(name, &error))
-                })
+                let paths = files.clone().map(|(name, bytes)| (self.path.join(name), bytes));
+                system::store_all(&paths)
             });
-        if written.is_err() {
-            for name in names() {
-                // Ignore: a file that was never created cannot be removed.
-                let _ = std::fs::remove_file(self.temporary(name));
+        if new && written.is_err() {
+            for part in below().chain([Path::new("")]) {
+                // What holds anything is not removed.
+                let _ = std::fs::remove_dir(self.path.join(part));
             }
         }
-        written
+        written.map_err(|(path, error)| ExportError::refused(&path, &error))
     }
 
     /// Writes the report again, with an embedded page that holds the program and starts with this scenario.
@@ -239,14 +263,12 @@ impl Folder {
         let bytes = document_pdf(&document, paper);
         self.put(&std::iter::once(("report.pdf", bytes.as_slice())))
     }
+}
 
-    fn temporary(&self, name: &str) -> PathBuf {
-        system::temporary(&self.path.join(name))
-    }
-
-    fn refused(&self, name: &str, error: &std::io::Error) -> ExportError {
-        ExportError::refused(&self.path.join(name), error)
-    }
+/// The first file in a folder by its name.
+fn first_in(folder: &Path) -> Option<String> {
+    let names = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
 /// Returns the files of an answer by their names, with the name of their plane as a prefix where there are two, and the

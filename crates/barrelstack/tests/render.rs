@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use barrelstack::export::ExportError;
+use barrelstack::export::{ExportError, Folder};
 use barrelstack::render::{Part, RenderFolder, Rendering, drift_line, final_picture};
 use barrelstack::{Run, Scenario, Summary};
 use barrelstack_report::{Characters, FigureKind, Format, figures};
@@ -243,4 +243,23 @@ fn a_collapsed_stack_and_its_drift_fit_a_terminal() {
     let block = rocking_block().0;
     assert!(drift_line(&block, 40, Characters::Unicode).is_none());
     assert!(!final_picture(&block, Characters::Unicode).is_empty());
+}
+
+#[test]
+fn of_two_runs_into_one_new_or_empty_folder_the_second_is_refused() {
+    let place = tempfile::tempdir().unwrap();
+    for name in ["new", "empty"] {
+        let path = place.path().join(name);
+        if name == "empty" {
+            std::fs::create_dir(&path).unwrap();
+        }
+        let [one, other] = [0, 1].map(|_| Folder::prepare(&path, false).unwrap());
+        let of = |text: &'static str| [("summary.json", text.as_bytes())];
+        one.put(&of("one").iter().copied()).unwrap();
+        let refused = other.put(&of("other").iter().copied()).unwrap_err();
+        assert!(matches!(refused, ExportError::Occupied { .. }), "{refused}");
+        // The first goes on with its own.
+        one.put(&of("one").iter().copied()).unwrap();
+        assert_eq!(std::fs::read(path.join("summary.json")).unwrap(), b"one");
+    }
 }

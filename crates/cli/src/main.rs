@@ -9,6 +9,7 @@ mod figures;
 mod interrupt;
 mod lanes;
 mod printer;
+mod process;
 mod progress;
 mod remedy;
 mod rows;
@@ -30,8 +31,17 @@ fn main() -> ExitCode {
             printer::usage(&error.render().to_string(), json);
             return ExitCode::from(2);
         }
-        Err(help) => help.exit(),
+        Err(help) => {
+            return match printer::help(&help) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => {
+                    printer::error(&error, false);
+                    ExitCode::from(2)
+                }
+            };
+        }
     };
+    barrelstack_input::system::guard_inputs();
     interrupt::stop_at(args.stop_at.clone());
     match commands::dispatch(args) {
         // Stopped work is not a success, whatever is kept.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use barrelstack::Summary;
 use barrelstack::scenario::ScenarioError;
 use barrelstack::scenario::error::Place;
@@ -15,6 +15,7 @@ use barrelstack_report::{Characters, Verdict, described};
 use serde::Serialize;
 
 use crate::interrupt::{STATUS, Stopped};
+use crate::process;
 use crate::remedy::remedy;
 
 /// Prints lines of a result.
@@ -38,10 +39,22 @@ pub(crate) fn text(text: &str) -> anyhow::Result<()> {
 /// Prints a text as [`text`] does, without replacing control characters.
 fn raw(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(error).context("cannot write to standard output")
+    printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// The help or the version of the program, in color where the terminal has any.
+pub(crate) fn help(help: &clap::Error) -> anyhow::Result<()> {
+    printed(help.print().and_then(|()| std::io::stdout().flush()))
+}
+
+/// What became of printing a result.
+fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
+    const WHERE: &str = "cannot write to standard output";
+    match result {
+        _ if process::output_was_closed() => {
+            bail!("{WHERE}: it is closed; name a file (> result.txt) or /dev/null for it")
         }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context(WHERE),
         _ => Ok(()),
     }
 }

@@ -13,6 +13,16 @@ pub(crate) fn store(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// Writes files of a folder, all of them or none.
+pub(crate) fn store_all<'a>(
+    folder: &Path,
+    files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
+) -> anyhow::Result<()> {
+    crate::interrupt::writes_to(folder);
+    system::store_all(files)
+        .map_err(|(path, error)| plain(error).context(format!("cannot write {}", path.display())))
+}
+
 /// Creates a folder if missing.
 pub(crate) fn folder(path: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(path)

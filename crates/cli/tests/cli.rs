@@ -399,6 +399,13 @@ fn help_names_the_exit_statuses_and_every_command() {
     assert_eq!(stdout(&nothing), "");
 }
 
+#[test]
+fn a_score_takes_no_record() {
+    let said = barrelstack(["score", "demo-napa", "--record", "mine.AT2"]);
+    assert_eq!(said.status.code(), Some(2));
+    assert!(stderr(&said).contains("--record") && stderr(&said).contains("leave it out"));
+}
+
 #[cfg(unix)]
 mod unix {
     use super::*;

@@ -243,6 +243,68 @@ fn sizes_beyond_all_cellars_are_refused_before_they_are_spent() {
 }
 
 #[test]
+fn studies_beyond_all_memory_are_refused_at_the_field_before_their_cases_are_made() {
+    let mut cases = Cases::new();
+    let range = |pair: &str, count: u32| {
+        let field = format!("interface.{pair}.friction.coefficient");
+        format!(
+            "[[factor]]\nfield = \"{field}\"\nrange = {{ from = 0.1, to = 0.9, count = {count} }}\n"
+        )
+    };
+    let drawn = |pair: &str| {
+        let field = format!("interface.{pair}.friction.coefficient");
+        let uniform = "distribution = { kind = \"uniform\", from = 0.1, to = 0.9 }";
+        format!("[[factor]]\nfield = \"{field}\"\n{uniform}\n")
+    };
+    let pairs = ["rack-ground", "barrel-rack", "barrel-barrel", "barrel-ground", "rack-rack"];
+    let factorial = "[design]\nkind = \"full-factorial\"\n";
+    let synthetic = |count: u32| {
+        format!(
+            "[[motion]]\nname = \"m{count}\"\nsynthetic = {{ kind = \"clough-penzien\", count = {count} }}\n"
+        )
+    };
+    let many_components = format!(
+        "[[motion]]\nrecords = [{}]\ncomponents = [{}]\n",
+        (0..1000).map(|at| format!("\"{at}.AT2\"")).collect::<Vec<_>>().join(","),
+        (0..1000).map(|at| format!("\"{at}\"")).collect::<Vec<_>>().join(",")
+    );
+    let studies = [
+        (synthetic(10_000_000) + factorial, "count = 10000000", "100000 that a study has at most"),
+        (
+            (0..60).map(|at| synthetic(100_000 - at)).collect::<String>() + factorial,
+            "motion",
+            "100000 at most: take fewer",
+        ),
+        (many_components + factorial, "components", "take fewer"),
+        (
+            pairs[..4].iter().map(|pair| range(pair, 1000)).collect::<String>() + factorial,
+            "range",
+            "more than 10000000 cases: take fewer values",
+        ),
+        (
+            pairs[..3].iter().map(|pair| range(pair, 10_000)).collect::<String>()
+                + "[design]\nkind = \"sobol\"\ncount = 8\n",
+            "range",
+            "more than 20000 values together: take fewer",
+        ),
+        (
+            pairs.iter().map(|pair| drawn(pair)).collect::<String>()
+                + "[design]\nkind = \"latin-hypercube\"\ncount = 10000000\n",
+            "count = 10000000",
+            "take 7142857 at most",
+        ),
+    ];
+    let count = studies.len();
+    for (number, (text, field, words)) in studies.into_iter().enumerate() {
+        let base = "schema = 1\n[base]\nextends = \"candia-8-barrels\"\n";
+        let file = cases.file(&format!("{number}.toml"), format!("{base}{text}").as_bytes());
+        cases.refused(&["study", "plan", &file], &[&format!("{number}.toml:"), field, words]);
+        cases.refused(&["study", &file, "--out=o"], &[words]);
+    }
+    cases.end(2 * count);
+}
+
+#[test]
 fn folders_in_which_nothing_can_be_written_are_known_before_the_work() {
     let mut cases = Cases::new();
     let file = cases.file("file", b"mine");

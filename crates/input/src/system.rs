@@ -1,5 +1,6 @@
 //! File system access: reading with a limit, safe writing, errors in plain words.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::mem::ManuallyDrop;
@@ -14,7 +15,15 @@ pub fn words(error: &io::Error) -> String {
         (io::ErrorKind::IsADirectory, "it is a folder, not a file"),
         (io::ErrorKind::NotADirectory, "a part of its path is a file, not a folder"),
         (io::ErrorKind::PermissionDenied, "permission is denied"),
-        (io::ErrorKind::StorageFull, "no space is left"),
+        (io::ErrorKind::StorageFull, "no space is left, and what was begun is removed: make room"),
+        (
+            io::ErrorKind::FileTooLarge,
+            "a file may not be as large here, and what was begun is removed: raise the limit (ulimit -f)",
+        ),
+        (
+            io::ErrorKind::QuotaExceeded,
+            "the quota of the disk is used up, and what was begun is removed: make room",
+        ),
     ];
     if let Some((_, words)) = known.into_iter().find(|(kind, _)| *kind == error.kind()) {
         return words.to_owned();
@@ -24,7 +33,7 @@ pub fn words(error: &io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Opens a file, or a link to one, for reading.
+/// Opens an input for reading, or a link to one; [`store`] does not replace it afterwards where inputs are guarded.
 ///
 /// Named pipes are refused, because one without a writer would block forever, and so are devices, which may be
 /// endless. Pipes opened by the shell (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
@@ -32,6 +41,17 @@ pub fn words(error: &io::Error) -> String {
 /// # Errors
 /// A message if the file cannot be opened, or is a named pipe, a device or a socket.
 pub fn open(path: &Path) -> Result<File, String> {
+    let file = open_file(path)?;
+    if let Some(inputs) = &mut *inputs()
+        && let Ok(path) = fs::canonicalize(path)
+    {
+        inputs.insert(path);
+    }
+    Ok(file)
+}
+
+/// Opens a regular file, or what the shell opened.
+fn open_file(path: &Path) -> Result<File, String> {
     let of_the_shell =
         ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|place| path.starts_with(place));
     let found = fs::metadata(path).map_err(|error| words(&error))?;
@@ -39,6 +59,34 @@ pub fn open(path: &Path) -> Result<File, String> {
         regular(&found).map_err(|error| words(&error))?;
     }
     File::open(path).map_err(|error| words(&error))
+}
+
+/// Files that were opened as inputs; none where inputs are not guarded.
+static INPUTS: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
+
+fn inputs() -> MutexGuard<'static, Option<BTreeSet<PathBuf>>> {
+    INPUTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Guards inputs from now on, so that a program that does one thing and ends never replaces what it read.
+pub fn guard_inputs() {
+    inputs().get_or_insert_default();
+}
+
+/// Refuses a path at which an input lies, however the path is written, where inputs are guarded.
+///
+/// # Errors
+/// When a file there was opened as an input.
+pub fn replaceable(path: &Path) -> io::Result<()> {
+    let is_input = |inputs: &BTreeSet<PathBuf>| {
+        fs::canonicalize(path).is_ok_and(|path| inputs.contains(&path))
+    };
+    if inputs().as_ref().is_some_and(is_input) {
+        return Err(io::Error::other(
+            "this command read it, and replaces nothing that it reads: name another file or folder",
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses anything but a regular file, with a message.
@@ -76,13 +124,25 @@ fn kind(of: &fs::Metadata) -> &'static str {
     if of.file_type().is_symlink() { "a link" } else { "a device" }
 }
 
-/// Reads a file of at most `limit` bytes.
+/// Reads an input of at most `limit` bytes.
 ///
 /// # Errors
 /// A message if the file cannot be opened ([`open`]) or read, or is larger.
 pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
+    all_of(open(path)?, limit)
+}
+
+/// Reads a file of a folder of results, which may be replaced afterwards.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_result(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
+    all_of(open_file(path)?, limit)
+}
+
+/// Reads a file to its end.
+fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let file = open(path)?;
     file.take(limit as u64 + 1).read_to_end(&mut bytes).map_err(|error| words(&error))?;
     if bytes.len() > limit {
         return Err(format!("it has more than {} MB, more than any such file", limit >> 20));
@@ -209,16 +269,30 @@ pub fn write_no_more() {
 /// Writes to a temporary name and renames, so that the file is never incomplete.
 ///
 /// # Errors
-/// If the system refuses.
+/// When the system refuses, or an input lies there ([`guard_inputs`]); nothing unfinished is left.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let part = temporary(path);
+    store_all(&std::iter::once((path.to_owned(), bytes))).map_err(|(_, error)| error)
+}
+
+/// Writes files as [`store`] does and renames them together, so that a full disk leaves earlier ones as they were.
+///
+/// # Errors
+/// As [`store`], with the path that was refused.
+pub fn store_all<'a>(
+    files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
+) -> Result<(), (PathBuf, io::Error)> {
     let _writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
-    let written = begin(&part)
-        .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| fs::rename(&part, path));
+    let each = |act: &dyn Fn(&Path, &[u8]) -> io::Result<()>| {
+        files.clone().try_for_each(|(path, bytes)| act(&path, bytes).map_err(|error| (path, error)))
+    };
+    each(&|path, _| replaceable(path))?;
+    let written = each(&|path, bytes| begin(&temporary(path))?.write_all(bytes))
+        .and_then(|()| each(&|path, _| fs::rename(temporary(path), path)));
     if written.is_err() {
-        // Ignore the error: the file may not exist.
-        let _ = fs::remove_file(&part);
+        for (path, _) in files.clone() {
+            // Those that were never begun cannot be removed.
+            let _ = fs::remove_file(temporary(&path));
+        }
     }
     written
 }

@@ -130,6 +130,8 @@ const FASTEST: f64 = 50.0;
 pub struct RenderFolder {
     path: PathBuf,
     parts: Vec<Part>,
+    /// Whether what an earlier rendering wrote may be replaced.
+    overwrite: bool,
 }
 
 /// Written files of a part.
@@ -157,17 +159,22 @@ impl RenderFolder {
                 return Err(ExportError::write(&folder, "it is a file, not a folder"));
             }
         }
-        let folder = Self { path: path.to_owned(), parts: parts.to_vec() };
+        let folder = Self { path: path.to_owned(), parts: parts.to_vec(), overwrite };
         if !overwrite {
             for part in parts {
                 if let Some(file) = folder.earlier(*part)?.first() {
-                    let file = file.strip_prefix(path).unwrap_or(file).display().to_string();
-                    return Err(ExportError::Occupied { folder: path.to_owned(), file });
+                    return Err(folder.occupied(file));
                 }
             }
         }
         system::writable(path).map_err(|reason| ExportError::write(path, reason))?;
         Ok(folder)
+    }
+
+    /// The refusal of a folder that holds a file already.
+    fn occupied(&self, file: &Path) -> ExportError {
+        let file = file.strip_prefix(&self.path).unwrap_or(file).display().to_string();
+        ExportError::Occupied { folder: self.path.clone(), file }
     }
 
     /// Writes all parts.
@@ -189,20 +196,18 @@ impl RenderFolder {
         let document = report::document(run, summary);
         let mut written = Vec::new();
         for &part in &self.parts {
-            let place = self.cleared(part)?;
-            let files = match part {
+            written.push(self.whole(part, |place| match part {
                 Part::Figures => {
                     let bundle = markdown(&document, part.place());
                     put(&self.path.join("report.md"), bundle.text.as_bytes())?;
-                    write_all(&place, &bundle.files)?
-                        + write_figures(&document, &place, &how.formats, how.dpi)?
+                    Ok(write_all(place, &bundle.files)?
+                        + write_figures(&document, place, &how.formats, how.dpi)?)
                 }
-                Part::Report => put(&place, &document_pdf(&document, how.paper))?,
-                Part::Animation => animation(&place, &filmed, how)?,
-                Part::Frames => frames(&place, &Film::of_run(Arc::clone(&filmed), how.rate), how)?,
-                Part::Paraview => write_all(&place, &paraview(&filmed, how.rate))?,
-            };
-            written.push(Rendered { part, place, files });
+                Part::Report => put(place, &document_pdf(&document, how.paper)),
+                Part::Animation => animation(place, &filmed, how),
+                Part::Frames => frames(place, &Film::of_run(Arc::clone(&filmed), how.rate), how),
+                Part::Paraview => write_all(place, &paraview(&filmed, how.rate)),
+            })?);
         }
         Ok(written)
     }
@@ -218,13 +223,36 @@ impl RenderFolder {
             &mut dyn FnMut(Attachment) -> Result<(), ExportError>,
         ) -> Result<(), ExportError>,
     ) -> Result<Rendered, ExportError> {
-        let place = self.cleared(Part::Paraview)?;
-        let mut files = 0;
-        make(&mut |file| {
-            files += put(&place.join(&file.name), &file.bytes)?;
-            Ok(())
-        })?;
-        Ok(Rendered { part: Part::Paraview, place, files })
+        self.whole(Part::Paraview, |place| {
+            let mut files = 0;
+            make(&mut |file| {
+                files += put(&place.join(&file.name), &file.bytes)?;
+                Ok(())
+            })?;
+            Ok(files)
+        })
+    }
+
+    /// Writes a part, whose number of files `write` returns; where a file is refused, those before it are removed.
+    fn whole(
+        &self,
+        part: Part,
+        write: impl FnOnce(&Path) -> Result<usize, ExportError>,
+    ) -> Result<Rendered, ExportError> {
+        let place = self.cleared(part)?;
+        match write(&place) {
+            Ok(files) => Ok(Rendered { part, place, files }),
+            Err(error) => {
+                for file in self.earlier(part).unwrap_or_default() {
+                    // What cannot be removed is left; the error of the write says more.
+                    let _ = std::fs::remove_file(file);
+                }
+                if part != Part::Report {
+                    let _ = std::fs::remove_dir(&place);
+                }
+                Err(error)
+            }
+        }
     }
 
     /// Creates the place of a part and removes the files of an earlier rendering from it.
@@ -233,8 +261,15 @@ impl RenderFolder {
         let folder = if part == Part::Report { "" } else { part.place() };
         system::folder_below(&self.path, Path::new(folder))
             .map_err(|error| ExportError::refused(&place, &error))?;
-        for file in self.earlier(part)? {
-            std::fs::remove_file(&file).map_err(|error| ExportError::refused(&file, &error))?;
+        let earlier = self.earlier(part)?;
+        if let (false, Some(file)) = (self.overwrite, earlier.first()) {
+            // Another rendering wrote it since the folder was checked.
+            return Err(self.occupied(file));
+        }
+        for file in earlier {
+            system::replaceable(&file)
+                .and_then(|()| std::fs::remove_file(&file))
+                .map_err(|error| ExportError::refused(&file, &error))?;
         }
         Ok(place)
     }

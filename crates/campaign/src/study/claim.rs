@@ -77,7 +77,7 @@ fn has_other_names(_: &fs::Metadata) -> bool {
 fn this_process() -> String {
     let host = ["/proc/sys/kernel/hostname", "/etc/hostname"]
         .iter()
-        .find_map(|file| String::from_utf8(system::read(Path::new(file), 1000).ok()?).ok());
+        .find_map(|file| String::from_utf8(system::read_result(Path::new(file), 1000).ok()?).ok());
     let host = host.as_deref().map(str::trim).filter(|host| !host.is_empty());
     let process = format!("process {}", std::process::id());
     host.map_or(process.clone(), |host| format!("{process} on {host}"))
@@ -86,7 +86,7 @@ fn this_process() -> String {
 /// Returns the holder of a chunk by its claim; `None` if there is no claim or this process has it.
 pub fn holder(folder: &Path, chunk: usize) -> Option<Holder> {
     let path = folder.join("shards").join(format!("{chunk:06}.claim"));
-    let text = String::from_utf8(system::read(&path, 1000).ok()?).ok()?;
+    let text = String::from_utf8(system::read_result(&path, 1000).ok()?).ok()?;
     let age = fs::metadata(&path).ok()?.modified().ok()?.elapsed().unwrap_or_default();
     let plain: String = text.trim().chars().filter(|c| !c.is_control()).take(200).collect();
     if plain == this_process() {

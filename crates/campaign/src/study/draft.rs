@@ -76,6 +76,7 @@ impl Draft {
 
     /// Syncs the file to the disk and renames it.
     pub(super) fn name(self) -> std::io::Result<()> {
+        system::replaceable(&self.whole)?;
         self.file.sync_all()?;
         fs::rename(&self.path, &self.whole)?;
         sync_folder(self.whole.parent().unwrap_or_else(|| Path::new(".")))

@@ -65,6 +65,14 @@ pub(super) fn read(
     if sources.is_empty() {
         return Err(set.one_of(&["records", "folder", "bundled", "sine", "pulse", "synthetic"]));
     }
+    if sources.len().saturating_mul(components.len()) > MOST {
+        let message = format!(
+            "{} components of {} records are more motions than the {MOST} that a study has at most: take fewer",
+            components.len(),
+            sources.len()
+        );
+        return Err(set.inconsistent("components", message));
+    }
     let many = sources.len() > 1 || components.len() > 1;
     let mut motions = Vec::new();
     for (source, entries) in sources {

@@ -21,12 +21,15 @@ use super::motions::{Motion, Shaking, hash_files, unreadable};
 use super::plan::{Chunks, Sizes};
 use super::prepare::runs;
 use super::setting::{Domain, Setting};
-use factor::{LOW, clash, read_factor, read_variation};
+use factor::{LOW, Room, clash, read_factor, read_variation};
 
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
 
 /// Maximum number of cases of a design.
 const MOST_CASES: u64 = 10_000_000;
+
+/// Most strata of a Latin hypercube, of all quantities together; each takes four bytes.
+const MOST_STRATA: usize = 50_000_000;
 
 /// Cases, or hunts, of a chunk where each takes long.
 const FEW: Sizes = Sizes::Given(8);
@@ -133,16 +136,21 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     for (number, set) in (1..).zip(sets) {
         motions.extend(ensembles::read(&set, opened, number, seed)?);
         set.finish();
+        few(&top, &motions)?;
     }
     let own = motions.is_empty();
     if own {
         motions.push(Motion { name: "base".to_owned(), shaking: Shaking::Base });
     }
-    few_of_their_own_names(&top, &motions)?;
+    of_their_own_names(&top, &motions)?;
 
+    let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
+    let crosses = top.optional_section("design")?.and_then(|design| design.choice("kind").ok());
+    let crosses = crosses.is_some_and(|kind: DesignKind| crossing.contains(&kind));
+    let mut room = Room::new(motions.len(), crosses.then_some(MOST_CASES));
     let mut factors: Vec<Factor> = Vec::new();
     for reader in top.sections("factor")? {
-        let factor = read_factor(reader, &template, &scenario, own)?;
+        let factor = read_factor(reader, &template, &scenario, own, &mut room)?;
         if let Some(error) = clash(&top, &factors, &factor) {
             return Err(error.into());
         }
@@ -240,8 +248,8 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
 }
 
-/// Checks the number of motions and that their names are unique.
-fn few_of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
+/// Refuses too many motions.
+fn few(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     if motions.len() > ensembles::MOST {
         let message = format!(
             "the study has {} motions, and a study has {} at most: take fewer, or several studies with other seeds",
@@ -250,6 +258,11 @@ fn few_of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), Sc
         );
         return Err(top.inconsistent("motion", message));
     }
+    Ok(())
+}
+
+/// Refuses two motions of one name.
+fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
     let mut seen = std::collections::BTreeSet::new();
     for motion in motions {
         if !seen.insert(&motion.name) {
@@ -348,7 +361,19 @@ fn read_design(
             }
             Design::OneAtATime { quantiles, draws }
         }
-        DesignKind::LatinHypercube => Design::LatinHypercube { count: reader.integer("count")? },
+        DesignKind::LatinHypercube => {
+            let count = reader.integer("count")?;
+            let axes = factors.len() + 2;
+            if count as usize > MOST_STRATA / axes {
+                let message = format!(
+                    "{count} samples of {axes} quantities (motion, level and factors) do not fit into memory: take {} at \
+                     most, or \"sobol\"",
+                    MOST_STRATA / axes
+                );
+                return Err(reader.inconsistent("count", message));
+            }
+            Design::LatinHypercube { count }
+        }
         DesignKind::Sobol => {
             let most = sobol::DIMENSIONS - 2;
             if factors.len() > most {

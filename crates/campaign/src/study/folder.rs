@@ -151,7 +151,8 @@ impl Folder {
                 Manifest::Sound(known) => known,
                 // Chunks carry their own keys; the copy of the study file identifies the folder.
                 Manifest::Damaged(how) => {
-                    let copy = system::read(&path.join(COPY), FILE_LIMIT).unwrap_or_default();
+                    let copy =
+                        system::read_result(&path.join(COPY), FILE_LIMIT).unwrap_or_default();
                     if !grows || copy != study.text.as_bytes() {
                         return Err(manifest::damaged(path, &how));
                     }
@@ -196,7 +197,7 @@ impl Folder {
         }
         // After the manifest, so that a folder without one has at most an empty folder of shards of ours.
         let copy = self.path.join(COPY);
-        if system::read(&copy, FILE_LIMIT).is_ok_and(|text| text == study.text.as_bytes()) {
+        if system::read_result(&copy, FILE_LIMIT).is_ok_and(|text| text == study.text.as_bytes()) {
             return Ok(());
         }
         write_whole(&copy, study.text.as_bytes())
@@ -272,7 +273,7 @@ impl Folder {
 
 /// Returns the bytes of a file of a folder.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, StudyError> {
-    system::read(path, FILE_LIMIT).map_err(|reason| StudyError::System {
+    system::read_result(path, FILE_LIMIT).map_err(|reason| StudyError::System {
         doing: "read",
         path: path.to_owned(),
         reason,

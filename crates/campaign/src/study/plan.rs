@@ -1,5 +1,7 @@
 //! Divides the cases of a study into chunks.
 
+use std::collections::HashMap;
+
 use super::Study;
 use super::design::{Case, Design};
 use barrelstack_report::column::Value;
@@ -90,20 +92,18 @@ impl Chunks {
             return Self::Even { count, sizes };
         }
         let mut chunks: Vec<Vec<u32>> = Vec::new();
-        let mut open: Vec<(Vec<Option<Value>>, usize)> = Vec::new();
+        // The chunk of each kind that has room, by the words of the kind.
+        let mut open: HashMap<String, usize> = HashMap::new();
         for number in 0..u32::try_from(count).unwrap_or(u32::MAX) {
             let kind = study.structure(&study.cases.case(study, u64::from(number)));
-            let at = if let Some(at) = open.iter().position(|(known, _)| *known == kind) {
-                at
-            } else {
-                open.push((kind, chunks.len()));
+            let kind = format!("{kind:?}");
+            let chunk = *open.entry(kind.clone()).or_insert_with(|| {
                 chunks.push(Vec::new());
-                open.len() - 1
-            };
-            let chunk = open[at].1;
+                chunks.len() - 1
+            });
             chunks[chunk].push(number);
             if chunks[chunk].len() as u64 >= sizes.span(chunk as u64).1 {
-                open.swap_remove(at);
+                open.remove(&kind);
             }
         }
         Self::Listed(chunks)

@@ -11,7 +11,7 @@ use crate::interrupt::keeps;
 use crate::lanes::LanesArgs;
 use crate::printer;
 use crate::progress::Progress;
-use crate::store::{folder_below, store, writable};
+use crate::store::{folder_below, store_all, writable};
 
 /// How studies are run, and how the page is told.
 #[derive(Debug, clap::Args)]
@@ -71,17 +71,18 @@ pub(super) fn write_both(
     document: &impl Serialize,
 ) -> anyhow::Result<()> {
     let json = serde_json::to_string_pretty(document)? + "\n";
-    write(out, page)?;
-    store(&out.join(name), json.as_bytes())
+    write(out, page, &[(name, json.as_bytes())])
 }
 
-/// Writes a page as HTML and as Markdown with its figures beside it.
-pub(super) fn write(out: &Path, page: &Document) -> anyhow::Result<()> {
+/// Writes a page as HTML and as Markdown with its figures beside it, and further files, all or none of them.
+pub(super) fn write(out: &Path, page: &Document, further: &[(&str, &[u8])]) -> anyhow::Result<()> {
     let figures = folder_below(out, "figures")?;
-    store(&out.join("index.html"), html(page).as_bytes())?;
-    let bundle = markdown(page, "figures");
-    store(&out.join("index.md"), bundle.text.as_bytes())?;
-    bundle.files.iter().try_for_each(|file| store(&figures.join(&file.name), &file.bytes))
+    let (html, bundle) = (html(page), markdown(page, "figures"));
+    let texts = [("index.html", html.as_bytes()), ("index.md", bundle.text.as_bytes())];
+    let texts = texts.iter().chain(further).map(|(name, bytes)| (out.join(name), *bytes));
+    let files = bundle.files.iter();
+    let files = files.map(|file| (figures.join(&file.name), file.bytes.as_slice()));
+    store_all(out, &texts.chain(files))
 }
 
 /// Returns the path of the page, to be printed below the findings.

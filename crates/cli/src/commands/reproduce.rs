@@ -15,7 +15,7 @@ use crate::args::ReproduceArgs;
 use crate::interrupt::Stopped;
 use crate::printer;
 use crate::progress::Progress;
-use crate::store::{folder_below, store, writable};
+use crate::store::writable;
 
 /// Runs every case, writes the page, prints the table.
 pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
@@ -50,11 +50,13 @@ fn prepare(out: &Path) -> anyhow::Result<()> {
 
 fn write(args: &ReproduceArgs, found: &Reproduction) -> anyhow::Result<()> {
     let out = &args.out;
-    let put = |name: &str, bytes: &[u8]| store(&out.join(name), bytes);
-    folder_below(out, "figures")?;
-    super::page::write(out, &found.document)?;
-    put("table.md", barrelstack_reproduction::table(found).as_bytes())?;
-    put("index.pdf", &document_pdf(&found.document, Paper::A4))?;
+    let table = barrelstack_reproduction::table(found);
+    let paper = document_pdf(&found.document, Paper::A4);
+    super::page::write(
+        out,
+        &found.document,
+        &[("table.md", table.as_bytes()), ("index.pdf", &paper)],
+    )?;
     let formats = args.figures.formats();
     write_figures(&found.document, &out.join("figures"), &formats, args.figures.dpi)?;
     Ok(())

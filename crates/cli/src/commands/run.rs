@@ -4,19 +4,23 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::{Context as _, bail};
+use anyhow::{anyhow, bail};
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
 use barrelstack::variants::{self, Answer, Asked, Shown};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
+use barrelstack_input::system;
 use barrelstack_report::Characters;
 
 use crate::args::{RunArgs, VariantArgs};
 use crate::comparison::Command;
 use crate::printer;
 use crate::progress::Progress;
+
+/// Largest page (bytes) that is read.
+const PAGE_LIMIT: usize = 64 << 20;
 
 /// Runs and reports.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
@@ -70,8 +74,9 @@ pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 
 /// Reads the page that holds the program.
 fn engine(path: &Path) -> anyhow::Result<String> {
-    let page = std::fs::read_to_string(path)
-        .with_context(|| format!("cannot read the page {}", path.display()))?;
+    let page = system::read(path, PAGE_LIMIT)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "it is no text".to_owned()))
+        .map_err(|reason| anyhow!("cannot read the page {}: {reason}", path.display()))?;
     if !page.contains("<script type=\"text/plain\" id=\"engine\">") {
         bail!(
             "{} holds no engine: take barrelstack.html of a release, or make one with `cargo xtask web`",

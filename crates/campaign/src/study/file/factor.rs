@@ -39,11 +39,56 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
+/// What the factors of a study may still hold, so that memory and work are bounded before values are tried.
+#[derive(Debug)]
+pub(super) struct Room {
+    /// Values that may still be listed.
+    values: usize,
+    /// Cases so far, and the most there may be; none where the design does not cross the values.
+    cases: Option<(u64, u64)>,
+}
+
+/// Most values of all factors of a study together.
+const MOST_VALUES: usize = 20_000;
+
+impl Room {
+    /// The room of a study of so many motions, whose design crosses values with at most `most` cases or does not.
+    pub(super) fn new(motions: usize, most: Option<u64>) -> Self {
+        Self { values: MOST_VALUES, cases: most.map(|most| (motions as u64, most)) }
+    }
+
+    /// Takes the values of a factor.
+    fn take(&mut self, reader: &Reader<'_>, values: &[Setting]) -> Result<(), ScenarioError> {
+        let key = if reader.has("range") { "range" } else { "values" };
+        let Some(left) = self.values.checked_sub(values.len()) else {
+            let message = format!(
+                "the factors have more than {MOST_VALUES} values together: take fewer, or a `distribution` in a sampled \
+                 design such as \"sobol\""
+            );
+            return Err(reader.inconsistent(key, message));
+        };
+        self.values = left;
+        if let Some((cases, most)) = &mut self.cases {
+            *cases = cases.saturating_mul(values.len() as u64);
+            if *cases > *most {
+                let message = format!(
+                    "with the {} values of this factor the study has more than {most} cases: take fewer values, or a \
+                     sampled design such as \"sobol\"",
+                    values.len()
+                );
+                return Err(reader.inconsistent(key, message));
+            }
+        }
+        Ok(())
+    }
+}
+
 pub(super) fn read_factor(
     reader: Reader<'_>,
     template: &Template,
     scenario: &Scenario,
     own_motion: bool,
+    room: &mut Room,
 ) -> Result<Factor, ScenarioError> {
     let field = reader.text("field")?.trim().to_owned();
     let name = reader.optional_text("name")?.unwrap_or_else(|| field.clone());
@@ -68,6 +113,9 @@ pub(super) fn read_factor(
     let Some(variation) = variation else {
         return Err(reader.one_of(&["values", "range", "distribution"]));
     };
+    if let Variation::Values(values) = &variation {
+        room.take(&reader, values)?;
+    }
     reader.finish();
     // Try every value by itself, so that one which the scenario refuses is reported at its place before any run.
     let ends: Vec<Setting> = match &variation {

@@ -42,7 +42,11 @@ struct Inner {
 impl Inner {
     fn append(&mut self, text: &str) -> anyhow::Result<()> {
         self.file.seek(SeekFrom::Start(self.length)).map_err(input::plain)?;
-        self.file.write_all(text.as_bytes()).map_err(input::plain)?;
+        if let Err(error) = self.file.write_all(text.as_bytes()) {
+            // Of a full disk; where even this is refused, the cut line counts as not done.
+            let _ = self.file.set_len(self.length);
+            return Err(input::plain(error));
+        }
         self.length += text.len() as u64;
         Ok(())
     }

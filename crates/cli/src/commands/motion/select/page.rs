@@ -16,7 +16,7 @@ pub(super) fn write(
     candidates: &[Candidate],
     told: &str,
 ) -> anyhow::Result<()> {
-    page::write(&set.args.out, &document(set, target, candidates, told))
+    page::write(&set.args.out, &document(set, target, candidates, told), &[])
 }
 
 fn document(

@@ -1,0 +1,46 @@
+//! What has to be arranged before the runtime of Rust starts.
+//!
+//! The runtime opens `/dev/null` in the place of a standard output that is closed (`>&-`), so that results would be lost
+//! without an error; and a file that grows beyond the limit of the process (`ulimit -f`) kills it, which leaves half a
+//! file. So the output is tested, and the signal ignored, by a function that the loader calls. Where a system has no
+//! place for that, neither is noticed.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Returns whether standard output was closed at the start.
+pub(crate) fn output_was_closed() -> bool {
+    CLOSED.load(Ordering::Relaxed)
+}
+
+#[cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[expect(unsafe_code, reason = "a section of the loader, and a function of the system's library")]
+mod before_main {
+    use std::os::fd::AsFd as _;
+    use std::sync::atomic::Ordering;
+
+    /// What the system says of a descriptor that is not open (EBADF).
+    const NOT_OPEN: i32 = 9;
+
+    /// The signal for a file beyond the limit of the process (SIGXFSZ), and the handler that ignores it (`SIG_IGN`).
+    const FILE_TOO_LARGE: i32 = 25;
+    const IGNORE: usize = 1;
+
+    // SAFETY: declared as in <signal.h>; a handler is an address.
+    unsafe extern "C" {
+        safe fn signal(number: i32, handler: usize) -> usize;
+    }
+
+    // SAFETY: the section holds addresses of functions like this one.
+    #[used]
+    #[unsafe(link_section = ".init_array")]
+    static ARRANGE: extern "C" fn() = arrange;
+
+    extern "C" fn arrange() {
+        signal(FILE_TOO_LARGE, IGNORE);
+        if let Err(error) = std::io::stdout().as_fd().try_clone_to_owned() {
+            super::CLOSED.store(error.raw_os_error() == Some(NOT_OPEN), Ordering::Relaxed);
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Outputs of every command: nothing that was read is replaced, nothing is lost without an error, and a full disk leaves
+//! no part of a file.
+#![cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use common::{HEAD, STUDY, barrelstack, names, program, stderr, stdout};
+
+/// Commands that write, with OUT for where; `m.txt` and `s.toml` are a motion and a study beside it.
+const WRITERS: [&[&str]; 15] = [
+    &["run", "rocking-block", "--set=run.duration=1 s", "--pdf", "--out", "OUT"],
+    &["run", "rolling-ball", "--set=run.duration=0.2 s", "--out", "OUT"],
+    &["demo", "--variants=0", "--no-remedy", "--set=run.duration=0.5 s", "--out", "OUT"],
+    &["compare", "rocking-block", "sliding-block", "--set=run.duration=1 s", "--out", "OUT"],
+    &["render", "rocking-block", "--set=run.duration=1 s", "--rate=4", "--dpi=50", "--out", "OUT"],
+    &["study", "run", "s.toml", "--out", "OUT"],
+    &["man", "OUT"],
+    &["motion", "info", "records", "--out", "OUT"],
+    &["motion", "plot", "m.txt", "-o", "OUT"],
+    &["motion", "convert", "m.txt", "-o", "OUT.npz"],
+    &["motion", "process", "m.txt", "--high-pass=0.5 Hz", "-o", "OUT.csv"],
+    &["motion", "scale", "m.txt", "--factor=2", "-o", "OUT.at2"],
+    &["motion", "spectrum", "m.txt", "-o", "OUT.csv"],
+    &["motion", "synth", "clough-penzien", "--duration=5 s", "-o", "OUT.txt"],
+    &["motion", "match", "m.txt", "--to=ec8:ag=0.3,site=B", "--accept-misfit", "-o", "OUT.txt"],
+];
+
+/// A folder with the inputs of [`WRITERS`].
+fn place() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let made = ["motion", "synth", "clough-penzien", "--duration=5 s", "-o", "m.txt"];
+    assert_eq!(program(made).current_dir(folder.path()).output().unwrap().status.code(), Some(0));
+    fs::create_dir(folder.path().join("records")).unwrap();
+    for name in ["a.txt", "b.txt"] {
+        fs::copy(folder.path().join("m.txt"), folder.path().join("records").join(name)).unwrap();
+    }
+    fs::write(folder.path().join("s.toml"), format!("{HEAD}{STUDY}")).unwrap();
+    folder
+}
+
+/// The command in a folder, with OUT as `out`, behind what a shell does before.
+fn shell(folder: &Path, before: &str, arguments: &[&str], out: &str) -> Output {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("{before}; exec \"$0\" \"$@\"")]);
+    command.arg(env!("CARGO_BIN_EXE_barrelstack"));
+    command.args(arguments.iter().map(|argument| argument.replace("OUT", out)));
+    command.current_dir(folder).stdin(Stdio::null()).output().unwrap()
+}
+
+/// Files below a folder or a file whose name begins so, with their sizes.
+fn files(folder: &Path, begins: &str) -> Vec<(String, u64)> {
+    let mut found = Vec::new();
+    let mut look = vec![folder.to_owned()];
+    while let Some(folder) = look.pop() {
+        for entry in fs::read_dir(&folder).unwrap().map(Result::unwrap) {
+            let path = entry.path();
+            if path.is_dir() {
+                look.push(path);
+            } else {
+                found.push((path.display().to_string(), entry.metadata().unwrap().len()));
+            }
+        }
+    }
+    let begins = folder.join(begins).display().to_string();
+    found.retain(|(name, _)| name.starts_with(&begins));
+    found.sort();
+    found
+}
+
+/// A limit of the size of files stands for a full disk: both refuse the rest of what is written.
+#[test]
+fn a_full_disk_leaves_no_part_of_a_file_in_any_command() {
+    let place = place();
+    for (number, command) in WRITERS.iter().enumerate() {
+        let whole = shell(place.path(), ":", command, &format!("whole-{number}"));
+        assert_eq!(whole.status.code(), Some(0), "{command:?}: {}", stderr(&whole));
+        let largest = files(place.path(), &format!("whole-{number}"));
+        let largest = largest.iter().map(|(_, size)| *size).max().unwrap();
+        // In units of 512 bytes: nearly nothing, and all but the end of the largest file.
+        for limit in [1, (largest - 1) / 512] {
+            let out = format!("cut-{number}-{limit}");
+            let cut = shell(place.path(), &format!("ulimit -f {limit}"), command, &out);
+            let words = stderr(&cut);
+            assert_eq!(cut.status.code(), Some(2), "{command:?} {limit}: {words}");
+            assert!(words.contains("a file may not be as large here"), "{command:?}: {words}");
+            assert!(words.contains(&out), "the file is named: {words}");
+            for (name, size) in files(place.path(), &out) {
+                assert!(!name.contains(".part"), "{command:?} {limit} leaves {name}");
+                assert_ne!(size, 512 * limit, "{command:?} {limit} leaves a part of {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_printed_into_a_closed_or_full_output_is_an_error_of_every_command() {
+    let place = place();
+    let printers: [&[&str]; 8] = [
+        &["scenarios"],
+        &["schema"],
+        &["completions", "bash"],
+        &["--help"],
+        &["--version"],
+        &["check", "rocking-block", "--json"],
+        &["motion", "info", "m.txt"],
+        &["study", "example", "demo-devices"],
+    ];
+    for (number, command) in WRITERS.iter().chain(&printers).enumerate() {
+        // Only what prints a result.
+        if command[0] == "man" {
+            continue;
+        }
+        for (name, before) in [("closed", "exec >&-"), ("full", "exec >/dev/full")] {
+            let said = shell(place.path(), before, command, &format!("{name}-{number}"));
+            let words = stderr(&said);
+            assert_eq!(said.status.code(), Some(2), "{command:?} {name}: {words}");
+            assert!(
+                words.contains("cannot write to standard output"),
+                "{command:?} {name}: {words}"
+            );
+        }
+        // Where somebody wants nothing printed, all is well.
+        if printers.contains(command) {
+            let said = shell(place.path(), "exec >/dev/null", command, "none");
+            assert_eq!(said.status.code(), Some(0), "{command:?}: {}", stderr(&said));
+        }
+    }
+}
+
+#[test]
+fn of_commands_at_once_in_one_new_folder_one_writes() {
+    let place = place();
+    for command in [WRITERS[0], WRITERS[3]] {
+        let start = || {
+            let arguments = command.iter().map(|argument| argument.replace("OUT", "same"));
+            let mut one = program(arguments);
+            one.current_dir(place.path()).stdout(Stdio::null()).stderr(Stdio::piped());
+            one.spawn().unwrap()
+        };
+        let both = [start(), start()].map(|one| one.wait_with_output().unwrap());
+        let mut statuses = both.each_ref().map(|one| one.status.code().unwrap());
+        statuses.sort_unstable();
+        assert_eq!(statuses, [0, 2], "{command:?}: {}", stderr(&both[0]));
+        let refused = both.iter().find(|one| one.status.code() == Some(2)).unwrap();
+        assert!(stderr(refused).contains("is not empty"), "{}", stderr(refused));
+        fs::remove_dir_all(place.path().join("same")).unwrap();
+    }
+}
+
+#[test]
+fn what_a_command_reads_it_never_replaces() {
+    let place = place();
+    let at = |name: &str| place.path().join(name);
+    let run = |arguments: &[&str]| shell(place.path(), ":", arguments, "out");
+    let kept = |name: &str, arguments: &[&str]| {
+        let before = fs::read(at(name)).unwrap();
+        let said = run(arguments);
+        let words = stderr(&said);
+        assert_eq!(said.status.code(), Some(2), "{arguments:?}: {words}");
+        assert!(words.contains("replaces nothing that it reads"), "{arguments:?}: {words}");
+        assert!(words.contains("cannot write "), "{words}");
+        assert_eq!(fs::read(at(name)).unwrap(), before, "{arguments:?}");
+    };
+    let short = "--set=run.duration=1 s";
+    assert_eq!(run(&["run", "rocking-block", short, "--out", "out"]).status.code(), Some(0));
+    kept("out/scenario.toml", &["run", "out/scenario.toml", "--out", "out", "--overwrite"]);
+    let page = ["compare", "out/scenario.toml", "rocking-block", short, "--out", "out"];
+    let page = run(&[&page[..], &["--overwrite"]].concat());
+    assert_eq!(page.status.code(), Some(2), "{}", stderr(&page));
+    // However the path is written.
+    std::os::unix::fs::symlink(at("m.txt"), at("link.txt")).unwrap();
+    for same in ["m.txt", "out/../m.txt", "link.txt"] {
+        for (from, to) in [("m.txt", same), (same, "m.txt")] {
+            kept("m.txt", &["motion", "scale", from, "--factor=2", "-o", to, "--overwrite"]);
+            kept("m.txt", &["motion", "convert", from, "-o", to, "--overwrite"]);
+        }
+    }
+    kept("m.txt", &["motion", "spectrum", "m.txt", "-o", "m.txt", "--overwrite"]);
+    // A copy of the study lies in its folder, which is its own to write.
+    assert_eq!(run(&["study", "run", "s.toml", "--out", "st"]).status.code(), Some(0));
+    let again = run(&["study", "run", "st/study.toml", "--out", "st"]);
+    assert_eq!(again.status.code(), Some(0), "{}", stderr(&again));
+    assert!(names(&at("st")).unwrap().contains(&"study.toml".to_owned()));
+    assert!(!stdout(&barrelstack(["scenarios"])).is_empty());
+}
