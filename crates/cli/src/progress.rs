@@ -20,6 +20,9 @@ const LOOKED_AT: Duration = Duration::from_secs(1);
 /// Minimum share of the work done for an estimate, unless the work takes long.
 const SHARE: f64 = 0.02;
 
+/// The number of runs of many that predict the others; fewer with half of all.
+const ENOUGH: f64 = 24.0;
+
 /// Shortest total time for which an estimate is shown.
 const LONG: Duration = Duration::from_secs(10);
 
@@ -64,13 +67,13 @@ impl Progress {
     pub(crate) fn at(&self, progress: barrelstack::Progress) -> ControlFlow<()> {
         let barrelstack::Progress { time, end_time } = progress;
         self.interrupt.reached("seconds", time);
-        self.told(time, end_time, || format!("{time:.1} of {end_time:.1} s simulated"))
+        self.told(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
     /// Reports the number of finished things of a total.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
-        self.told(done as f64, of as f64, || format!("{done} of {of} {things}"))
+        self.told(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
     }
 
     /// Reports the progress of a run and its variants.
@@ -100,7 +103,7 @@ impl Progress {
         self.interrupt.flow()
     }
 
-    fn told(&self, done: f64, of: f64, words: impl Fn() -> String) -> ControlFlow<()> {
+    fn told(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
@@ -110,8 +113,31 @@ impl Progress {
             bar.set_position(thousandths(done));
             bar.set_message(words());
         }
-        self.lines.at(done, of, words);
+        self.lines.at(done, of, work, words);
         self.interrupt.flow()
+    }
+}
+
+/// What work consists of, which decides when its first part predicts the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Of {
+    /// One run, whose simulated time advances evenly.
+    One,
+    /// Many runs side by side, of which the short ones end first.
+    Many,
+}
+
+impl Of {
+    /// Returns the estimated time to go, or none as long as too little is done: the first of many runs to end are those
+    /// that collapse early, and none may have ended while all are half done.
+    fn to_go(self, spent: Duration, first: f64, done: f64, of: f64) -> Option<Duration> {
+        let gone = done - first;
+        let enough = match self {
+            Self::One => gone >= SHARE * of || spent >= EVERY,
+            Self::Many => gone >= ENOUGH.min(0.5 * (of - first)) && spent >= EVERY,
+        };
+        let known = enough && gone > 0.0 && spent >= LOOKED_AT;
+        known.then(|| spent.mul_f64(((of - done) / gone).clamp(0.0, 1e6)))
     }
 }
 
@@ -160,7 +186,7 @@ impl Lines {
     }
 
     /// Reports the progress of work.
-    pub(crate) fn at(&self, done: f64, of: f64, words: impl Fn() -> String) {
+    pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
         let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
         // A large decrease starts the next part; a small one comes from another thread.
         let anew = of != told.of || done < 0.5 * told.done;
@@ -169,12 +195,14 @@ impl Lines {
             Some(start) if !anew => start,
             _ => *told.start.insert((Instant::now(), done)),
         };
-        let (spent, gone, left) = (start.elapsed(), done - first, of - done);
-        // The first of many concurrent items do not predict the rest.
-        if spent < LOOKED_AT || gone <= 0.0 || (gone < SHARE * of && spent < EVERY) {
+        let spent = start.elapsed();
+        let Some(to_go) = work.to_go(spent, first, done, of) else {
+            if told.last.elapsed() > EVERY {
+                printer::note(&words());
+                told.last = Instant::now();
+            }
             return;
-        }
-        let to_go = spent.mul_f64((left / gone).clamp(0.0, 1e6));
+        };
         if !told.whole && spent + to_go > LONG {
             told.whole = true;
             printer::note(&format!("this takes about {}", rounded(spent + to_go)));
@@ -208,5 +236,70 @@ fn rounded(time: Duration) -> String {
         seconds @ 0..90 => format!("{} s", seconds.max(1)),
         seconds @ 90..5400 => format!("{} min", (seconds + 30) / 60),
         seconds => format!("{} h", (seconds + 1800) / 3600),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ends (s) of runs of these lengths, `width` of them side by side, in their order.
+    fn ends(width: usize, lengths: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut free = vec![0.0_f64; width];
+        let mut ends: Vec<f64> = lengths
+            .map(|length| {
+                let next = free.iter_mut().min_by(|a, b| a.total_cmp(b)).unwrap();
+                *next += length;
+                *next
+            })
+            .collect();
+        ends.sort_by(f64::total_cmp);
+        ends
+    }
+
+    /// The time (s) of the first estimate and what it says of the whole; none where the work ends before.
+    fn first(ends: &[f64]) -> Option<(f64, f64)> {
+        let times = (0..).map(|tenth| 0.1 * f64::from(tenth));
+        times.take_while(|time| Some(time) < ends.last()).find_map(|time| {
+            let done = ends.iter().filter(|end| **end <= time).count() as f64;
+            let spent = Duration::from_secs_f64(time);
+            let to_go = Of::Many.to_go(spent, 0.0, done, ends.len() as f64)?;
+            Some((time, time + to_go.as_secs_f64()))
+        })
+    }
+
+    /// Runs that stand take their whole time, those that collapse a part of it; simulated, so that no clock counts.
+    #[test]
+    fn first_estimates_are_within_a_factor_of_two_whatever_share_collapses() {
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let (mut made, mut wrong, mut latest) = (0, 0, 0.0_f64);
+        for trial in 0..1000 {
+            let (width, count) = ([1, 2, 4, 8, 16, 32][trial % 6], [64, 100, 512][trial % 3]);
+            let whole = [0.3, 1.0, 3.0, 6.0, 10.0, 30.0][trial / 6 % 6];
+            let (share, part) = (uniform(), 0.1 + 0.5 * uniform());
+            let lengths = (0..count).map(|_| {
+                let length = if uniform() < share {
+                    part * (0.7 + 0.6 * uniform())
+                } else {
+                    0.9 + 0.2 * uniform()
+                };
+                whole * length
+            });
+            let ends = ends(width, lengths.collect::<Vec<_>>().into_iter());
+            let all = ends[count - 1];
+            if all < 12.0 {
+                continue;
+            }
+            let (at, estimate) = first(&ends).expect("an estimate");
+            made += 1;
+            latest = latest.max(at / all);
+            wrong += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
+            assert!((0.25..=4.0).contains(&(estimate / all)), "{estimate} of {all} s");
+        }
+        assert!(made > 500 && wrong * 100 <= made && latest <= 0.75, "{wrong} of {made}, {latest}");
     }
 }

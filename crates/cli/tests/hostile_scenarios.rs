@@ -204,3 +204,27 @@ fn motions_that_are_not_there() {
         &["N999", "\"Up\""],
     );
 }
+
+#[test]
+fn scenes_that_fill_all_memory_are_refused_at_the_body_that_is_too_many() {
+    let body = |name: usize, fields: &str| {
+        format!("[[body]]\nname = \"b{name}\"\nkind = \"b\"\nmass = \"1 kg\"\n{fields}\n")
+    };
+    let nodes = "shape = { type = \"rectangle\", width = \"1 m\", height = \"1 m\" }\n\
+                 nodes = { spacing = \"0.2 mm\" }\nposition = [\"0 m\", \"0 m\"]";
+    let plane: String = (0..120).map(|name| body(name, nodes)).collect();
+    let plane = format!("schema = 1\nkind = \"free\"\n{plane}");
+    refuse("nodes", plane.as_bytes(), &["more than 2000000 contact nodes", "take fewer bodies"]);
+    let part = "{ solid = { type = \"ball\", radius = \"0.1 m\" } }";
+    let solid = format!(
+        "solid = {{ type = \"compound\", parts = [{}] }}\nposition = [\"0 m\", \"0 m\", \"0 m\"]",
+        [part; 1100].join(",")
+    );
+    let space: String = (0..2).map(|name| body(name, &solid)).collect();
+    let space = format!("schema = 1\nkind = \"free-spatial\"\n{space}");
+    refuse(
+        "pairs",
+        space.as_bytes(),
+        &["more than 1000000 pairs of solids", "fewer bodies or parts"],
+    );
+}

@@ -1,6 +1,7 @@
 //! Outputs of every command: nothing that was read is replaced, nothing is lost without an error, and a full disk leaves
 //! no part of a file.
 #![cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 mod common;
 
@@ -179,7 +180,6 @@ fn what_a_command_reads_it_never_replaces() {
             kept("m.txt", &["motion", "convert", from, "-o", to, "--overwrite"]);
         }
     }
-    kept("m.txt", &["motion", "spectrum", "m.txt", "-o", "m.txt", "--overwrite"]);
     // A copy of the study lies in its folder, which is its own to write.
     assert_eq!(run(&["study", "run", "s.toml", "--out", "st"]).status.code(), Some(0));
     let again = run(&["study", "run", "st/study.toml", "--out", "st"]);

@@ -144,10 +144,7 @@ fn read(opened: &Opened, fetch: Option<Fetch<'_>>) -> Result<Study, StudyError> 
     }
     of_their_own_names(&top, &motions)?;
 
-    let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
-    let crosses = top.optional_section("design")?.and_then(|design| design.choice("kind").ok());
-    let crosses = crosses.is_some_and(|kind: DesignKind| crossing.contains(&kind));
-    let mut room = Room::new(motions.len(), crosses.then_some(MOST_CASES));
+    let mut room = room_for(&top, motions.len())?;
     let mut factors: Vec<Factor> = Vec::new();
     for reader in top.sections("factor")? {
         let factor = read_factor(reader, &template, &scenario, own, &mut room)?;
@@ -246,6 +243,15 @@ fn hash(study: &Study, scenario: Option<&Scenario>) -> Result<u64, StudyError> {
         all.push(format!("{} {bytes:016x}", motion.name));
     }
     Ok(crate::scenario::fnv1a(all.join("\u{0}").as_bytes()))
+}
+
+/// The room for values of factors, by the number of motions and the kind of the design.
+fn room_for(top: &Reader<'_>, motions: usize) -> Result<Room, ScenarioError> {
+    let crossing = [DesignKind::FullFactorial, DesignKind::Stripes, DesignKind::Ida];
+    let kind: Option<DesignKind> =
+        top.optional_section("design")?.and_then(|design| design.choice("kind").ok());
+    let crosses = kind.is_some_and(|kind| crossing.contains(&kind));
+    Ok(Room::new(motions, crosses.then_some(MOST_CASES)))
 }
 
 /// Refuses too many motions.

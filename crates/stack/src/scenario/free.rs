@@ -129,6 +129,9 @@ impl FreeBody {
 /// Maximum number of bodies of a free scene.
 const MOST_BODIES: usize = 5000;
 
+/// Maximum number of contact nodes of all bodies of a free scene.
+const MOST_NODES: f64 = 2e6;
+
 table! {
     /// A boundary of a body beside that of its own shape; it weighs nothing.
     pub static BOUNDARY = "boundary";
@@ -187,7 +190,7 @@ table! {
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
-    let mut names = BTreeSet::new();
+    let (mut names, mut nodes) = (BTreeSet::new(), 0.0);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
             let message = format!("a free scene has at most {MOST_BODIES} bodies");
@@ -198,7 +201,22 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
         }
-        bodies.push(read_body(reader, name)?);
+        let refuse = reader.inconsistent(
+            "shape",
+            format!(
+                "with this body the scene has more than {MOST_NODES} contact nodes: take fewer bodies, or wider \
+                 spacings of their nodes"
+            ),
+        );
+        let body = read_body(reader, name)?;
+        nodes += nodes::number(&body.nodes, Some(&body.shape));
+        for boundary in &body.boundaries {
+            nodes += nodes::number(&boundary.nodes, boundary.shape.as_ref());
+        }
+        if nodes > MOST_NODES {
+            return Err(refuse);
+        }
+        bodies.push(body);
     }
     if bodies.is_empty() {
         return Err(root.missing("body"));

@@ -128,6 +128,12 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
             );
             return Err(nodes.inconsistent("spacing", message));
         }
+        Nodes::Count(count) if number(&rule, Some(shape)) > MOST_NODES => {
+            let message = format!(
+                "{count} nodes on each side are more than {MOST_NODES} on the whole boundary; take fewer"
+            );
+            return Err(nodes.inconsistent("count", message));
+        }
         Nodes::Rolling
         | Nodes::Corners
         | Nodes::Exact
@@ -137,6 +143,26 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     }
     nodes.finish();
     Ok(rule)
+}
+
+/// Returns the number of nodes of a boundary, to within a few at the corners.
+pub(super) fn number(nodes: &Nodes, shape: Option<&Shape>) -> f64 {
+    let sides = |shape: &Shape| match shape {
+        Shape::Polygon { vertices } => vertices.len() as f64,
+        Shape::Circle { .. } => 1.0,
+        Shape::Rectangle { .. }
+        | Shape::Cradle { .. }
+        | Shape::BarrelProfile { .. }
+        | Shape::Compound { .. } => 4.0,
+    };
+    let all = |shape: &Shape| shape.parts().iter().map(|part| sides(&part.shape)).sum::<f64>();
+    match (nodes, shape) {
+        (Nodes::At(list), _) => list.len() as f64,
+        (_, None) => 0.0,
+        (Nodes::Spacing(spacing), Some(shape)) => shape.perimeter() / spacing,
+        (Nodes::Count(count), Some(shape)) => f64::from(*count) * all(shape),
+        (Nodes::Rolling | Nodes::Corners | Nodes::Exact, Some(shape)) => all(shape),
+    }
 }
 
 /// Writes the placement.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use barrelstack_bodies::SpatialBody;
+use barrelstack_bodies::{Solid, SpatialBody};
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::reader::Reader;
 use barrelstack_input::section;
@@ -41,10 +41,20 @@ pub struct SpatialScene {
 /// Maximum number of bodies of a free scene in space, whose pairs are listed one by one.
 const MOST_BODIES: usize = 500;
 
+/// Maximum number of pairs of solids of a free scene in space, whether an interface names them or not.
+const MOST_PAIRS: usize = 1_000_000;
+
+/// Returns the number of solids of a body.
+fn solids(body: &SpatialBody) -> usize {
+    if let Solid::Compound { parts } = &body.solid { parts.len() } else { 1 }
+}
+
 /// Reads the fields of a free scene in space from the top of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
     let ground = SpatialGround::read(root.section("ground")?)?;
     let mut bodies: Vec<SpatialBody> = Vec::new();
+    // Pairs so far, and solids before the next body; the ground is one.
+    let (mut pairs, mut before) = (0_usize, 1_usize);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
             let message = format!("a free scene in space has at most {MOST_BODIES} bodies");
@@ -56,7 +66,21 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
         }
-        bodies.push(SpatialBody::checked(reader)?);
+        // Kept for an error at its place; the body takes the reader.
+        let refuse = reader.inconsistent(
+            "solid",
+            format!(
+                "with this body the scene has more than {MOST_PAIRS} pairs of solids: take fewer bodies or parts"
+            ),
+        );
+        let body = SpatialBody::checked(reader)?;
+        let new = solids(&body);
+        pairs = pairs.saturating_add(new.saturating_mul(before));
+        before += new;
+        if pairs > MOST_PAIRS {
+            return Err(refuse);
+        }
+        bodies.push(body);
     }
     if bodies.is_empty() {
         return Err(root.missing("body"));

@@ -11,7 +11,7 @@ use indicatif::ProgressBar;
 
 use crate::interrupt::Interrupt;
 use crate::printer;
-use crate::progress::{Bar, Lines, style};
+use crate::progress::{Bar, Lines, Of, style};
 
 /// Progress display and cancellation of a study.
 pub(super) struct Live {
@@ -107,6 +107,7 @@ impl Live {
         self.damaged.store(progress.damaged, Ordering::Relaxed);
         self.healed.store(progress.manifest_healed, Ordering::Relaxed);
         self.waiting.at(progress.waits_for);
+        self.interrupt.reached("cases", progress.now as f64);
         if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style(
@@ -127,7 +128,7 @@ impl Live {
             }
         }
         let left = progress.cases.saturating_sub(progress.before);
-        self.lines.at(progress.now as f64, left as f64, || {
+        self.lines.at(progress.now as f64, left as f64, Of::Many, || {
             format!("{} of {} cases", progress.before + progress.now, progress.cases)
         });
         self.interrupt.flow()

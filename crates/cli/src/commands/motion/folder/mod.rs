@@ -20,7 +20,7 @@ use indicatif::ProgressBar;
 use super::input::{self, Chain, Input};
 use crate::interrupt::Interrupt;
 use crate::printer;
-use crate::progress::{Bar, Lines, style};
+use crate::progress::{Bar, Lines, Of, style};
 use crate::store::store;
 use columns::{Found, cells};
 use journal::{Entry, Journal};
@@ -194,7 +194,7 @@ pub(super) fn run(
         if let Some(bar) = &bar.0 {
             bar.set_position(done as u64);
         }
-        lines.at(done as f64, sources.len() as f64, || {
+        lines.at(done as f64, sources.len() as f64, Of::Many, || {
             format!("{done} of {} records", sources.len())
         });
     });
