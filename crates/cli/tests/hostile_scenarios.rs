@@ -218,7 +218,7 @@ fn scenes_that_fill_all_memory_are_refused_at_the_body_that_is_too_many() {
     let part = "{ solid = { type = \"ball\", radius = \"0.1 m\" } }";
     let solid = format!(
         "solid = {{ type = \"compound\", parts = [{}] }}\nposition = [\"0 m\", \"0 m\", \"0 m\"]",
-        [part; 1100].join(",")
+        vec![part; 1100].join(",")
     );
     let space: String = (0..2).map(|name| body(name, &solid)).collect();
     let space = format!("schema = 1\nkind = \"free-spatial\"\n{space}");
