@@ -452,7 +452,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["match", first, "--to", "nch433:zone=4,soil=A"], &["zone", "\"4\""]),
         (&["match", first, "--to", "ac156:sds=1,x=2"], &["no parameter x"]),
         (&["match", first, "--to", table], &["table.csv, line 1", "period (s), Sa (g)"]),
-        (&["synth", "ricker", "--peak", "3", "--period", "1 s"], &["--peak", "no unit", "0.4 g"]),
+        (&["synth", "ricker", "--peak", "3", "--period", "1 s"], &["--peak", "no unit", "3 g"]),
         (&["synth", "ricker", "--peak", "3 g", "--period", "0 s"], &["period", "above 0"]),
         (&["synth", "boore", "--magnitude", "12", "--distance", "9 km"], &["magnitude", "9.5"]),
     ];
