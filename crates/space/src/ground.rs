@@ -125,12 +125,12 @@ impl From<barrelstack::Ground> for Ground {
 }
 
 impl Ground {
-    /// Acceleration (m/s²) at a time (s).
+    /// Returns the acceleration (m/s²) at a time (s).
     pub fn acceleration(&self, time: f64) -> Vec3 {
         self.kinematics(time)[2]
     }
 
-    /// Displacement (m), velocity (m/s) and acceleration (m/s²) at a time (s).
+    /// Returns displacement (m), velocity (m/s) and acceleration (m/s²) at a time (s).
     fn kinematics(&self, time: f64) -> [Vec3; 3] {
         let Some(motion) = &self.first.motion else { return Default::default() };
         let first = motion.horizontal.at(time);

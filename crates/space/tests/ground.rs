@@ -1,5 +1,5 @@
-//! Ground motion in space: directions of its components, rotation of the stack, and largest values of every step and of the
-//! record.
+//! Ground motion in space: directions of its components, rotation of the stack, and largest values over all steps and
+//! of the record.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -69,7 +69,7 @@ fn components_of_unknown_directions_are_said_to_be_taken() {
     assert!(told.iter().any(|told| told.contains("does not say how")), "{told:?}");
 }
 
-/// One level on its rack in space under a motion, until a time (s), with further changes.
+/// Returns one level on its rack in space under a motion, until a time (s), with further changes.
 fn one_level(changes: &[String], record: Option<&Record>) -> Run {
     let own = ["stack.view=spatial", "stack.levels=1"].map(str::to_owned);
     let scenario = soft_demo(&[&own, changes].concat());
@@ -77,7 +77,7 @@ fn one_level(changes: &[String], record: Option<&Record>) -> Run {
         .unwrap()
 }
 
-/// The largest values (g) of the components, across, along and up, in the pictures of a run.
+/// Returns the largest values (g) of the components, across, along and up, in the pictures of a run.
 fn drawn(run: &Run) -> Vec<f64> {
     let largest =
         |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
@@ -132,7 +132,7 @@ fn peaks_of_the_ground_on_the_page_are_those_of_the_record() {
 
 #[test]
 fn the_largest_slip_is_that_of_one_instant() {
-    // Slides to and fro in both directions.
+    // Reversing slip in both directions.
     let changes = [
         "stack.view=spatial",
         "stack.levels=1",
