@@ -35,21 +35,25 @@ def items(text: str) -> str:
     return "\n".join(lines)
 
 
+def inline(text: str) -> str:
+    """References and literals of reStructuredText as Markdown; not for blocks of code, whose fences look like literals."""
+    text = re.sub(r":(?:meth|class|func|attr|mod):`([^`]+)`", r"`\1`", text)
+    return re.sub(r"``([^`]+)``", r"`\1`", text)
+
+
 def docstring(text: str) -> str:
     """A docstring of numpydoc as Markdown."""
     parts = SECTION.split(re.sub(r"^::\n", "", text, flags=re.MULTILINE))
-    out = [parts[0].strip()]
+    out = [inline(parts[0].strip())]
     for name, body in zip(parts[1::2], parts[2::2], strict=True):
         body = body.strip("\n")
         if name == "Examples":
             out.append(f"```python\n{inspect.cleandoc(body)}\n```")
         elif name == "Notes":
-            out.append(body.strip())
+            out.append(inline(body.strip()))
         else:
-            out.append(f"*{name}*\n\n{items(body)}")
-    marked = "\n\n".join(out)
-    marked = re.sub(r":(?:meth|class|func|attr|mod):`([^`]+)`", r"`\1`", marked)
-    return re.sub(r"``([^`]+)``", r"`\1`", marked)
+            out.append(f"*{name}*\n\n{inline(items(body))}")
+    return "\n\n".join(out)
 
 
 def signature(thing: Any) -> str:

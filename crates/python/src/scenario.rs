@@ -4,6 +4,7 @@ use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
@@ -16,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
-use crate::listen::{Hear, listening};
+use crate::listen::{Hear, LISTEN, listening};
 use crate::record::{Record, of_motion};
 use crate::run::{Glance, Run};
 use crate::space::SpatialRun;
@@ -176,9 +177,18 @@ impl Scenario {
             let scenario = self.inner.with_records(&mut from_disk)?;
             let plane = variants::planes(&scenario)?.remove(0);
             let stated = plane.scenario;
+            let mut listened = Instant::now();
             let mut eye = |glance: barrelstack::watch::Glance<'_>| {
+                let due = glance.steps.is_multiple_of(every.get());
+                if !due && listened.elapsed() < LISTEN {
+                    return ControlFlow::Continue(());
+                }
+                listened = Instant::now();
                 let told = Python::attach(|py| {
                     py.check_signals()?;
+                    if !due {
+                        return Ok(false);
+                    }
                     let seen = Bound::new(py, Glance::of(py, &glance)?)?;
                     look.bind(py).call1((seen,))?.is_truthy()
                 });
@@ -191,7 +201,9 @@ impl Scenario {
                     }
                 }
             };
-            let run = stated.run_before(stated.ground()?, Pace::Steps(every), &mut eye)?;
+            // At every step, so that Ctrl-C is heard between two calls.
+            let run =
+                stated.run_before(stated.ground()?, Pace::Steps(NonZero::<u64>::MIN), &mut eye)?;
             let summary = Summary::of(&run, None);
             Ok(Answer {
                 scenario,

@@ -64,6 +64,28 @@ impl Table {
         Self { columns: columns.iter().map(column).collect() }
     }
 
+    /// Creates a table from name, unit, role, kind and values of each column, as [`Self::specs`] and [`Self::values`]
+    /// return them.
+    #[staticmethod]
+    fn of_parts(
+        columns: Vec<(String, String, String, String, Bound<'_, PyAny>)>,
+    ) -> PyResult<Self> {
+        let column =
+            |(name, unit, role, kind, values): (_, _, String, String, Bound<'_, PyAny>)| {
+                let name: String = name;
+                let unit: String = unit;
+                let role = serde_json::from_value(role.into()).map_err(errors::general)?;
+                let kind = serde_json::from_value(kind.into()).map_err(errors::general)?;
+                let values = match kind {
+                    ValueKind::Integer => Values::Integer(values.extract()?),
+                    ValueKind::Number => Values::Number(values.extract()?),
+                    ValueKind::Text => Values::Text(values.extract()?),
+                };
+                Ok(Column { spec: ColumnSpec::new(&name, &unit, role, kind), values })
+            };
+        Ok(Self { columns: columns.into_iter().map(column).collect::<PyResult<_>>()? })
+    }
+
     /// Creates a table of cases from any object with an Arrow stream.
     #[staticmethod]
     fn from_arrow(table: &Bound<'_, PyAny>) -> PyResult<Self> {

@@ -198,6 +198,7 @@ print("begins", flush=True)
         'barrelstack.ensemble([{"stack.levels": 5}] * 4096)',
         'barrelstack.Study.load("napa-four-levels").run("FOLDER")',
         'barrelstack.Scenario.load("candia-8-barrels").set("run.step", "1 us").observe(lambda glance: False)',
+        'barrelstack.Scenario.load("candia-8-barrels").set("run.step", "1 us").observe(lambda glance: False, every=10**9)',
     ],
 )
 def test_ctrl_c_ends_work_within_a_second(work: str, tmp_path: Path) -> None:

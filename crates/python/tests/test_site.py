@@ -47,6 +47,19 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
     assert "*Raises*" in text
 
 
+def test_the_reference_shows_every_example_as_code(site: Path) -> None:
+    text = (site / "source" / "reference" / "package.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    sources = (ROOT / "crates" / "python" / "python" / "barrelstack").glob("*.py")
+    written = sum(path.read_text(encoding="utf-8").count("Examples\n    --") for path in sources)
+    assert len(blocks) == written
+    assert written >= 10
+    assert all(">>> " in block for block in blocks)
+    assert len(re.findall("^``[^`]", text, re.MULTILINE)) == 0
+    page = (site / "html" / "reference" / "package.html").read_text(encoding="utf-8")
+    assert page.count("&gt;&gt;&gt;") >= written
+
+
 def test_every_file_that_the_theory_manual_names_is_there() -> None:
     text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     named = set(re.findall(r"`(crates/[\w/.-]+)`", text))

@@ -36,7 +36,17 @@ from ._decide import (
     score,
 )
 from ._ensemble import ensemble
-from ._errors import BarrelstackWarning, Error, RecordError, RunError, ScenarioError, StudyError
+from ._errors import (
+    ArgumentError,
+    BarrelstackWarning,
+    Error,
+    FileError,
+    RecordError,
+    RunError,
+    ScenarioError,
+    StudyError,
+    guard,
+)
 from ._page import Page
 from ._record import Channel, Intensity, Record
 from ._records import Selection, intensities, read_folder, select
@@ -50,6 +60,7 @@ from ._table import Column, Table
 __version__ = _native.VERSION
 
 __all__ = [
+    "ArgumentError",
     "BarrelstackWarning",
     "Calibration",
     "Channel",
@@ -62,6 +73,7 @@ __all__ = [
     "Envelope",
     "Error",
     "Estimate",
+    "FileError",
     "Force",
     "Fragility",
     "Frames",
@@ -154,3 +166,6 @@ def formats() -> dict[str, str]:
         Names, with their publishers.
     """
     return dict(_native.formats())
+
+
+guard(globals(), __all__)

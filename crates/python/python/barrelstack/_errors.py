@@ -6,12 +6,37 @@
     ├── ScenarioError   a scenario or study file, an override, a value
     ├── RecordError     a strong-motion file, or a request about one
     ├── RunError        a stack that does not stand, a step that is too long
-    └── StudyError      a folder, a shard, a study without a verdict
+    ├── StudyError      a folder, a shard, a study without a verdict
+    ├── ArgumentError   an argument of the wrong type or out of range; also a ValueError, TypeError and OverflowError
+    └── FileError       a file or folder that cannot be opened or written; also an OSError
+
+Mappings raise KeyError, sequences IndexError and sections AttributeError for what they do not hold, and what a callback
+of the caller raises is passed on.
 """
 
 from __future__ import annotations
 
-__all__ = ["BarrelstackWarning", "Error", "RecordError", "RunError", "ScenarioError", "StudyError"]
+import functools
+import inspect
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+__all__ = [
+    "ArgumentError",
+    "BarrelstackWarning",
+    "Error",
+    "FileError",
+    "RecordError",
+    "RunError",
+    "ScenarioError",
+    "StudyError",
+]
+
+#: The folder of the package.
+HERE = str(Path(__file__).resolve().parent) + os.sep
 
 
 class Error(Exception):
@@ -65,5 +90,84 @@ class StudyError(Error):
     """A study cannot be run, collected or decided."""
 
 
+class ArgumentError(Error, ValueError, TypeError, OverflowError):
+    """An argument has the wrong type or is out of range."""
+
+
+class FileError(Error, OSError):
+    """A file or a folder cannot be opened or written."""
+
+
+class MissingFileError(FileError, FileNotFoundError):
+    """A file or a folder does not exist."""
+
+
 class BarrelstackWarning(UserWarning):
     """A caveat for the reader of a result."""
+
+
+def _of_package(error: BaseException) -> bool:
+    """Whether an exception was raised by the package itself and not by a callback or another package."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    return trace is not None and trace.tb_frame.f_code.co_filename.startswith(HERE)
+
+
+def _converted(error: Exception) -> Error:
+    """The exception of the package for one of Python's."""
+    if isinstance(error, OSError):
+        path = None if error.filename is None else os.fsdecode(error.filename)
+        kind = MissingFileError if isinstance(error, FileNotFoundError) else FileError
+        return kind(f"{path}: {error.strerror}" if path is not None else str(error), path=path)
+    return ArgumentError(str(error))
+
+
+def _guard(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function that raises exceptions of the package where it raised those of Python."""
+
+    @functools.wraps(function)
+    def guarded(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return function(*args, **kwargs)
+        except Error:
+            raise
+        except (TypeError, ValueError, OverflowError, OSError) as error:
+            if not _of_package(error):
+                raise
+            raise _converted(error) from error
+
+    return guarded
+
+
+def guard(module: dict[str, Any], names: list[str]) -> None:
+    """Makes all public functions and methods of a package raise exceptions of one family.
+
+    Parameters
+    ----------
+    module
+        The names of the package; functions are replaced here and where they are defined, so that they can be pickled.
+    names
+        The public ones.
+    """
+    for name in names:
+        thing = module[name]
+        if inspect.isfunction(thing):
+            module[name] = _guard(thing)
+            setattr(sys.modules[thing.__module__], name, module[name])
+        elif inspect.isclass(thing) and thing.__module__.startswith("barrelstack.") and not issubclass(thing, tuple):
+            for member, value in list(vars(thing).items()):
+                if member.startswith("_") and member != "__init__" or isinstance(value, type):
+                    continue
+                if isinstance(value, (classmethod, staticmethod)):
+                    setattr(thing, member, type(value)(_guard(value.__func__)))
+                elif inspect.isfunction(value) and not issubclass(thing, Exception):
+                    setattr(thing, member, _guard(value))
+
+
+def outside() -> int:
+    """The ``stacklevel`` at which a warning of the calling function is shown in code of the caller of the package."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
+        level, frame = level + 1, frame.f_back
+    return level

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
+import zipfile
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._errors import RecordError
 from ._quantity import literal
 
 if TYPE_CHECKING:
@@ -76,7 +79,9 @@ class Record:
         Parameters
         ----------
         source
-            A path, the bytes of a file, or several paths whose components make one record.
+            A path, the bytes of a file, or several paths whose components make one record. An archive of
+            ``numpy.savez(file, acceleration=…, dt=0.01)`` is one, too: names go on with the component
+            (``acceleration_UP``).
         unit
             Unit of acceleration for files that state none: ``"g"``, ``"m/s2"``, ``"cm/s2"``, ``"gal"``.
         time_step
@@ -101,11 +106,12 @@ class Record:
         """
         given = (unit, time_step, sensitivity)
         if isinstance(source, (bytes, bytearray)):
-            return cls(_native.Record.read(bytes(source), name, *given))
+            saved = _saved(bytes(source), name, unit, time_step)
+            return saved if saved is not None else cls(_native.Record.read(bytes(source), name, *given))
         if isinstance(source, (str, os.PathLike)):
             path = os.fspath(source)
             with open(path, "rb") as file:
-                return cls(_native.Record.read(file.read(), path, *given))
+                return cls.read(file.read(), unit=unit, time_step=time_step, sensitivity=sensitivity, name=path)
         parts = [cls.read(one, unit=unit, time_step=time_step, sensitivity=sensitivity) for one in source]
         return cls(_native.Record.gather([part._native for part in parts]))
 
@@ -657,6 +663,16 @@ class Record:
         with open(name, "wb") as file:
             file.write(data)
 
+    def __copy__(self) -> Record:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Record:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        # An archive has the record bit for bit.
+        return _restored, (self._native.written("npz"), self.name)
+
     def _repr_html_(self) -> str:
         names = [channel.name for channel in self.channels]
         head = "".join(f"<th>{name}</th>" for name in ["measure", "unit", *names])
@@ -673,3 +689,33 @@ class Record:
         names = ", ".join(channel.name for channel in channels)
         step, count = channels[0].time_step, len(channels[0].acceleration)
         return f"<Record {self.name!r}: {names}; {count} samples of {step:g} s, {self.stage}>"
+
+
+def _restored(archive: bytes, name: str) -> Record:
+    """Returns a pickled record."""
+    return Record.read(archive, name=name)
+
+
+def _saved(data: bytes, name: str, unit: str | None, time_step: float | None) -> Record | None:
+    """Returns the record of an archive of ``numpy.savez(file, acceleration=…, dt=0.01)``; None for anything else."""
+    if not data.startswith(b"PK"):
+        return None
+    try:
+        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
+            arrays = dict(archive)
+    except (ValueError, OSError, zipfile.BadZipFile):
+        return None
+    steps = {key: value for key, value in arrays.items() if key in ("dt", "delta", "time_step") and value.ndim == 0}
+    components = {key: value for key, value in arrays.items() if key.startswith("acceleration") and value.ndim == 1}
+    if not components or len(steps) > 1 or len(steps) + len(components) < len(arrays):
+        return None
+    stated = float(next(iter(steps.values()))) if steps else None
+    if unit is None:
+        raise RecordError(f"{name}: expected the unit of the array acceleration, found none; state it with unit=", name)
+    if stated is not None and time_step is not None and stated != time_step:
+        raise RecordError(f"{name}: the archive has a step of {stated} s, and {time_step} s was given; give one", name)
+    step = stated if time_step is None else time_step
+    if step is None:
+        raise RecordError(f"{name}: expected a number dt (s) beside the array, found none; state time_step=", name)
+    shown = {key.removeprefix("acceleration").strip("_ ") or "H1": value for key, value in components.items()}
+    return Record.from_arrays(shown, step, unit=unit, name=name)

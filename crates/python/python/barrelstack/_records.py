@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._errors import BarrelstackWarning, RecordError
+from ._errors import BarrelstackWarning, RecordError, outside
 from ._quantity import plain
 from ._record import USUAL, Record
 from ._table import Table
@@ -72,13 +72,13 @@ def read_folder(
             try:
                 read.append(Record.read(path, unit=unit, time_step=time_step, sensitivity=sensitivity))
             except (RecordError, OSError) as refused:
-                warnings.warn(f"left out: {refused}", BarrelstackWarning, stacklevel=2)
+                warnings.warn(f"left out: {refused}", BarrelstackWarning, stacklevel=outside())
         try:
             if read:
                 whole = read[0]._native if len(read) == 1 else _native.Record.gather([one._native for one in read])
                 found[name] = Record(whole)
         except RecordError as refused:
-            warnings.warn(f"left out: {name}: {refused}", BarrelstackWarning, stacklevel=2)
+            warnings.warn(f"left out: {name}: {refused}", BarrelstackWarning, stacklevel=outside())
     return dict(sorted(found.items()))
 
 
@@ -216,10 +216,10 @@ def select(
         try:
             _, acceleration = record.spectrum(periods, of=spectrum)
         except RecordError as refused:
-            warnings.warn(f"left out: {name} has no {spectrum} spectrum: {refused}", BarrelstackWarning, stacklevel=2)
+            warnings.warn(f"left out: {name} has no {spectrum} spectrum: {refused}", BarrelstackWarning, stacklevel=outside())
             continue
         if not (acceleration > 0.0).all():
-            warnings.warn(f"left out: {name} has a spectrum that is zero", BarrelstackWarning, stacklevel=2)
+            warnings.warn(f"left out: {name} has a spectrum that is zero", BarrelstackWarning, stacklevel=outside())
             continue
         event = (events or {}).get(name, record.event) or name
         candidates.append((name, acceleration.tolist(), event))

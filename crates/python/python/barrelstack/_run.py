@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._errors import BarrelstackWarning
+from ._errors import BarrelstackWarning, outside
+from ._kept import Kept
 from ._page import frame
-from ._table import Table
+from ._table import Columns, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +30,7 @@ Glance = _native.Glance
 def warn(sentences: list[str]) -> None:
     """Issues the caveats of a result as Python warnings."""
     for sentence in sentences:
-        warnings.warn(sentence, BarrelstackWarning, stacklevel=3)
+        warnings.warn(sentence, BarrelstackWarning, stacklevel=outside())
 
 
 class Outcome(NamedTuple):
@@ -89,7 +90,7 @@ def _demands() -> list[tuple[str, str, str]]:
     return [row for row in _native.fields() if row[0].startswith("demands.")]
 
 
-class Histories(Mapping[str, "NDArray[np.float64]"]):
+class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
     """Histories of the ground, of every body and of the energies, by name: views without copies.
 
     Examples
@@ -433,8 +434,51 @@ class Run:
         chosen = [body["name"] for body in (barrels or bodies) if body["level"] == top]
         return [f"{name} displacement x" for name in chosen]
 
+    def __copy__(self) -> Run:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Run:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return Run, (_kept(self._native),)
+
     def _repr_html_(self) -> str:
         return frame(self.html())
 
     def __repr__(self) -> str:
         return f"<Run: {self.headline}>"
+
+
+class _KeptRun(Kept):
+    """What is left of a run in one plane, with the other plane where there is one."""
+
+    def __init__(self, native: _native.Run, alone: bool = False) -> None:
+        rows = {
+            "channel": len(native.channels()),
+            "joint": len(native.joints()),
+            "frame_forces": len(native.frame_times()),
+            "envelope_points": len(native.envelopes()),
+            "envelope_stresses": len(native.envelopes()),
+        }
+        answers = (
+            *("summary", "times", "channels", "joints", "bodies", "frame_times", "poses", "frame_stresses"),
+            *("envelopes", "html"),
+        )
+        super().__init__(native, ("headline", "warnings", "interrupted", "toml"), answers, rows.items())
+        variants, other = native.variants(), native.other()
+        self._variants = None if variants is None else Table(variants)
+        self._other = None if other is None or alone else _KeptRun(other, alone=True)
+        if self._other is not None:
+            self._other._other = self
+
+    def variants(self) -> _native.Table | None:
+        return None if self._variants is None else self._variants._native
+
+    def other(self) -> _KeptRun | None:
+        return self._other
+
+
+def _kept(native: Any) -> Any:
+    """What is pickled of a run."""
+    return native if isinstance(native, _KeptRun) else _KeptRun(native)

@@ -70,7 +70,7 @@ class Section:
         names = [name for name in self._names() if name.isidentifier()]
         return [*names, "help"]
 
-    def __getattr__(self, name: str) -> Section | Value:
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
         return self[name.replace("_", "-") if name not in self._names() else name]
@@ -152,16 +152,19 @@ class Scenario:
 
     def __init__(self, of: str | Mapping[str, Any], name: str = "scenario") -> None:
         self._record: Record | None = None
+        self._name = os.path.abspath(name)
         if isinstance(of, str):
             self._native = _native.Scenario.parse(name, of, [])
         else:
             self._native = _native.Scenario.from_tree(name, plain(dict(of)))
 
     @classmethod
-    def _of(cls, native: _native.Scenario, record: Record | None = None) -> Scenario:
+    def _of(cls, native: _native.Scenario, record: Record | None, name: str) -> Scenario:
         made = cls.__new__(cls)
         made._native = native
         made._record = record
+        #: A path, to the folder of which paths in the scenario are relative.
+        made._name = name
         return made
 
     @classmethod
@@ -187,7 +190,7 @@ class Scenario:
         sets = [f"{path.replace('__', '.')}={literal(value)}" for path, value in changes.items()]
         path = os.fspath(name)
         read = _native.Scenario.load if _is_file(path) else _native.Scenario.builtin
-        return cls._of(read(path, sets))
+        return cls._of(read(path, sets), None, os.path.abspath(path))
 
     def set(self, path: str | Mapping[str, Any], value: Any = None) -> Scenario:
         """Returns a new scenario with fields set.
@@ -212,7 +215,7 @@ class Scenario:
         """
         changes = path if isinstance(path, Mapping) else {path: value}
         sets = [f"{path}={literal(value)}" for path, value in changes.items()]
-        return self._of(self._native.changed(sets), self._record)
+        return self._of(self._native.changed(sets), self._record, self._name)
 
     def with_record(self, record: Record) -> Scenario:
         """Returns a new scenario with a record in place of its own motion.
@@ -226,7 +229,7 @@ class Scenario:
         -------
         Scenario
         """
-        return self._of(self._native, record)
+        return self._of(self._native, record, self._name)
 
     @property
     def _shaken(self) -> _native.Scenario:
@@ -248,7 +251,7 @@ class Scenario:
         settings = self._native.settings()
         return Section("", {path: (value, meaning) for path, value, meaning in settings})
 
-    def __getattr__(self, name: str) -> Section | Value:
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         return self.fields.__getattr__(name)
@@ -461,6 +464,15 @@ class Scenario:
         warn(run.warnings)
         return run
 
+    def __copy__(self) -> Scenario:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scenario:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _restored, (self.to_toml(), self._record, self._name)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scenario) and self.fingerprint == other.fingerprint
 
@@ -469,3 +481,8 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"<Scenario {self.title!r}, {self.fingerprint}>"
+
+
+def _restored(text: str, record: Record | None, name: str) -> Scenario:
+    """Returns a pickled scenario."""
+    return Scenario._of(_native.Scenario.parse(name, text, []), record, name)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._kept import Kept
 from ._page import frame
 from ._table import Table
 
@@ -132,8 +133,31 @@ class SpatialRun:
         """
         self._native.write(os.fspath(folder), self._stated, overwrite)
 
+    def __copy__(self) -> SpatialRun:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SpatialRun:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        native: Any = self._native
+        return SpatialRun, (native if isinstance(native, _KeptRun) else _KeptRun(native), self._stated)
+
     def _repr_html_(self) -> str:
         return frame(self.html())
 
     def __repr__(self) -> str:
         return f"<SpatialRun: {self.headline}>"
+
+
+class _KeptRun(Kept):
+    """What is left of a run in space."""
+
+    def __init__(self, native: _native.SpatialRun) -> None:
+        answers = ("summary", "bodies", "frame_times", "poses", "twists", "html")
+        super().__init__(native, ("headline", "warnings", "toml"), answers, ())
+        variants = native.variants()
+        self._variants = None if variants is None else Table(variants)
+
+    def variants(self) -> _native.Table | None:
+        return None if self._variants is None else self._variants._native

@@ -27,9 +27,20 @@ class Column(NamedTuple):
     meaning: str
 
 
-class Table:
-    """Columns of one length: ``pandas.DataFrame.from_arrow``, ``polars.DataFrame``, ``pyarrow.table`` and DuckDB accept
-    it directly.
+class Columns:
+    """Columns by name, which pandas takes as such.
+
+    Whatever says that it is a ``dict`` is a table of columns to ``pandas.DataFrame``; anything else that has names is a
+    list of these names to it. A real ``dict`` would lose its units where Arrow reads it.
+    """
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        return dict
+
+
+class Table(Columns):
+    """Columns of one length: ``pandas.DataFrame``, ``polars.DataFrame``, ``pyarrow.table`` and DuckDB accept it directly.
 
     Examples
     --------
@@ -53,6 +64,18 @@ class Table:
     def __getitem__(self, name: str) -> list[Any]:
         """Returns the values of a column: int, float or str, and None if not applicable."""
         return self._native.values(name)
+
+    def keys(self) -> list[str]:
+        """Returns the names of the columns, in order."""
+        return list(self)
+
+    def values(self) -> list[list[Any]]:
+        """Returns the values of all columns, in order."""
+        return [self[name] for name in self]
+
+    def items(self) -> list[tuple[str, list[Any]]]:
+        """Returns the names of the columns with their values, in order."""
+        return [(name, self[name]) for name in self]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """Returns the numbers of a column.
@@ -102,5 +125,19 @@ class Table:
         with open(path, "wb") as file:
             file.write(self._native.to_parquet())
 
+    def __copy__(self) -> Table:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Table:
+        return self
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _restored, ([(*column[:4], self[column.name]) for column in self.columns],)
+
     def __repr__(self) -> str:
         return f"<Table: {len(self)} rows of {', '.join(self)}>"
+
+
+def _restored(columns: list[tuple[str, str, str, str, list[Any]]]) -> Table:
+    """Returns a pickled table."""
+    return Table(_native.Table.of_parts(columns))

@@ -1,0 +1,53 @@
+"""What is left of a run when it is pickled: everything that was read from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from ._errors import RunError
+
+__all__ = ["Kept"]
+
+
+class Kept:
+    """The answers of a native run without the run, under the same names.
+
+    Its page and all its numbers are there. What is made of the run itself, such as pictures, asks for the run.
+
+    Parameters
+    ----------
+    native
+        The run, or what was kept of it.
+    properties
+        Names of attributes.
+    answers
+        Names of functions without arguments.
+    rows
+        Names of functions of an index, each with how many there are.
+    """
+
+    def __init__(
+        self, native: Any, properties: Iterable[str], answers: Iterable[str], rows: Iterable[tuple[str, int]]
+    ) -> None:
+        self._properties = {name: getattr(native, name) for name in properties}
+        self._answers: dict[str, list[Any]] = {name: [getattr(native, name)()] for name in answers}
+        self._rows = {name: [getattr(native, name)(at) for at in range(count)] for name, count in rows}
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._properties:
+            return self._properties[name]
+        if name in self._answers:
+            return lambda: self._answers[name][0]
+        if name in self._rows:
+            return self._rows[name].__getitem__
+
+        def lost(*_: object) -> Any:
+            raise RunError(
+                "this run was pickled, which keeps its numbers and its page; run its scenario again to write files and "
+                "pictures of it"
+            )
+
+        return lost

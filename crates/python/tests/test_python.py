@@ -1,0 +1,176 @@
+"""What Python expects of every package: tables for pandas, pickles, copies, one family of exceptions, types."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import barrelstack
+from barrelstack import Record, Run, Scenario, Table
+from conftest import ROOT
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return Scenario.load("candia-8-barrels").set({"run.duration": "2 s", "stack.levels": 2}).run(variants=2)
+
+
+def test_pandas_takes_histories_and_tables_by_column(run: Run) -> None:
+    pd = pytest.importorskip("pandas", reason="no pandas")
+    frame = pd.DataFrame(run.histories)
+    assert list(frame.columns) == list(run.histories)
+    assert (frame["B2.1 rotation"].to_numpy() == run.histories["B2.1 rotation"]).all()
+    table = run.variants
+    assert table is not None
+    frame = pd.DataFrame(table)
+    assert list(frame.columns) == list(table)
+    assert frame.shape == (3, len(table.columns))
+    assert frame["outcome"].tolist() == table["outcome"]
+    friction = next(column.name for column in table.columns if column.kind == "number")
+    assert np.array_equal(frame[friction].to_numpy(float), table.numbers(friction), equal_nan=True)
+
+
+def test_numpy_archives_with_a_number_as_step_are_records(tmp_path: Path) -> None:
+    samples = np.sin(np.arange(400) * 0.05)
+    path = tmp_path / "mine.npz"
+    np.savez(path, acceleration=samples, dt=0.005)
+    record = Record.read(path, unit="m/s2")
+    assert record.channels[0].time_step == 0.005
+    assert (record.channels[0].acceleration == samples).all()
+    with pytest.raises(barrelstack.RecordError, match="unit"):
+        Record.read(path)
+    with pytest.raises(barrelstack.RecordError, match="one"):
+        Record.read(path, unit="m/s2", time_step=0.01)
+    np.savez(path, acceleration_H1=samples, acceleration_UP=0.5 * samples)
+    both = Record.read(path, unit="g", time_step=0.01)
+    assert [channel.name for channel in both.channels] == ["H1", "UP"]
+    np.savez(path, acceleration=samples, dt=0.005, velocity=samples)
+    with pytest.raises(barrelstack.RecordError):
+        Record.read(path, unit="m/s2")
+
+
+def test_scenarios_and_records_are_pickled_and_copied(tmp_path: Path) -> None:
+    record = Record.bundled().scale(pgv=0.5)
+    again: Record = pickle.loads(pickle.dumps(record))
+    assert again.name == record.name
+    assert [channel[:5] for channel in again.channels] == [channel[:5] for channel in record.channels]
+    for one, other in zip(record.channels, again.channels, strict=True):
+        assert (one.acceleration == other.acceleration).all()
+    # A record of a file beside the scenario is found from any folder.
+    record.write(tmp_path / "shake.txt")
+    path = tmp_path / "mine.toml"
+    path.write_text('extends = "candia-8-barrels"\n[motion]\nrecord = "shake.txt"\n')
+    scenarios = [
+        Scenario.load("candia-8-barrels"),
+        Scenario.load("candia-8-barrels").with_record(record),
+        Scenario.load(path),
+    ]
+    for scenario in scenarios:
+        assert pickle.loads(pickle.dumps(scenario)) == scenario
+        assert copy.copy(scenario) is scenario
+        assert copy.deepcopy([scenario]) == [scenario]
+        ground, same = scenario.ground(), pickle.loads(pickle.dumps(scenario)).ground()
+        assert ground is not None
+        assert (same.channels[0].acceleration == ground.channels[0].acceleration).all()
+    assert copy.deepcopy(record) is record
+
+
+def test_runs_and_tables_are_pickled_and_copied(run: Run, tmp_path: Path) -> None:
+    again: Run = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(run))))
+    assert again.headline == run.headline
+    assert again.summary == run.summary
+    assert again.html() == run.html()
+    assert repr(again) == repr(run)
+    for name, values in run.histories.items():
+        assert np.array_equal(again.histories[name], values, equal_nan=True), name
+    assert (again.frames.poses == run.frames.poses).all()
+    assert (again.contact_forces(3) == run.contact_forces(3)).all()
+    assert again.forces.keys() == run.forces.keys()
+    assert (again.other is None) == (run.other is None)
+    table: Table = pickle.loads(pickle.dumps(run.variants))
+    assert run.variants is not None
+    assert table.columns == run.variants.columns
+    assert table.to_csv() == run.variants.to_csv()
+    with pytest.raises(barrelstack.RunError, match="run its scenario again"):
+        again.write(tmp_path / "out")
+    assert copy.copy(run) is copy.deepcopy(run) is run
+    assert copy.copy(table) is copy.deepcopy(table) is table
+
+
+STATED = Scenario({"extends": "sliding-block"})
+
+
+@pytest.mark.parametrize(
+    ("work", "also"),
+    [
+        (lambda: Record.read("no-such-file.AT2"), FileNotFoundError),
+        (lambda: Record.read(3), TypeError),  # type: ignore[arg-type]
+        (lambda: Record.bundled("mine"), ValueError),
+        (lambda: Record.from_arrays(["a"], 0.01, unit="g"), ValueError),
+        (lambda: Record.bundled().scale(1.0, pgv=2.0), TypeError),
+        (lambda: Record.bundled().write("/no/such/folder/a.txt"), OSError),
+        (lambda: Scenario.load("candia-8-barrels").run(variants=-1), OverflowError),
+        (lambda: Scenario.load("candia-8-barrels").run(variants=2**40), OverflowError),
+        (lambda: Scenario.load("candia-8-barrels").run(variants="2"), TypeError),  # type: ignore[arg-type]
+        (lambda: STATED.set("run.duration", object()), TypeError),
+        (lambda: STATED.observe(lambda glance: None, every=-1), OverflowError),
+        (lambda: Scenario(3), TypeError),  # type: ignore[arg-type]
+        (lambda: Scenario.load("no-such-scenario"), ValueError),
+        (lambda: barrelstack.schema("mine"), ValueError),
+        (lambda: barrelstack.Study.collect("/no/such/folder"), Exception),
+    ],
+)
+def test_what_the_package_refuses_is_of_one_family(work: Callable[[], object], also: type[Exception]) -> None:
+    with pytest.raises(barrelstack.Error) as caught:
+        work()
+    assert isinstance(caught.value, also)
+    assert str(caught.value)
+
+
+def test_what_a_callback_raises_is_passed_on() -> None:
+    def look(glance: barrelstack.Glance) -> None:
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match="mine") as caught:
+        STATED.observe(look)
+    assert not isinstance(caught.value, barrelstack.Error)
+
+
+SCRIPT = """
+import barrelstack
+
+scenario = barrelstack.Scenario.load("candia-8-barrels")
+levels: int = scenario.stack.levels
+print(levels + 1, scenario.stack["levels"], scenario.fields.stack.levels)
+"""
+
+
+def test_fields_of_a_scenario_pass_a_strict_checker(tmp_path: Path) -> None:
+    pytest.importorskip("mypy", reason="no mypy")
+    path = tmp_path / "mine.py"
+    path.write_text(SCRIPT)
+    words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), str(path)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_extra_for_the_site_has_what_it_imports() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    extra = re.search(r"^docs = \[(.*?)^\]", text, re.DOTALL | re.MULTILINE)
+    assert extra is not None
+    named = set(re.findall(r'"([\w-]+)', extra.group(1))) | {"numpy", "barrelstack"}
+    sources = [ROOT / "docs" / "build.py", *(ROOT / "docs" / "notebooks").glob("*.ipynb")]
+    imported = set()
+    for path in sources:
+        imported |= set(re.findall(r'^(?:    ")?(?:import|from) (\w+)', path.read_text(encoding="utf-8"), re.MULTILINE))
+    # The kernel of notebooks and the program that lays out pages are started, not imported.
+    needed = (imported - set(sys.stdlib_module_names) - {"__future__"}) | {"ipykernel", "mkdocs"}
+    assert needed <= named, needed - named
