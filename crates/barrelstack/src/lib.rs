@@ -55,6 +55,6 @@ pub use barrelstack_motion as motion;
 pub use barrelstack_motion::Record;
 pub use barrelstack_stack::{
     Ensemble, Ground, Progress, Restless, Run, RunFailure, Scenario, assemble, check, demand,
-    device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, step, watch,
+    device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, stability, step, watch,
 };
 pub use summary::Summary;

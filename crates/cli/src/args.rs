@@ -160,6 +160,10 @@ pub(crate) struct DemoArgs {
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scenario: ScenarioArgs,
+    /// Print how firmly the stack stands with two to seven levels on its own rack and on every rack of the catalog: how far
+    /// it sinks, its longest period of sway, and the tilt of the floor at which it falls.
+    #[arg(long)]
+    pub(crate) table: bool,
     /// Print one JSON document in place of the lines for people.
     #[arg(long)]
     pub(crate) json: bool,

@@ -330,6 +330,11 @@ impl<S: Space> Model<S> {
         self.gravity
     }
 
+    /// Sets the acceleration of free fall (m/s²).
+    pub fn set_gravity(&mut self, gravity: S::Vector) {
+        self.gravity = gravity;
+    }
+
     /// Returns the body with a name.
     pub fn body_named(&self, name: &str) -> Option<BodyId> {
         self.bodies.iter().position(|b| b.name == name)

@@ -128,17 +128,14 @@ pub fn check(scenario: &Scenario) -> Result<Checked, RunFailure> {
     let scenario = &scenario.with_records(&mut from_disk)?;
     let ground = scenario.ground()?;
     let end_time = end_time(scenario, ground.motion_end(), scenario.run.similitude.sqrt())?;
-    let Standing { assembly, state, scratch, settled, step } = stand(scenario, end_time)?;
+    let standing = stand(scenario, end_time)?;
+    let deepest = standing.deepest_sinking();
+    let Standing { assembly, scratch, settled, step, .. } = standing;
     let scale = scenario.run.similitude.sqrt();
     let rates = (scenario.record.frame_rate / scale, scenario.record.history_rate / scale);
     check_memory(&assembly, end_time, rates)?;
     let count = |kind| assembly.of_kind(kind).count();
-    let rest = settled.map(|settled| {
-        let sunk = assembly.model.bodies().iter().zip(&state.poses);
-        let deepest =
-            sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max);
-        AtRest::of(settled, deepest)
-    });
+    let rest = settled.map(|settled| AtRest::of(settled, deepest));
     let sticks = if scenario.run.settle {
         SoftStick::of(&assembly, &scratch, ground.motion.as_ref())
     } else {

@@ -26,6 +26,7 @@ mod rest;
 pub mod run;
 pub mod scenario;
 pub mod slosh;
+pub mod stability;
 mod stand;
 pub mod step;
 mod stick;

@@ -2,16 +2,32 @@
 
 use std::process::ExitCode;
 
+use anyhow::Context as _;
+use barrelstack::Scenario;
 use barrelstack::check::Checked;
 use barrelstack::ground::from_disk;
+use barrelstack::scenario::catalog;
+use barrelstack::stability::{StabilityRow, StabilityTable};
 use barrelstack::variants;
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, ScenarioArgs};
 use crate::printer;
+
+/// Levels of the table.
+const LEVELS: std::ops::RangeInclusive<u32> = 2..=7;
 
 /// Reads, builds and settles, and prints the findings.
 pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     let scenario = super::load(&args.scenario)?;
+    if args.table {
+        let table = table(&scenario, &args.scenario)?;
+        if args.json {
+            printer::document(&table)?;
+        } else {
+            printer::lines(table.lines())?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
     let placed = |error| super::placed(error, &scenario, &args.scenario);
     let planes = variants::planes(&scenario).map_err(|error| placed(error.into()))?;
     let one = if scenario.is_spatial() { barrelstack_space::check } else { barrelstack::check };
@@ -35,4 +51,28 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
         printer::lines(found.lines())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// How firmly the stack of a scenario stands at every height, on its own rack and on those of the catalog.
+fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTable> {
+    let stack = scenario.stack().filter(|_| !scenario.is_spatial()).with_context(|| {
+        "--table is about a stack in its planes: take a scenario with a stack, and stack.view = \"both\", \"transverse\" or \
+         \"longitudinal\""
+    })?;
+    let known = catalog::RACKS.iter().map(|known| &known.rack);
+    let own = known.clone().find(|rack| **rack == stack.rack).map(|rack| rack.base);
+    let others = known.filter(|rack| Some(rack.base) != own).map(|rack| Some(rack.base));
+    let mut rows = Vec::new();
+    for rack in std::iter::once(None).chain(others) {
+        for levels in LEVELS {
+            let mut args = args.clone();
+            args.set.extend(rack.map(|rack| format!("stack.rack=\"{rack}\"")));
+            args.set.push(format!("stack.levels={levels}"));
+            let with = super::load(&args).and_then(|scenario| Ok(variants::planes(&scenario)?));
+            let with = with
+                .with_context(|| format!("{} with {levels} levels", rack.unwrap_or("the stack")))?;
+            rows.extend(with.iter().filter_map(|plane| StabilityRow::of(&plane.scenario)));
+        }
+    }
+    Ok(StabilityTable { schema: "stability/1", title: scenario.title.clone(), rows })
 }

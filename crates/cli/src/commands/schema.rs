@@ -50,6 +50,7 @@ documents! {
     "summary" Summary: "run --json, and summary.json of --out";
     "space" barrelstack_space::Summary: "run --json where stack.view is \"spatial\", and summary.json of --out";
     "check" barrelstack::check::Checked: "check --json";
+    "stability" barrelstack::stability::StabilityTable: "check --table --json";
     "comparison" Comparison: "compare --json";
     "heights" HeightsDocument: "heights --json, and heights.json of --out";
     "protect" ProtectDocument: "protect --json, and protect.json of --out";

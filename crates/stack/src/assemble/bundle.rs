@@ -14,6 +14,7 @@
 
 use barrelstack_dynamics::math;
 
+use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
@@ -62,7 +63,11 @@ impl Bundle {
             View::Longitudinal => RAILS / f64::from(rack.barrels),
         };
         // A flat face bears on its two corners, unless it has a row of nodes.
-        let flat = if rack.contact == SeatContact::Nodes { 1.0 } else { 0.5 };
+        let has_row = match view {
+            View::Transverse => rack.contact == SeatContact::Nodes,
+            View::Longitudinal => has_rows(spec),
+        };
+        let flat = if has_row { 1.0 } else { 0.5 };
         let on_posts = rack.kind == RackKind::OnRacks;
         Self::of(match (pair, view) {
             (StackPair::BarrelRack, View::Longitudinal) => 1.0,

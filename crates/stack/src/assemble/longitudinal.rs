@@ -13,7 +13,7 @@ use super::builder::{Builder, Draft};
 use super::solid::{Seat, Solid, row};
 use super::transverse::TUBE_CORNER;
 use super::{AssembleError, PartKind, posts};
-use crate::scenario::{Posts, Rack, RackKind, SeatContact};
+use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 
 /// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
@@ -126,7 +126,7 @@ fn add_rack(
         let at = Vec2::new(x, 0.5 * (bottom + top));
         let seat = if rack.posts.is_some() { Seat::Barrel(barrel) } else { Seat::Along(barrel) };
         let mut rail = Solid::exact(Shape::Polygon(tube), at, seat);
-        if rack.contact == SeatContact::Nodes {
+        if has_rows(spec) {
             rail.widest = WIDEST;
             if rack.posts.is_none() {
                 rail.below = noded_face(rack, x, bottom, -1.0);
@@ -166,6 +166,14 @@ fn add_rack(
         builder.bodies[*barrel].pose.orientation = rack.incline;
     }
     Ok((rack_id, barrels))
+}
+
+/// Returns whether rails carry rows of nodes.
+///
+/// A barrel lies on the round of a rail over some millimeters, and a rail on the ground with its two corners: with constants
+/// per seat each is one element, however finely wider seats are divided.
+pub(super) fn has_rows(spec: &StackSpec) -> bool {
+    spec.rack.contact == SeatContact::Nodes && spec.interfaces.barrel_rack.basis != Basis::Seat
 }
 
 /// Returns the parts of a rack on posts beside its barrels: the tube from post to post, the posts, and the cups over

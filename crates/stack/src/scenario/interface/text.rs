@@ -17,12 +17,6 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Tangential stiffness of a seat over its normal stiffness.
-///
-/// Staves bend under a normal load and carry drag in their own surface, which is stiffer; with this ratio the stick
-/// of five levels on the ground of South Napa yields early enough to reverse friction as rigid friction does.
-const STICK_OF_SEAT: f64 = 2.0;
-
 /// Defaults of a stack for constants that its scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
@@ -110,7 +104,7 @@ pub(in crate::scenario) fn read(
     if defaults.is_none() && !reader.has("friction") {
         return Err(reader.missing("friction"));
     }
-    let friction = read_friction(reader.section("friction")?, defaults, basis)?;
+    let friction = read_friction(reader.section("friction")?, defaults, seat)?;
     reader.finish();
     Ok(Interface { basis, normal, friction })
 }
@@ -182,7 +176,7 @@ fn write_damping(
 fn read_friction(
     reader: Reader<'_>,
     defaults: Option<PairDefaults>,
-    basis: Basis,
+    seat: Option<Seat>,
 ) -> Result<Friction, ScenarioError> {
     let coefficient = || -> Result<f64, ScenarioError> {
         match (reader.optional_number("coefficient")?, defaults) {
@@ -210,7 +204,7 @@ fn read_friction(
                 static_coefficient,
                 tangential_stiffness_ratio: reader
                     .optional_number("tangential_stiffness_ratio")?
-                    .unwrap_or(if basis == Basis::Seat { STICK_OF_SEAT } else { 1.0 }),
+                    .unwrap_or(seat.map_or(1.0, |seat| seat.stick)),
                 tangential_damping_ratio: reader.number("tangential_damping_ratio")?,
             }
         }

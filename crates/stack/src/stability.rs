@@ -1,0 +1,226 @@
+//! How firmly a stack stands: how far it sinks, how slowly it sways, and the tilt of the floor that fells it.
+//!
+//! All of it follows from equilibria, so no time is stepped through.
+
+use barrelstack_dynamics::body::Motion;
+use barrelstack_dynamics::settle::settle;
+use barrelstack_dynamics::{Lack, Linear as _, Model, Planar, Scratch, State, Vec2, math};
+use barrelstack_report::described;
+
+use crate::run::RunFailure;
+use crate::scenario::{Scenario, View};
+use crate::stand::{Standing, UNBALANCED, stand};
+
+/// Tilt (rad) of the floor under which a stack moves as it does when it sways: so small that nothing slips.
+const NUDGE: f64 = 1e-4;
+
+/// Steps (rad) in which the floor is tilted, and how closely the tilt at failure is found: 2° and 1/16°.
+const FIRST_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
+const FINEST_STEP: f64 = FIRST_STEP / 32.0;
+
+/// Tilt (rad) at which the search ends: 45°.
+const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
+
+described! {
+    /// How firmly stacks stand that nothing shakes, one row for each rack, plane and height.
+    #[derive(Clone, Debug)]
+    pub struct StabilityTable {
+        /// Name and version of this layout.
+        pub schema: &'static str ["stability/1"],
+        /// The scenario's title.
+        pub title: String,
+        /// The rows: first those of the scenario's own rack, then those of the other racks of the catalog.
+        pub rows: Vec<StabilityRow>,
+    }
+
+    /// How firmly one stack stands.
+    #[derive(Clone, Debug)]
+    pub struct StabilityRow {
+        /// Its rack.
+        pub rack: String,
+        /// The plane of the model.
+        pub view: &'static str ["transverse", "longitudinal"],
+        /// Its levels.
+        pub levels: u32,
+        /// What it does at rest; null where it does not stand on a level floor.
+        pub stands: Option<Stability>,
+        /// Why it does not stand on a level floor, or cannot be built; null where it stands.
+        pub refused: Option<String>,
+    }
+
+    /// How firmly a stack stands that nothing shakes.
+    #[derive(Clone, Debug)]
+    pub struct Stability {
+        /// Deepest sinking of a body into its contacts as the stack comes to rest, which is that of the top.
+        pub sinking: f64 as "m",
+        /// Longest period of sway while nothing slips, by Rayleigh's quotient.
+        pub period: f64 as "s",
+        /// Tilt of the floor at which the stack stands no more; null where it stands at 45°.
+        pub tilt: Option<f64> as "rad",
+        /// The body that goes first at that tilt.
+        pub body: Option<String>,
+        /// How it goes: slides, tips, or is displaced.
+        pub failure: Option<&'static str> ["slides", "tips", "is displaced"],
+    }
+}
+
+/// Finds how firmly the stack of a scenario stands, in the plane that it states.
+///
+/// # Errors
+/// As [`Scenario::run`]; also where the stack does not stand on a level floor.
+pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
+    let standing = stand(scenario, 1.0)?;
+    let (tilt, first) = standing.tilt_at_failure().unzip();
+    let (body, failure) = first.unzip();
+    Ok(Stability {
+        sinking: standing.deepest_sinking(),
+        period: standing.period(),
+        tilt,
+        body,
+        failure,
+    })
+}
+
+/// The longest period (s) of sway of the stack of a scenario while nothing slips.
+///
+/// # Errors
+/// As [`stability`].
+pub fn sway_period(scenario: &Scenario) -> Result<f64, RunFailure> {
+    Ok(stand(scenario, 1.0)?.period())
+}
+
+impl StabilityRow {
+    /// The row of a scenario in one plane; none for a free scene.
+    pub fn of(scenario: &Scenario) -> Option<Self> {
+        let stack = scenario.stack()?;
+        let (stands, refused) = match stability(scenario) {
+            Ok(found) => (Some(found), None),
+            Err(failure) => (None, Some(failure.to_string())),
+        };
+        let rack = stack.rack.base.to_owned();
+        Some(Self { rack, view: stack.view.name(), levels: stack.levels, stands, refused })
+    }
+}
+
+impl StabilityTable {
+    /// The rows, a line each, for people.
+    pub fn lines(&self) -> Vec<String> {
+        let wide = self.rows.iter().map(|row| row.rack.len()).max().unwrap_or(0).max(4);
+        let mut lines = vec![
+            self.title.clone(),
+            format!("{:wide$}  plane   levels  sinks (mm)  period (s)  falls at tilt", "rack"),
+        ];
+        lines.extend(self.rows.iter().map(|row| {
+            let plane = if row.view == View::Transverse.name() { "across" } else { "along" };
+            let found = match (&row.stands, &row.refused) {
+                (Some(found), _) => {
+                    let tilt = match (found.tilt, &found.body, found.failure) {
+                        (Some(tilt), Some(body), Some(failure)) => {
+                            format!("{:.1}°: {body} {failure}", tilt.to_degrees())
+                        }
+                        _ => "stands at 45°".to_owned(),
+                    };
+                    format!("{:>10.1}  {:>10.3}  {tilt}", 1e3 * found.sinking, found.period)
+                }
+                (None, refused) => refused.clone().unwrap_or_default(),
+            };
+            format!("{:wide$}  {plane:6}  {:>6}  {found}", row.rack, row.levels)
+        }));
+        lines
+    }
+}
+
+impl Standing {
+    /// How far (m) a body sank at most as the stack came to rest.
+    pub(crate) fn deepest_sinking(&self) -> f64 {
+        let sunk = self.assembly.model.bodies().iter().zip(&self.state.poses);
+        sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max)
+    }
+
+    /// The longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways pull gives the stack: the work of
+    /// the pull against the kinetic energy of that shape.
+    fn period(&self) -> f64 {
+        let model = &self.assembly.model;
+        let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
+        let pulled = [-NUDGE, NUDGE].map(|tilt| {
+            let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
+            // What stands with any margin stands at a ten thousandth; where it does not, its last place is as good.
+            let _ = settle(&tilted(model, tilt), &mut state, &mut scratch, UNBALANCED);
+            state
+        });
+        let (mut work, mut swung) = (0.0, 0.0);
+        for (id, body) in model.bodies().iter().enumerate() {
+            if body.motion != Motion::Free {
+                continue;
+            }
+            let [left, right] = pulled.each_ref().map(|state| state.poses[id]);
+            let moved = (right.position - left.position) * 0.5;
+            let turned = 0.5 * (right.orientation - left.orientation);
+            work += body.mass * pull * moved.x;
+            swung += body.mass * moved.dot(moved) + body.inertia * turned * turned;
+        }
+        std::f64::consts::TAU * (swung / work).sqrt()
+    }
+
+    /// The least tilt (rad) of the floor to either side at which the stack stands no more, and the body that goes first
+    /// with how it goes; none where it stands at 45° to both sides.
+    fn tilt_at_failure(&self) -> Option<(f64, (String, &'static str))> {
+        let left = self.tilt_at_failure_to(-1.0, STEEPEST);
+        // To the other side it is enough to see whether the stack stands as far.
+        let steepest = left.as_ref().map_or(STEEPEST, |(tilt, _)| *tilt);
+        self.tilt_at_failure_to(1.0, steepest).or(left)
+    }
+
+    /// The same to one side, none where it stands at `steepest` (rad): the floor is tilted step by step, and the stack comes
+    /// to rest after each.
+    fn tilt_at_failure_to(
+        &self,
+        side: f64,
+        steepest: f64,
+    ) -> Option<(f64, (String, &'static str))> {
+        let model = &self.assembly.model;
+        let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
+        let (mut tilt, mut step) = (0.0, FIRST_STEP);
+        let mut failure = None;
+        while tilt < steepest {
+            let mut tried: (State<Planar>, Scratch<Planar>) = (state.clone(), scratch.clone());
+            let next = (tilt + step).min(steepest);
+            let steeper = tilted(model, side * next);
+            match settle(&steeper, &mut tried.0, &mut tried.1, UNBALANCED) {
+                Ok(_) => {
+                    (state, scratch) = tried;
+                    tilt = next;
+                }
+                Err(error) => {
+                    failure = Some((error.body, word(&error.lack)));
+                }
+            }
+            // Once a steeper tilt is known to fail, half the distance to it is tried.
+            if failure.is_some() {
+                if step <= FINEST_STEP {
+                    break;
+                }
+                step *= 0.5;
+            }
+        }
+        failure.map(|failure| (tilt, failure))
+    }
+}
+
+/// How a body goes that lacks something.
+fn word(lack: &Lack) -> &'static str {
+    match lack {
+        Lack::Friction { .. } | Lack::Stick { .. } => "slides",
+        Lack::Balance { .. } => "tips",
+        Lack::Support | Lack::Stiffness { .. } | Lack::Place | Lack::Time { .. } => "is displaced",
+    }
+}
+
+/// A model on a floor that is tilted by an angle (rad), seen from the floor: gravity pulls aside.
+fn tilted(model: &Model<Planar>, angle: f64) -> Model<Planar> {
+    let (sin, cos) = math::sin_cos(angle);
+    let down = -model.gravity().z;
+    let mut tilted = model.clone();
+    tilted.set_gravity(Vec2::new(down * sin, -down * cos));
+    tilted
+}
