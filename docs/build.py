@@ -157,6 +157,7 @@ def main() -> int:
     (source / "reference").mkdir()
     for page in DOCS.glob("*.md"):
         shutil.copy(page, source / page.name)
+    shutil.copytree(DOCS / "pictures", source / "pictures")
     for path in sorted((DOCS / "notebooks").glob("*.ipynb")):
         notebook(path, source / "notebooks")
     reference = source / "reference"

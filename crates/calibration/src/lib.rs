@@ -3,6 +3,8 @@
 //! | test | file | gives |
 //! |---|---|---|
 //! | [`stiffness`] | penetration and force | `k` |
+//! | [`mod@sag`] | load and sag of a rack | `k` |
+//! | [`mod@sway`] | periods of a stack that was tapped | `k` |
 //! | [`mod@drop`] | drop and rebound heights, or times of impact | restitution, `c` |
 //! | [`friction`] | pull forces, or tilt angles | static and kinetic μ |
 //! | [`response`] | histories of a shaken stack | `k`, `c`, μ together |
@@ -27,8 +29,10 @@ mod page;
 mod parameters;
 pub mod response;
 mod result;
+pub mod sag;
 pub mod statistics;
 pub mod stiffness;
+pub mod sway;
 
 pub use barrelstack_input::measured::{Table, TableError};
 pub use error::CalibrateError;

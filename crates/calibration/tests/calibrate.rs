@@ -7,11 +7,14 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
 use barrelstack::scenario::Scenario;
+use barrelstack::stability::sway_period;
 use barrelstack_calibration::collapse::{Observations, Settings, collapse};
 use barrelstack_calibration::drop::{GRAVITY, Striker, drop};
 use barrelstack_calibration::friction::friction;
 use barrelstack_calibration::response::response;
+use barrelstack_calibration::sag::sag;
 use barrelstack_calibration::stiffness::stiffness;
+use barrelstack_calibration::sway::sway;
 use barrelstack_calibration::{CalibrateError, Calibration, Parameter, Table, impact};
 use barrelstack_motion::Random;
 use barrelstack_report::FigureKind;
@@ -54,6 +57,81 @@ fn stiffness_and_seating_lie_within_their_intervals() {
         stiffness(&Table::parse("press.csv", &text).unwrap(), 2, "barrel-rack").unwrap()
     });
     assert_covered(&covered); // measured 95 and 94
+}
+
+/// A scenario with the lines of a calibration, which must parse.
+fn pasted(base: &str, found: &Calibration) -> Scenario {
+    let text = format!("schema = 1\nextends = \"demo-napa\"\n{base}\n{}", found.scenario);
+    Scenario::from_str(&text).unwrap()
+}
+
+#[test]
+fn stiffness_from_sag_lies_within_its_interval_and_parses() {
+    // A full barrel set down on the four supports of a cradle at 28°, and heavier loads, read to 0.02 mm.
+    let angle = 28_f64.to_radians();
+    let campaign = |random: &mut Random| {
+        let mut text = String::from("load (kg),sag (mm),angle (deg)\n");
+        for load in [45.0, 270.0, 270.0, 270.0, 405.0, 540.0] {
+            let sag = load * GRAVITY / (4.0 * 3e6 * angle.cos() * angle.cos());
+            writeln!(text, "{load},{},28", 1e3 * sag + 0.02 * random.normal()).unwrap();
+        }
+        sag(&Table::parse("sag.csv", &text).unwrap(), 4, "barrel-rack").unwrap()
+    };
+    let covered = coverage(&[("stiffness k", 3e6)], campaign);
+    assert_covered(&covered);
+    let found = campaign(&mut Random::new(7));
+    let k = found.estimate("stiffness k").unwrap();
+    assert!(k.relative() < 0.2, "{k:?}");
+    let stiffness = pasted("", &found).stack().unwrap().interfaces.barrel_rack.normal;
+    let told = format!("{stiffness:?}");
+    assert!(told.contains(&format!("stiffness: {:?}", rounded(k.value))), "{told}: {k:?}");
+}
+
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap()
+}
+
+#[test]
+fn hollow_seats_and_bad_sags_are_told() {
+    let table = |text: &str| Table::parse("sag.csv", text).unwrap();
+    // Half a millimeter of play.
+    let play = "load (kg),sag (mm)\n100,0.6\n200,0.7\n300,0.801\n400,0.9\n";
+    let found = sag(&table(play), 4, "barrel-rack").unwrap();
+    assert!(
+        found.warnings.iter().any(|warning| warning.contains("hollow")),
+        "{:?}",
+        found.warnings
+    );
+    for (bad, word) in [
+        ("load (kg),sag (mm)\n100,0.1\n", "repeat"),
+        ("load (kg),sag (mm)\n100,-0.1\n200,-0.2\n", "does not grow"),
+        ("load (kg)\n100\n200\n", "sag"),
+    ] {
+        let error = sag(&table(bad), 4, "barrel-rack").unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
+}
+
+#[test]
+fn stiffness_from_a_tap_test_comes_back_and_parses() {
+    let base = "[stack]\nview = \"longitudinal\"\nlevels = 2\n";
+    let scenario =
+        Scenario::from_str(&format!("schema = 1\nextends = \"demo-napa\"\n{base}")).unwrap();
+    let stiff = "[interface.barrel-rack]\nstiffness = \"6 MN/m\"\n[interface.rack-ground]\nstiffness = \"20 MN/m\"\n";
+    let truth =
+        Scenario::from_str(&format!("schema = 1\nextends = \"demo-napa\"\n{base}{stiff}")).unwrap();
+    let period = sway_period(&truth).unwrap();
+    let text = format!("period (s)\n{}\n{}\n{}\n", 0.99 * period, period, 1.01 * period);
+    let found = sway(&Table::parse("taps.csv", &text).unwrap(), &scenario).unwrap();
+    let k = found.estimate("stiffness k").unwrap();
+    assert!((k.value / 6e6 - 1.0).abs() < 1e-3, "{k:?}");
+    assert!(k.covers(6e6) && k.relative() < 0.1, "{k:?}");
+    let again = sway_period(&pasted(base, &found)).unwrap();
+    assert!((again / period - 1.0).abs() < 1e-3, "{again} {period}");
+    let slow = Table::parse("taps.csv", "period (s)\n90\n91\n").unwrap();
+    assert!(sway(&slow, &scenario).unwrap_err().to_string().contains("no stiffness"));
+    let both = Scenario::builtin("demo-napa", &[]).unwrap();
+    assert!(sway(&slow, &both).unwrap_err().to_string().contains("stack.view"));
 }
 
 #[test]

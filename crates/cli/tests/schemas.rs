@@ -258,6 +258,11 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     seen.run(&["calibrate", "friction", &tilt], 0);
     let press = write("press.csv", "penetration (mm),force (kN)\n1,2\n2,4.1\n3,5.9\n");
     seen.run(&["calibrate", "stiffness", &press], 0);
+    let sag = write("sag.csv", "load (kg),sag (mm)\n135,0.11\n270,0.22\n270,0.23\n");
+    seen.run(&["calibrate", "stiffness", &sag, "--seats=4"], 0);
+    let taps = write("taps.csv", "period (s)\n0.41\n0.42\n0.4\n");
+    let along = ["--set=stack.view=longitudinal", "--set=stack.levels=2"];
+    seen.run(&[&["calibrate", "stiffness", &taps, "--scenario=demo-napa"][..], &along].concat(), 0);
 
     seen.run(&["motion", "info", "napa-college-2014"], 0);
     seen.run(&["motion", "info", "napa-college-2014", "--all-measures"], 0);
@@ -281,7 +286,7 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     }
 
     // Slow documents are checked by the test below.
-    let slow = ["heights", "protect", "rockscore"].map(str::to_owned);
+    let slow = ["heights", "protect", "rockscore", "stability"].map(str::to_owned);
     let seen: BTreeSet<String> = seen.0.into_keys().chain(slow).collect();
     assert_eq!(seen, listed());
 }
@@ -325,6 +330,8 @@ fn what_takes_a_minute_has_its_schema() {
     assert!(value["protections"].as_array().unwrap().len() > 2);
     let file = fs::read_to_string(folder.path().join("protect/protect.json")).unwrap();
     seen.document("protect.json", &file);
+    let value = seen.run(&["check", "candia-8-barrels", "--table"], 0);
+    assert_eq!(value["rows"].as_array().unwrap().len(), 7 * 6);
     let out = path(folder.path(), "score");
     let value = seen.run(&["score", "candia-8-barrels", "--quiet", "--out", &out], 0);
     assert_eq!(value["states"].as_array().unwrap().len(), 2);

@@ -10,7 +10,8 @@ use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_calibration::collapse::{Errors, Observations, Settings};
 use barrelstack_calibration::drop::{GRAVITY, Striker};
 use barrelstack_calibration::{
-    CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, stiffness,
+    CalibrateError, Calibration, Parameter, Table, collapse, drop, friction, response, sag,
+    stiffness, sway,
 };
 use clap::{Subcommand, ValueEnum};
 
@@ -42,7 +43,8 @@ pub(crate) struct CalibrateArgs {
 /// The test.
 #[derive(Debug, Subcommand)]
 enum Test {
-    /// Stiffness k from a press test: columns `penetration (mm),force (kN)`.
+    /// Stiffness k from a press test: columns `penetration (mm),force (kN)`; from the sag of a loaded rack: columns
+    /// `load (kg),sag (mm)` and, for a cradle, `angle (deg)`; or from a tap test: column `period (s)`, and --scenario.
     Stiffness(StiffnessArgs),
     /// Restitution and damping c from drops: columns `drop height (mm),rebound height (mm)`, or
     /// `time (s)` of the impacts of one bounce sequence.
@@ -129,9 +131,15 @@ impl ChangeArgs {
 struct StiffnessArgs {
     /// The measurements (CSV).
     file: PathBuf,
-    /// Contact nodes that share the force; k is that of one.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Seats or contact nodes that share the force; k is that of one.
+    #[arg(long, visible_alias = "seats", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     nodes: u32,
+    /// The stack that was tapped, in the plane in which it swayed: a file (TOML), or the name of a built-in scenario.
+    #[arg(long)]
+    scenario: Option<String>,
+    /// Change a value of that scenario, such as stack.levels=2; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE", requires = "scenario")]
+    set: Vec<String>,
     #[command(flatten)]
     pair: PairArgs,
     #[command(flatten)]
@@ -242,10 +250,7 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let folder = result.out.as_ref().map(|out| Folder::prepare(out, result.overwrite));
     let folder = folder.transpose()?;
     let found = match &args.test {
-        Test::Stiffness(args) => {
-            let table = Table::load(&args.file)?;
-            stiffness::stiffness(&table, args.nodes, &word(args.pair.interface))?
-        }
+        Test::Stiffness(args) => pressed(args)?,
         Test::Drop(args) => {
             let striker = striker(args)?;
             let table = Table::load(&args.file)?;
@@ -272,6 +277,29 @@ pub(crate) fn calibrate(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     }
     written.transpose()?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Stiffness from a press, a sag or a tap test, by the columns of the file.
+fn pressed(args: &StiffnessArgs) -> anyhow::Result<Calibration> {
+    let table = Table::load(&args.file)?;
+    let interface = word(args.pair.interface);
+    let Some(scenario) = &args.scenario else {
+        anyhow::ensure!(
+            !table.has("period"),
+            "{}: a tap test needs the stack that was tapped: add --scenario with it, such as --scenario demo-napa --set \
+             stack.view=longitudinal",
+            args.file.display()
+        );
+        return Ok(if table.has("sag") {
+            sag::sag(&table, args.nodes, &interface)?
+        } else {
+            stiffness::stiffness(&table, args.nodes, &interface)?
+        });
+    };
+    let scenario_args =
+        ScenarioArgs { scenario: scenario.clone(), set: args.set.clone(), record: None };
+    let scenario = super::load(&scenario_args)?;
+    sway::sway(&table, &scenario).map_err(|error| placed(error, &scenario, &scenario_args))
 }
 
 fn striker(args: &DropArgs) -> anyhow::Result<Option<Striker>> {

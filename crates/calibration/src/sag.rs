@@ -1,0 +1,116 @@
+//! Stiffness of seats from the sag of a loaded rack, read from a dial gauge.
+
+use barrelstack::scenario::Dimension;
+use barrelstack_dynamics::math;
+use barrelstack_fragility::student_quantile;
+use barrelstack_report::{Axis, Figure};
+
+use super::drop::GRAVITY;
+use super::figures::{curve, figure, measured, span};
+use super::result::{quoted, short};
+use super::statistics::line;
+use super::{CalibrateError, Calibration, Estimate, Table};
+
+/// Columns of the test.
+const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
+
+/// Fits the stiffness of a seat to the sag of what lies on several of them.
+///
+/// The columns are `load`, a mass that was set down on the seats, and `sag`, by how much they gave way under it;
+/// `angle`, where there is one, is how far from upright the seats press, such as that of a cradle.
+/// `seats` are those that share the load, so `sag = load g / (seats k cos² angle)`.
+/// The interval is that of the slope of sag over load, through zero, by Student's t.
+///
+/// # Errors
+/// When the table lacks a column, has less than two rows, or the sag does not grow with the load.
+pub fn sag(table: &Table, seats: u32, interface: &str) -> Result<Calibration, CalibrateError> {
+    let load = table.required("load", Dimension::MASS)?;
+    let sag = table.required("sag", Dimension::LENGTH)?;
+    let angle = if table.has("angle") {
+        table.required("angle", Dimension::ANGLE)?
+    } else {
+        vec![0.0; load.len()]
+    };
+    if load.len() < 2 {
+        return Err(table
+            .unsuited("one row shows no scatter: repeat the test at least once")
+            .into());
+    }
+    // The force (N) that a seat alone would have to bear to sag as much.
+    let press: Vec<f64> = load
+        .iter()
+        .zip(&angle)
+        .map(|(load, angle)| {
+            let (_, cos) = math::sin_cos(*angle);
+            load * GRAVITY / (f64::from(seats) * cos * cos)
+        })
+        .collect();
+    let squares: f64 = press.iter().map(|x| x * x).sum();
+    let give = press.iter().zip(&sag).map(|(x, y)| x * y).sum::<f64>() / squares;
+    if !(give > 0.0 && give.is_finite()) {
+        return Err(table
+            .unsuited("the sag does not grow with the load: count loads from the unloaded rack and sag as positive downward")
+            .into());
+    }
+    let freedom = load.len() - 1;
+    let left: f64 = press.iter().zip(&sag).map(|(x, y)| (y - give * x) * (y - give * x)).sum();
+    let half = student_quantile(0.95, freedom) * (left / freedom as f64 / squares).sqrt();
+    let high = if give > half { 1.0 / (give - half) } else { f64::INFINITY };
+    let stiffness = Estimate {
+        name: "stiffness k".to_owned(),
+        value: 1.0 / give,
+        low: 1.0 / (give + half),
+        high,
+        dimension: Dimension::STIFFNESS,
+    };
+    let mut warnings = table.unused(&COLUMNS);
+    if let Some(found) = line(&press, &sag) {
+        // How far it sags before it bears.
+        let hollow = found.intercept;
+        let variance = found.center_variance + found.center * found.center * found.slope_variance;
+        if hollow.abs() > student_quantile(0.95, found.freedom) * variance.sqrt() {
+            warnings.push(format!(
+                "the sag does not start at zero load but at {} mm, as where seats lie hollow: read the gauge from a first, light \
+                 load on, and count both load and sag from there",
+                short(1e3 * hollow)
+            ));
+        }
+    }
+    if high.is_infinite() {
+        warnings
+            .push("the interval of k has no upper end: load more, or read more often".to_owned());
+    }
+    let scatter = (left / freedom as f64).sqrt();
+    let depths: Vec<f64> = sag.iter().map(|sag| 1e3 * sag).collect();
+    let forces: Vec<f64> = press.iter().map(|force| 1e-3 * force).collect();
+    Ok(Calibration {
+        title: format!("sag test {}: sag in proportion to load", table.file()),
+        facts: vec![
+            ("rows".to_owned(), load.len().to_string()),
+            ("seats that share the load".to_owned(), seats.to_string()),
+            ("scatter of the sag".to_owned(), format!("{} mm", short(1e3 * scatter))),
+        ],
+        scenario: format!(
+            "[interface.{interface}]\nbasis = \"seat\"\nstiffness = {}\n",
+            quoted(stiffness.value, Dimension::STIFFNESS)
+        ),
+        estimates: vec![stiffness],
+        figures: vec![picture(depths, forces, give)],
+        warnings,
+        ..Calibration::default()
+    })
+}
+
+/// The readings and the line through them.
+fn picture(sag: Vec<f64>, force: Vec<f64>, give: f64) -> Figure {
+    let fit = curve("sag in proportion to load", span(&force), |force| 1e6 * give * force);
+    let series = vec![fit, measured("measured", force, sag, 1)];
+    let caption = "The sag test: sag against the load of one seat, and the straight line of least squares through zero, whose \
+                   slope is one over the stiffness.";
+    figure(
+        "sag-test",
+        caption,
+        [Axis::new("force on a seat", "kN"), Axis::new("sag", "mm")],
+        series,
+    )
+}
