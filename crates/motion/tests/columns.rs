@@ -318,3 +318,61 @@ fn decimal_commas_are_read_as_such_or_refused() {
     assert_eq!(record.channels[0].acceleration.len(), 3200);
     refused(&pairs(1.0).replace('.', ","), "decimal points");
 }
+
+/// A header that was cut within a word names the times "e", which is also a direction.
+#[test]
+fn times_under_the_name_of_a_component_are_no_accelerations() {
+    let dt = 0.003_906_25;
+    let rows: String = (0..400)
+        .map(|k| format!("{:.8} {:.6} 0.1 0.2\n", dt * f64::from(k), (0.1 * f64::from(k)).cos()))
+        .collect();
+    for name in ["ti\ne", "EW", "acc", "E"] {
+        let text = format!(
+            "Number of Data : 400\ndt = {dt}\nPGA (m/s^2) : 1\nacceleration in m/s^2\n\
+             {name} acc Velocity Displacement\n{rows}"
+        );
+        refused(&text, "whose values rise by 0.00390625 from row to row");
+    }
+    let text = format!("acceleration in m/s^2\ntime acc Velocity Displacement\n{rows}");
+    let record = given(&text, &ReadOptions::default());
+    assert_eq!(record.channels.len(), 1);
+}
+
+/// A date that cannot be read leaves components apart, so it is reported.
+#[test]
+fn dates_that_cannot_be_read_are_reported_in_every_format_that_states_them() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    for (file, from, to) in [
+        (
+            "knet/example.EW",
+            "Record Time       1903/01/02 19:51:43",
+            "Record Time       1903/13/52 19:51",
+        ),
+        ("cwa/example.dat", "1903/01/02-23:50:29.000", "some day in winter"),
+        (
+            "unam/example.012",
+            "FECHA DEL SISMO",
+            "HORA DE LA PRIMERA MUESTRA (GMT)        : x\nFECHA DEL SISMO",
+        ),
+        ("csmip-v2/example.V2", "\n", "  START TIME: 99/99/19, 33:19:37.0 UTC\n"),
+    ] {
+        let bytes = std::fs::read(folder.join(file)).unwrap();
+        let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
+        assert!(text.contains(from), "{file}");
+        let before = read(&bytes, file, &ReadOptions::default()).unwrap();
+        let damaged: Vec<u8> = text
+            .replacen(from, to, 1)
+            .chars()
+            .map(|c| u8::try_from(u32::from(c)).unwrap())
+            .collect();
+        let after = read(&damaged, file, &ReadOptions::default()).unwrap();
+        let warned = |record: &Record| {
+            record
+                .warnings
+                .iter()
+                .any(|warning| warning.message.contains("no date and time of a first sample"))
+        };
+        assert!(!warned(&before), "{file}");
+        assert!(warned(&after), "{file}: {:?}", after.warnings);
+    }
+}

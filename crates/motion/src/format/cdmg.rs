@@ -119,6 +119,9 @@ fn read_block(
     }
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start(source, first);
+    if let Some((line, stated)) = stated_start(source, first) {
+        record.warn_of_start(line, stated.trim(), channel.start);
+    }
     channel.site = Site::default().at(position(&source.text(first + 4)));
     // `MAX  =  -.200 G`: in g even where the data are in g/10.
     let factor = if source.has(first + 11, "CM/SEC") { GAL } else { STANDARD_GRAVITY };
@@ -176,12 +179,20 @@ pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
 
 /// Parses `START TIME:  7/06/19, 03:19:37.0 UTC` among the text lines; a film recorder starts at its trigger.
 pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
-    (first..first + 6).find_map(|line| {
-        let at = ["START TIME:", "TRIGGER TIME:"]
-            .into_iter()
-            .find_map(|key| Some(source.find(line, key)? + key.len()))?;
-        Utc::in_header(&latin1(&source.raw(line)[at..]), DateOrder::MonthFirst)
-    })
+    (first..first + 6)
+        .find_map(|line| Utc::in_header(&start_in(source, line)?, DateOrder::MonthFirst))
+}
+
+/// Returns the line and the text of the first stated start, whether it can be read or not.
+pub(crate) fn stated_start(source: &Source<'_>, first: usize) -> Option<(usize, String)> {
+    (first..first + 6).find_map(|line| Some((line, start_in(source, line)?)))
+}
+
+/// Returns what follows the key of a start in a line.
+fn start_in(source: &Source<'_>, line: usize) -> Option<String> {
+    let keys = ["START TIME:", "TRIGGER TIME:"];
+    let at = keys.into_iter().find_map(|key| Some(source.find(line, key)? + key.len()))?;
+    Some(latin1(&source.raw(line)[at..]))
 }
 
 /// Parses `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W`, ignoring columns 73 to 80.

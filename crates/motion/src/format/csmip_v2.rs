@@ -3,7 +3,7 @@
 //! 25 text lines, 7 lines 16I5, 13 lines of reals, then three blocks, each with a data line.
 //! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
-use super::cdmg::{channel_name, format_in, start, station_name};
+use super::cdmg::{channel_name, format_in, start, stated_start, station_name};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
@@ -78,6 +78,9 @@ fn read_channel(
     let values: Vec<f64> = accelerations.iter().map(|value| value * unit.factor()).collect();
     let mut channel = Channel::new(name.as_str(), Direction::parse(&name), step, values);
     channel.start = start(source, first);
+    if let Some((line, stated)) = stated_start(source, first) {
+        record.warn_of_start(line, stated.trim(), channel.start);
+    }
     channel.site = Site::default().at(position(&source.text(name_line.saturating_sub(2))));
     let peak = math::peak(&channel.acceleration);
     let mut measured = vec![("accel", Quantity::Acceleration, unit.factor(), peak)];

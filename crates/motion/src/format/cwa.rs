@@ -122,9 +122,10 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     record.earthquake = Earthquake::of_magnitude(magnitudes).at(epicenter, stated("#Depth(km):"));
     let position = stated("#StationLatitude(N):").zip(stated("#StationLongitude(E):"));
     // Taiwan is eight hours ahead.
-    let start = field(source, "#StartTime(GMT+08):")
-        .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
-        .map(|local| local.later(-8.0 * 3600.0));
+    let (line, stated) = field(source, "#StartTime(GMT+08):").unwrap_or_default();
+    let local = Utc::in_header(&stated, DateOrder::DayFirst);
+    record.warn_of_start(line, &stated, local);
+    let start = local.map(|local| local.later(-8.0 * 3600.0));
     record.place(start, &Site::default().at(position));
     Ok(record)
 }

@@ -75,9 +75,10 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.warn(None, "this is the borehole sensor, not the ground surface");
     }
     let mut channel = Channel::new(name, direction, 1.0 / rate, values);
-    channel.start = field(source, "Record Time")
-        .and_then(|(_, text)| Utc::in_header(&text, DateOrder::DayFirst))
-        .map(|late| late.later(-LATE));
+    let (line, stated) = field(source, "Record Time").unwrap_or_default();
+    let late = Utc::in_header(&stated, DateOrder::DayFirst);
+    record.warn_of_start(line, &stated, late);
+    channel.start = late.map(|late| late.later(-LATE));
     let number =
         |key: &str| field(source, key).and_then(|(_, text)| leading_number(text.as_bytes()));
     channel.site = Site {

@@ -115,7 +115,12 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.channels.push(channel);
     }
     record.earthquake = earthquake(source);
-    record.place(start(source), &site(source));
+    let start = start(source);
+    if let Some((line, hour)) = field(source, "HORA DE LA PRIMERA MUESTRA") {
+        let day = field(source, "FECHA DEL SISMO").map(|(_, day)| day).unwrap_or_default();
+        record.warn_of_start(line, format!("{day} {hour}").trim(), start);
+    }
+    record.place(start, &site(source));
     Ok(record)
 }
 

@@ -217,6 +217,26 @@ fn time_of(
             });
             (true, factor.transpose()?.or(in_label))
         }
+        // Times under a name of motion or none, such as what is left of a damaged header; no ground accelerates evenly.
+        Some([Name { holds, label, .. }, ..])
+            if rises
+                && shape::is_even(&table[0])
+                && matches!(
+                    holds,
+                    Holds::Component | Holds::Unknown | Holds::Motion(Quantity::Acceleration)
+                ) =>
+        {
+            return Err(source.damaged(
+                first,
+                "times under a name of time, or accelerations",
+                format!(
+                    "a first column called {} whose values rise by {} from row to row",
+                    quoted(label),
+                    table[0][1] - table[0][0]
+                ),
+                "name the columns in a line above them, such as \"time (s), acceleration (g)\", or leave the first out",
+            ));
+        }
         // A rising column under another name does not hold times.
         Some(_) => return Ok(None),
         None => (false, None),

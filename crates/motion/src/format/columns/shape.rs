@@ -23,6 +23,18 @@ pub(super) fn is_time(column: &[f64]) -> bool {
     mean > 0.0 && even && (rising == steps || rising as f64 >= RISING * steps as f64)
 }
 
+/// Fewest rows of a column that is taken to rise evenly by its values alone.
+const EVEN_ROWS: usize = 20;
+
+/// `true` if no value of a column is further than one step from a straight line, as rounded times are.
+pub(super) fn is_even(column: &[f64]) -> bool {
+    let [from, .., to] = *column else { return false };
+    let mean = (to - from) / (column.len() - 1) as f64;
+    let line = |row: usize| from + mean * row as f64;
+    let off = |(row, value): (usize, &f64)| (value - line(row)).abs();
+    column.len() >= EVEN_ROWS && column.iter().enumerate().map(off).all(|off| off < mean.abs())
+}
+
 /// `true` if a column counts its rows from 0 or 1.
 pub(super) fn is_index(column: &[f64]) -> bool {
     matches!(column.first(), Some(0.0 | 1.0))
