@@ -242,6 +242,33 @@ fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_cou
 }
 
 #[test]
+fn cases_of_one_record_that_repeat_each_other_make_a_median_no_surer() {
+    let once = ordinary();
+    let mut collected = once.clone();
+    let mut columns = collected.table.columns().to_vec();
+    let rows: Vec<usize> = (0..96).flat_map(|row| [row; 9]).collect();
+    for column in &mut columns {
+        let mut values = Values::empty(column.spec.kind);
+        for row in &rows {
+            values.push(column.values.get(*row)).unwrap();
+        }
+        column.values = values;
+    }
+    collected.table = StudyTable::new(columns).unwrap();
+    let errors = |collected: &Collected| {
+        let found = decide(collected, &Request::default()).unwrap();
+        let stated = found.to_document().fragility[0].ln_median_standard_error.unwrap();
+        let [median, _] = found.curves[0].standard_errors().unwrap();
+        assert_eq!(stated, median);
+        // Nine times as many independent cases would have a third of the error.
+        (median, found.curves[0].fit.as_ref().unwrap().median_error)
+    };
+    let ((clustered, alone), (again, thrice)) = (errors(&once), errors(&collected));
+    assert!((alone / thrice - 3.0).abs() < 0.01, "{alone} and {thrice}");
+    assert!((again / clustered - 1.0).abs() < 1e-3, "{clustered} and {again}");
+}
+
+#[test]
 fn every_measure_stands_in_one_table_and_the_cause_comes_first() {
     let found = decide(&ordinary(), &Request::default()).unwrap();
     assert_eq!(found.measures.len(), 2);

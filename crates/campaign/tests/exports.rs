@@ -111,8 +111,9 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
                 );
                 if name == FUNCTIONS[0] {
                     let ours = losses.fallen(0.01 * x) / 6.0;
-                    // Measured: 5e-4, what is allowed.
-                    assert!((m - ours).abs() < 6e-4, "{name} at {x} cm/s: {m} and {ours}");
+                    // What is allowed, with the ends of the pieces in which it is tested.
+                    let off = (m - ours).abs();
+                    assert!(off < 3e-3 * ours + 2e-5, "{name} at {x} cm/s: {m} and {ours}");
                 }
             }
             // At the levels themselves the scatter is that of the cases, but for its bound.
@@ -355,8 +356,8 @@ fn openquake_computes_the_losses_that_we_compute() {
                     100.0 * x
                 );
                 if means {
-                    assert!((barrels - fallen).abs() < 6.0 * 6e-4, "{x}: {barrels}, not {fallen}");
-                    assert!((wine - lost).abs() < 1.35 * 6e-4, "{x}: {wine}, not {lost}");
+                    assert!((barrels / fallen - 1.0).abs() < 4e-3, "{x}: {barrels}, not {fallen}");
+                    assert!((wine / lost - 1.0).abs() < 4e-3, "{x}: {wine}, not {lost}");
                     continue;
                 }
                 // Five standard errors of the mean of what is drawn.

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use barrelstack::ensemble::Width;
-use barrelstack_campaign::study::{ChunkRun, Progress, RunOptions, Study, StudyError};
+use barrelstack_campaign::study::{ChunkRun, Progress, RunOptions, Study, StudyError, holder};
 use common::HEAD;
 
 /// Two barrels on two levels, shaken briefly.
@@ -179,4 +179,30 @@ fn a_shard_that_is_damaged_while_a_study_runs_is_counted() {
     let last = last.lock().unwrap();
     assert_eq!((last.damaged, last.now, collected.table.rows()), (1, 60, 60));
     assert!(damaged.with_extension("damaged").is_file() && !damaged.exists());
+}
+
+#[test]
+fn who_waits_for_a_chunk_of_a_stopped_process_learns_its_name() {
+    let study = Study::parse("test.toml", &text(40, PULSE, "", "sobol")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    study.run_chunk(folder.path(), 1, Width::widest(), &|| false).unwrap();
+    // A process that is stopped keeps its claim locked and does nothing.
+    let claim = folder.path().join("shards").join("000000.claim");
+    std::fs::write(&claim, "process 4711 on cellar").unwrap();
+    let stopped = Mutex::new(Some(std::fs::File::open(&claim).unwrap()));
+    stopped.lock().unwrap().as_ref().unwrap().lock().unwrap();
+    let found = Mutex::new(None);
+    let tell = |progress: &Progress| {
+        if let Some(chunk) = progress.waits_for {
+            *found.lock().unwrap() = Some((chunk, holder(folder.path(), chunk).unwrap()));
+            // It ends, and its claim is free.
+            stopped.lock().unwrap().take();
+        }
+        ControlFlow::Continue(())
+    };
+    let options = RunOptions { threads: std::num::NonZero::new(1), lanes: None };
+    study.run(folder.path(), &options, &tell).unwrap();
+    let (chunk, holder) = found.into_inner().unwrap().expect("it waits");
+    assert_eq!((chunk, holder.who.as_str()), (0, "process 4711 on cellar"));
+    assert!(folder.path().join("table.csv").is_file());
 }

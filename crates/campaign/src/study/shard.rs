@@ -13,6 +13,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 
 use super::table::StudyTable;
+use crate::scenario::quantity::plain;
 use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 
 /// Metadata key of the columns in a file: name, unit and role.
@@ -40,6 +41,12 @@ pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Ve
         names.push(name);
     }
     names
+}
+
+/// `true` if a column holds lists of numbers, which tables in memory and CSV files have as text with semicolons between
+/// them: texts have no unit.
+pub(super) fn holds_lists(spec: &ColumnSpec) -> bool {
+    spec.kind == ValueKind::Text && !spec.unit.is_empty()
 }
 
 /// Rows of a group, which are held in memory while a table is written.
@@ -79,7 +86,7 @@ impl<W: std::io::Write + Send> Writer<W> {
     fn group(&mut self, rows: &StudyTable) -> Result<(), ParquetError> {
         let mut group = self.file.next_row_group()?;
         for column in rows.columns() {
-            write_column(&mut group, &column.values)?;
+            write_column(&mut group, column)?;
         }
         group.close().map(drop)
     }
@@ -112,6 +119,9 @@ pub(super) fn to_bytes(
 
 fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
     let field = |(spec, name): (&ColumnSpec, String)| {
+        if holds_lists(spec) {
+            return list_of_numbers(&name).map(Arc::new);
+        }
         let (physical, logical) = match spec.kind {
             ValueKind::Integer => (Physical::INT64, None),
             ValueKind::Number => (Physical::DOUBLE, None),
@@ -128,6 +138,72 @@ fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 
+/// Returns the type of a list of numbers, which may be empty or missing.
+fn list_of_numbers(name: &str) -> Result<Type, ParquetError> {
+    let element = Type::primitive_type_builder("element", Physical::DOUBLE)
+        .with_repetition(Repetition::REQUIRED)
+        .build()?;
+    let list = Type::group_type_builder("list")
+        .with_repetition(Repetition::REPEATED)
+        .with_fields(vec![Arc::new(element)])
+        .build()?;
+    Type::group_type_builder(name)
+        .with_repetition(Repetition::OPTIONAL)
+        .with_logical_type(Some(LogicalType::List))
+        .with_fields(vec![Arc::new(list)])
+        .build()
+}
+
+/// Definition level of a list that is missing.
+const NO_LIST: i16 = 0;
+
+/// Definition level of a list without numbers.
+const EMPTY: i16 = 1;
+
+/// Definition level of a number in a list.
+const NUMBER: i16 = 2;
+
+/// Definition levels, repetition levels and numbers of lists.
+type Divided = (Vec<i16>, Vec<i16>, Vec<f64>);
+
+/// Divides lists that are written with semicolons.
+fn divided(lists: &[Option<String>]) -> Result<Divided, ParquetError> {
+    let (mut defined, mut repeated, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    for list in lists {
+        let words = list.as_deref().unwrap_or_default().split(';').map(str::trim);
+        let mut empty = true;
+        for word in words.filter(|word| !word.is_empty()) {
+            let number = word.parse().map_err(|_| {
+                ParquetError::General(format!("\"{word}\" stands in a list of numbers"))
+            })?;
+            defined.push(NUMBER);
+            repeated.push(i16::from(!empty));
+            numbers.push(number);
+            empty = false;
+        }
+        if empty {
+            defined.push(if list.is_some() { EMPTY } else { NO_LIST });
+            repeated.push(0);
+        }
+    }
+    Ok((defined, repeated, numbers))
+}
+
+/// Puts lists together as [`divided`] took them apart.
+fn joined(defined: &[i16], repeated: &[i16], numbers: Vec<f64>, into: &mut Vec<Option<String>>) {
+    let mut numbers = numbers.into_iter();
+    for (defined, repeated) in defined.iter().zip(repeated) {
+        if *repeated == 0 {
+            into.push((*defined != NO_LIST).then(String::new));
+        }
+        if let (NUMBER, Some(Some(text))) = (*defined, into.last_mut()) {
+            let divider = if *repeated == 0 { "" } else { ";" };
+            text.push_str(divider);
+            text.push_str(&numbers.next().map(plain).unwrap_or_default());
+        }
+    }
+}
+
 /// Returns definition levels, which mark the rows that have a value, and the values.
 fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>, Vec<U>) {
     let levels = values.iter().map(|value| i16::from(value.is_some())).collect();
@@ -136,12 +212,17 @@ fn present<T, U>(values: &[Option<T>], as_stored: impl Fn(&T) -> U) -> (Vec<i16>
 
 fn write_column<W: std::io::Write + Send>(
     group: &mut SerializedRowGroupWriter<'_, W>,
-    values: &Values,
+    column: &Column,
 ) -> Result<(), ParquetError> {
     let Some(mut writer) = group.next_column()? else {
         return Err(ParquetError::General("more columns than the schema has".to_owned()));
     };
-    match values {
+    match &column.values {
+        Values::Text(values) if holds_lists(&column.spec) => {
+            let (defined, repeated, stored) = divided(values)?;
+            let writer = writer.typed::<DoubleType>();
+            writer.write_batch(&stored, Some(&defined), Some(&repeated))?;
+        }
         Values::Integer(values) => {
             let (levels, stored) = present(values, |value| *value);
             writer.typed::<Int64Type>().write_batch(&stored, Some(&levels), None)?;
@@ -196,7 +277,13 @@ fn read_column(
     let rows = usize::try_from(group.metadata().num_rows())
         .map_err(|_| ParquetError::General("its number of rows is negative".to_owned()))?;
     let mut levels: Vec<i16> = Vec::new();
-    match (group.get_column_reader(index)?, into) {
+    let before = into.len();
+    match (group.get_column_reader(index)?, &mut *into) {
+        (ColumnReader::DoubleColumnReader(mut reader), Values::Text(into)) => {
+            let (mut repeated, mut stored) = (Vec::new(), Vec::new());
+            reader.read_records(rows, Some(&mut levels), Some(&mut repeated), &mut stored)?;
+            joined(&levels, &repeated, stored, into);
+        }
         (ColumnReader::Int64ColumnReader(mut reader), Values::Integer(into)) => {
             let mut stored = Vec::new();
             reader.read_records(rows, Some(&mut levels), None, &mut stored)?;
@@ -215,10 +302,11 @@ fn read_column(
         }
         _ => return Err(ParquetError::General("a column changes its kind".to_owned())),
     }
-    if levels.len() == rows {
+    let read = into.len() - before;
+    if read == rows {
         Ok(())
     } else {
-        Err(ParquetError::General(format!("a column has {} of {rows} rows", levels.len())))
+        Err(ParquetError::General(format!("a column has {read} of {rows} rows")))
     }
 }
 
@@ -226,4 +314,25 @@ fn read_column(
 fn spread<T>(levels: &[i16], stored: Vec<T>, into: &mut Vec<Option<T>>) {
     let mut stored = stored.into_iter();
     into.extend(levels.iter().map(|level| if *level == 1 { stored.next() } else { None }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use barrelstack_report::column::Role;
+
+    #[test]
+    fn lists_of_numbers_are_lists_and_read_back_to_the_same_text() {
+        let lists = [Some("1.8;2.25;0.9"), None, Some(""), Some("3"), None, Some("0.5;-2")];
+        let lists: Vec<_> = lists.iter().map(|list| list.map(str::to_owned)).collect();
+        let spec = ColumnSpec::new("fall_heights", "m", Role::Outcome, ValueKind::Text);
+        let column = Column { spec, values: Values::Text(lists) };
+        let table = StudyTable::new(vec![column]).unwrap();
+        let bytes = to_bytes(&table, &[]).unwrap();
+        assert_eq!(from_bytes(bytes, "").unwrap().0, table);
+        let spec = ColumnSpec::new("fall_heights", "m", Role::Outcome, ValueKind::Text);
+        let column = Column { spec, values: Values::Text(vec![Some("1;two".into())]) };
+        let error = to_bytes(&StudyTable::new(vec![column]).unwrap(), &[]).unwrap_err();
+        assert!(error.to_string().contains("\"two\" stands in a list of numbers"), "{error}");
+    }
 }

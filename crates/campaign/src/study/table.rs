@@ -178,7 +178,8 @@ impl StudyTable {
         Ok(shard::to_bytes(self, &[])?)
     }
 
-    /// Describes every column, as CSV: its names in CSV and Parquet files, unit, role, kind, and meaning.
+    /// Describes every column, as CSV: its names in CSV and Parquet files, unit, role, kind, and meaning; a list of
+    /// numbers has semicolons between them in CSV files.
     pub fn dictionary(&self) -> String {
         let mut text = "csv,parquet,unit,role,kind,meaning\n".to_owned();
         let names = shard::plain_names(self.specs());
@@ -189,7 +190,11 @@ impl StudyTable {
                 name,
                 spec.unit.clone(),
                 serde_json::to_value(spec.role).map_or_else(|_| String::new(), word),
-                serde_json::to_value(spec.kind).map_or_else(|_| String::new(), word),
+                if shard::holds_lists(spec) {
+                    "list".to_owned()
+                } else {
+                    serde_json::to_value(spec.kind).map_or_else(|_| String::new(), word)
+                },
                 super::rows::meaning(spec).to_owned(),
             ];
             let _ = writeln!(text, "{}", cells.map(|cell| csv_field(&cell)).join(","));

@@ -99,8 +99,9 @@ const MOST_SCATTER: f64 = 0.99;
 /// The same between two levels that are written.
 const MOST_BETWEEN: f64 = 0.999;
 
-/// Largest difference of a mean that is interpolated linearly from ours, which is linear in the logarithm.
-const MEAN_TOLERANCE: f64 = 5e-4;
+/// Largest relative difference of a mean that is interpolated linearly from ours, which is linear in the logarithm, and
+/// the absolute one that is allowed near nothing.
+const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-5];
 
 /// A level of a vulnerability function.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,9 +182,10 @@ impl Ratios {
             let between = |from: f64, to: f64| from + t * (to - from);
             let mean = between(from.mean, to.mean);
             let variation = between(from.variation, to.variation);
-            let off = mean - self.at(between(from.x, to.x)).mean;
+            let ours = self.at(between(from.x, to.x)).mean;
+            let [relative, absolute] = MEAN_TOLERANCE;
             variation * variation * mean <= MOST_BETWEEN * (1.0 - mean)
-                && off.abs() <= MEAN_TOLERANCE
+                && (mean - ours).abs() <= relative * ours + absolute
         })
     }
 }
