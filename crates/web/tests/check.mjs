@@ -84,8 +84,8 @@ const suite = new Suite();
 await suite.check("the module is small", () => {
   const [whole, packed] = [module.length, gzipSync(module, { level: 9 }).length];
   const note = `${(whole / 1e6).toFixed(2)} MB, ${(packed / 1e6).toFixed(2)} MB with gzip`;
-  // Measured: see the closing lines of the test command; the page has 1.6 MB in all.
-  demand(packed < 1.2e6, note);
+  // Measured: see the closing lines of the test command; a page is to stay below 1.7 MB in all.
+  demand(packed < 1.3e6, note);
   return note;
 });
 await suite.check("the engine starts in a worker", async () => {
