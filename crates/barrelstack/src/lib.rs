@@ -46,6 +46,7 @@ pub mod export;
 pub mod period;
 pub mod render;
 pub mod report;
+pub mod stability;
 pub mod summary;
 pub mod variants;
 pub mod verify;
@@ -55,6 +56,6 @@ pub use barrelstack_motion as motion;
 pub use barrelstack_motion::Record;
 pub use barrelstack_stack::{
     Ensemble, Ground, Progress, Restless, Run, RunFailure, Scenario, assemble, check, demand,
-    device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, stability, step, watch,
+    device, ensemble, ground, outcome, overlap, pool, run, scenario, slosh, step, watch,
 };
 pub use summary::Summary;

@@ -20,13 +20,25 @@ pub(crate) const FEWEST: usize = 3;
 
 /// A stack at rest, ready to be shaken.
 #[derive(Clone, Debug)]
-pub(crate) struct Standing {
-    pub(crate) assembly: Assembly,
-    pub(crate) state: State<Planar>,
-    pub(crate) scratch: Scratch<Planar>,
-    pub(crate) settled: Option<Settled>,
+pub struct Standing {
+    /// The stack.
+    pub assembly: Assembly,
+    /// The state at rest.
+    pub state: State<Planar>,
+    /// The forces of that state.
+    pub scratch: Scratch<Planar>,
+    /// How rest was found; none where the scenario starts without.
+    pub settled: Option<Settled>,
     /// The time step (s).
-    pub(crate) step: f64,
+    pub step: f64,
+}
+
+impl Standing {
+    /// Returns the largest sinking (m) of a body as the stack came to rest.
+    pub fn deepest_sinking(&self) -> f64 {
+        let sunk = self.assembly.model.bodies().iter().zip(&self.state.poses);
+        sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max)
+    }
 }
 
 /// The stack of a scenario, as built or at rest, or the error.
@@ -70,7 +82,7 @@ impl<'a> Stack<'a> {
 ///
 /// # Errors
 /// If it cannot be built, or does not stand.
-pub(crate) fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
+pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
     let mut one = [Stack::built(scenario, end_time)];
     // It is never stopped.
     let _ = stand_all(Width::Scalar, &mut one, &|| false);

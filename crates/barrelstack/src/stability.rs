@@ -7,9 +7,10 @@ use barrelstack_dynamics::settle::settle;
 use barrelstack_dynamics::{Lack, Linear as _, Model, Planar, Scratch, State, Vec2, math};
 use barrelstack_report::described;
 
+use barrelstack_stack::scenario::{Scenario, View};
+use barrelstack_stack::stand::{Standing, UNBALANCED, stand};
+
 use crate::run::RunFailure;
-use crate::scenario::{Scenario, View};
-use crate::stand::{Standing, UNBALANCED, stand};
 
 /// Tilt (rad) of the floor under which a stack moves as it does when it sways: so small that nothing slips.
 const NUDGE: f64 = 1e-4;
@@ -70,11 +71,11 @@ described! {
 /// As [`Scenario::run`]; also where the stack does not stand on a level floor.
 pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     let standing = stand(scenario, 1.0)?;
-    let (tilt, first) = standing.tilt_at_failure().unzip();
+    let (tilt, first) = tilt_at_failure(&standing).unzip();
     let (body, failure) = first.unzip();
     Ok(Stability {
         sinking: standing.deepest_sinking(),
-        period: standing.period(),
+        period: period_of(&standing),
         tilt,
         body,
         failure,
@@ -86,7 +87,7 @@ pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
 /// # Errors
 /// As [`stability`].
 pub fn sway_period(scenario: &Scenario) -> Result<f64, RunFailure> {
-    Ok(stand(scenario, 1.0)?.period())
+    Ok(period_of(&stand(scenario, 1.0)?))
 }
 
 impl StabilityRow {
@@ -130,81 +131,73 @@ impl StabilityTable {
     }
 }
 
-impl Standing {
-    /// How far (m) a body sank at most as the stack came to rest.
-    pub(crate) fn deepest_sinking(&self) -> f64 {
-        let sunk = self.assembly.model.bodies().iter().zip(&self.state.poses);
-        sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max)
-    }
-
-    /// The longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways pull gives the stack: the work of
-    /// the pull against the kinetic energy of that shape.
-    fn period(&self) -> f64 {
-        let model = &self.assembly.model;
-        let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
-        let pulled = [-NUDGE, NUDGE].map(|tilt| {
-            let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
-            // What stands with any margin stands at a ten thousandth; where it does not, its last place is as good.
-            let _ = settle(&tilted(model, tilt), &mut state, &mut scratch, UNBALANCED);
-            state
-        });
-        let (mut work, mut swung) = (0.0, 0.0);
-        for (id, body) in model.bodies().iter().enumerate() {
-            if body.motion != Motion::Free {
-                continue;
-            }
-            let [left, right] = pulled.each_ref().map(|state| state.poses[id]);
-            let moved = (right.position - left.position) * 0.5;
-            let turned = 0.5 * (right.orientation - left.orientation);
-            work += body.mass * pull * moved.x;
-            swung += body.mass * moved.dot(moved) + body.inertia * turned * turned;
+/// The longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways pull gives the stack: the work of
+/// the pull against the kinetic energy of that shape.
+fn period_of(standing: &Standing) -> f64 {
+    let model = &standing.assembly.model;
+    let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
+    let pulled = [-NUDGE, NUDGE].map(|tilt| {
+        let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
+        // What stands with any margin stands at a ten thousandth; where it does not, its last place is as good.
+        let _ = settle(&tilted(model, tilt), &mut state, &mut scratch, UNBALANCED);
+        state
+    });
+    let (mut work, mut swung) = (0.0, 0.0);
+    for (id, body) in model.bodies().iter().enumerate() {
+        if body.motion != Motion::Free {
+            continue;
         }
-        std::f64::consts::TAU * (swung / work).sqrt()
+        let [left, right] = pulled.each_ref().map(|state| state.poses[id]);
+        let moved = (right.position - left.position) * 0.5;
+        let turned = 0.5 * (right.orientation - left.orientation);
+        work += body.mass * pull * moved.x;
+        swung += body.mass * moved.dot(moved) + body.inertia * turned * turned;
     }
+    std::f64::consts::TAU * (swung / work).sqrt()
+}
 
-    /// The least tilt (rad) of the floor to either side at which the stack stands no more, and the body that goes first
-    /// with how it goes; none where it stands at 45° to both sides.
-    fn tilt_at_failure(&self) -> Option<(f64, (String, &'static str))> {
-        let left = self.tilt_at_failure_to(-1.0, STEEPEST);
-        // To the other side it is enough to see whether the stack stands as far.
-        let steepest = left.as_ref().map_or(STEEPEST, |(tilt, _)| *tilt);
-        self.tilt_at_failure_to(1.0, steepest).or(left)
-    }
+/// The least tilt (rad) of the floor to either side at which the stack stands no more, and the body that goes first
+/// with how it goes; none where it stands at 45° to both sides.
+fn tilt_at_failure(standing: &Standing) -> Option<(f64, (String, &'static str))> {
+    let left = tilt_at_failure_to(standing, -1.0, STEEPEST);
+    // To the other side it is enough to see whether the stack stands as far.
+    let steepest = left.as_ref().map_or(STEEPEST, |(tilt, _)| *tilt);
+    tilt_at_failure_to(standing, 1.0, steepest).or(left)
+}
 
-    /// The same to one side, none where it stands at `steepest` (rad): the floor is tilted step by step, and the stack comes
-    /// to rest after each.
-    fn tilt_at_failure_to(
-        &self,
-        side: f64,
-        steepest: f64,
-    ) -> Option<(f64, (String, &'static str))> {
-        let model = &self.assembly.model;
-        let (mut state, mut scratch) = (self.state.clone(), self.scratch.clone());
-        let (mut tilt, mut step) = (0.0, FIRST_STEP);
-        let mut failure = None;
-        while tilt < steepest {
-            let mut tried: (State<Planar>, Scratch<Planar>) = (state.clone(), scratch.clone());
-            let next = (tilt + step).min(steepest);
-            let steeper = tilted(model, side * next);
-            match settle(&steeper, &mut tried.0, &mut tried.1, UNBALANCED) {
-                Ok(_) => {
-                    (state, scratch) = tried;
-                    tilt = next;
-                }
-                Err(error) => {
-                    failure = Some((error.body, word(&error.lack)));
-                }
+/// The same to one side, none where it stands at `steepest` (rad): the floor is tilted step by step, and the stack comes
+/// to rest after each.
+fn tilt_at_failure_to(
+    standing: &Standing,
+    side: f64,
+    steepest: f64,
+) -> Option<(f64, (String, &'static str))> {
+    let model = &standing.assembly.model;
+    let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
+    let (mut tilt, mut step) = (0.0, FIRST_STEP);
+    let mut failure = None;
+    while tilt < steepest {
+        let mut tried: (State<Planar>, Scratch<Planar>) = (state.clone(), scratch.clone());
+        let next = (tilt + step).min(steepest);
+        let steeper = tilted(model, side * next);
+        match settle(&steeper, &mut tried.0, &mut tried.1, UNBALANCED) {
+            Ok(_) => {
+                (state, scratch) = tried;
+                tilt = next;
             }
-            // Once a steeper tilt is known to fail, half the distance to it is tried.
-            if failure.is_some() {
-                if step <= FINEST_STEP {
-                    break;
-                }
-                step *= 0.5;
+            Err(error) => {
+                failure = Some((error.body, word(&error.lack)));
             }
         }
-        failure.map(|failure| (tilt, failure))
+        // Once a steeper tilt is known to fail, half the distance to it is tried.
+        if failure.is_some() {
+            if step <= FINEST_STEP {
+                break;
+            }
+            step *= 0.5;
+        }
     }
+    failure.map(|failure| (tilt, failure))
 }
 
 /// How a body goes that lacks something.
