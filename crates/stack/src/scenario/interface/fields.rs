@@ -238,7 +238,7 @@ table! {
             /// Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner,
             /// at a smaller step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("that of the rack's seats in the catalog per seat: 2 on barrels, since staves give way across themselves rather than along, and 4 on the ground and on posts, where tubes bend that lie hollow; 1 otherwise");
+                Default::Derived("that of the rack's seats in the catalog per seat: 2 on barrels, since staves give way across themselves rather than along, and on posts, and 4 on the ground, where tubes bend that lie hollow; 1 otherwise");
             /// Tangential damping of the stick over the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
