@@ -47,6 +47,8 @@ pub(super) fn require_rows(
     if rows > 1 || width >= FEWEST_ON_ONE_LINE {
         return Ok(());
     }
+    // The row above may be one of the table, but for a number that is none.
+    require_no_lost_row(source, first, None, width)?;
     Err(source.damaged(
         first,
         "at least 2 rows of numbers",
