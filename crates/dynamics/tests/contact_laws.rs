@@ -1,14 +1,14 @@
 //! Every normal law: signs, continuity, stored energy, limits, and restitution.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
+use crate::common;
 
 use std::ops::ControlFlow;
 
+use crate::common::{DOWN, Scene, assert_close, disc, floor, interface};
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Still, Twist, Vec2};
 use barrelstack_scenes::theory::{contact_phase, rebound_under_gravity};
-use common::{DOWN, Scene, assert_close, disc, floor, interface};
 use proptest::prelude::*;
 
 fn any_law() -> impl Strategy<Value = NormalLaw> {

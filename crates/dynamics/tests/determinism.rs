@@ -1,10 +1,11 @@
 //! Runs are bit-identical, and non-finite numbers are reported.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
-
 use std::ops::ControlFlow;
 
+use crate::common::{
+    DOWN, Scene, all_pairs, bits, centered, disc, every_method, floor, ground_of, interface, pair,
+};
 use barrelstack_dynamics::shape::HalfPlane;
 use barrelstack_dynamics::simulate::Finish;
 use barrelstack_dynamics::space::Rotation2;
@@ -14,9 +15,6 @@ use barrelstack_dynamics::{
 };
 use barrelstack_scenes::drive::Shake;
 use barrelstack_scenes::tumble::{bodies, rough};
-use common::{
-    DOWN, Scene, all_pairs, bits, centered, disc, every_method, floor, ground_of, interface, pair,
-};
 
 fn tumbling() -> Scene {
     Scene::new(bodies(2008, 8, 0.1), rough(1.0, 1.0), DOWN).unwrap()

@@ -5,16 +5,16 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
-mod common;
+use crate::common;
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
 
+use crate::common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 use barrelstack_dynamics::{
     Body, Element, EnergySummary, FrictionLaw, Guide, Link, Method, Model, NormalLaw, Planar, Rod,
     Still, Strap, Twist, Vec2,
 };
-use common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 
 const MASS: f64 = 100.0;
 

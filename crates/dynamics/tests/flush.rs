@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use std::f64::consts::FRAC_PI_2;
 
 use barrelstack_dynamics::shape::BarrelProfile;

@@ -1,12 +1,12 @@
 //! Dry friction: sticking contacts do not creep, sliding contacts follow Coulomb's law.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
+use crate::common;
 
+use crate::common::{GRAVITY, Scene, assert_close, block, coulomb, floor, gravity_on_slope};
+use crate::common::{interface, pose};
 use barrelstack_dynamics::contact::Stick;
 use barrelstack_dynamics::{FrictionLaw, NormalLaw, Planar, Still, Twist, Vec2};
-use common::{GRAVITY, Scene, assert_close, block, coulomb, floor, gravity_on_slope};
-use common::{interface, pose};
 use proptest::prelude::*;
 
 const MASS: f64 = 50.0;

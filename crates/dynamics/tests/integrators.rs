@@ -1,16 +1,14 @@
 //! One suite for every method: order, energy, times, tolerance, and impacts.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
-
 use std::ops::ControlFlow;
 
+use crate::common::{
+    DOWN, GRAVITY, Scene, bits, centered, coulomb, disc, every_method, floor, ground_of, interface,
+};
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_dynamics::shape::Cradle;
 use barrelstack_dynamics::{FrictionLaw, Method, NormalLaw, Shape, Still, Twist, Vec2};
-use common::{
-    DOWN, GRAVITY, Scene, bits, centered, coulomb, disc, every_method, floor, ground_of, interface,
-};
 
 const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e6;

@@ -2,10 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
+use crate::common;
 
 use std::ops::ControlFlow;
 
+use crate::common::{
+    DOWN, Scene, all_pairs, bits, centered, disc, finely_noded_block, floor, ground_of, interface,
+    numbers, pose,
+};
 use barrelstack_dynamics::contact::Exponent;
 use barrelstack_dynamics::forces::contact_force;
 use barrelstack_dynamics::shape::{Circle, Polygon, Surface};
@@ -15,10 +19,6 @@ use barrelstack_dynamics::{
 };
 use barrelstack_scenes::drive::Shake;
 use barrelstack_scenes::tumble::{Random, bodies, rough};
-use common::{
-    DOWN, Scene, all_pairs, bits, centered, disc, finely_noded_block, floor, ground_of, interface,
-    numbers, pose,
-};
 use proptest::prelude::*;
 
 fn tumbling(seed: u64) -> Scene {

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::common::Dice;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::solid::{Barrel, Block, Capsule, Hull, Rounded};
 use barrelstack_dynamics::{
@@ -14,7 +13,6 @@ use barrelstack_dynamics::{
 };
 use barrelstack_scenes::scene::{Scene, coulomb, interface, pair};
 use barrelstack_scenes::spatial::{floor, solid};
-use common::Dice;
 
 const STIFFNESS: f64 = 1e6;
 

@@ -1,13 +1,11 @@
 //! Initial motion of a block on shaking ground.
 #![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
-mod common;
-
+use crate::common::{DOWN, GRAVITY, Scene, block, coulomb, floor, interface, pose};
 use barrelstack_dynamics::NormalLaw;
 use barrelstack_dynamics::contact::restitution;
 use barrelstack_scenes::drive::Shake;
 use barrelstack_scenes::theory::least_friction_for_rocking;
-use common::{DOWN, GRAVITY, Scene, block, coulomb, floor, interface, pose};
 
 const MASS: f64 = 100.0;
 

@@ -3,12 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
-mod common;
-
 use std::f64::consts::TAU;
 
+use crate::common::{GRAVITY, Scene, block, coulomb, floor, gravity_on_slope, interface, pose};
 use barrelstack_dynamics::{Drive, NormalLaw, Planar, Vec2};
-use common::{GRAVITY, Scene, block, coulomb, floor, gravity_on_slope, interface, pose};
 
 const MASS: f64 = 50.0;
 const FRICTION: f64 = 0.3;

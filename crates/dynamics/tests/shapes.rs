@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a shape that cannot be made fails its test")]
 
-mod common;
+use crate::common;
 
 use std::f64::consts::{PI, TAU};
 

@@ -2,10 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use std::f64::consts::PI;
 
+use crate::common::Dice;
 use barrelstack_dynamics::contact::Stick;
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::shape::{Surface, Whole};
@@ -16,7 +15,6 @@ use barrelstack_dynamics::{
 };
 use barrelstack_scenes::scene::{Scene, interface};
 use barrelstack_scenes::spatial::{floor, solid};
-use common::Dice;
 
 /// Returns a barrel of 225 liters with a chime rounded by 10 mm.
 fn bordeaux() -> Barrel {

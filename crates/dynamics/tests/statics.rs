@@ -2,17 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a body that cannot be made fails its test")]
 
-mod common;
+use crate::common;
 
+use crate::common::{
+    DOWN, GRAVITY, Scene, assert_close, bits, block, coulomb, disc, fixed, floor, ground_of,
+    interface, pose,
+};
 use barrelstack_dynamics::shape::Polygon;
 use barrelstack_dynamics::{
     Body, FrictionLaw, Lack, Node, Nodes, NormalLaw, Planar, SettleError, Still, Vec2, evaluate,
 };
 use barrelstack_scenes::theory::overhang;
-use common::{
-    DOWN, GRAVITY, Scene, assert_close, bits, block, coulomb, disc, fixed, floor, ground_of,
-    interface, pose,
-};
 
 const MASS: f64 = 40.0;
 const STIFFNESS: f64 = 1e7;

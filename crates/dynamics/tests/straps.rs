@@ -5,14 +5,14 @@
     reason = "a test fails by unwrap and tells by print"
 )]
 
-mod common;
+use crate::common;
 
 use std::ops::ControlFlow;
 
+use crate::common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 use barrelstack_dynamics::{
     Body, Element, FrictionLaw, Link, Method, Model, NormalLaw, Planar, Still, Strap, Twist, Vec2,
 };
-use common::{DOWN, GRAVITY, Scene, disc, every_method, floor, interface};
 
 const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e5;

@@ -16,7 +16,7 @@ const FRICTION = "interface.rack-ground.friction.coefficient";
 export const PAGES = {
   demo: {
     several: true,
-    args: ["run", "demo-napa", "--quiet"],
+    args: ["run", "demo-napa", "--variants=24", "--quiet"],
     looks: ["desktop-light", "desktop-dark", "phone-light", "phone-dark", "print"],
   },
   eight: {
@@ -33,12 +33,12 @@ export const PAGES = {
   },
   levels: {
     several: true,
-    args: ["compare", "demo-napa", "--against", "stack.levels=4", "--quiet"],
+    args: ["compare", "demo-napa", "--against", "stack.levels=4", "--variants=16", "--quiet"],
     looks: ["desktop-light", "desktop-dark", "phone-light", "print"],
   },
   friction: {
     several: true,
-    args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--quiet"],
+    args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--variants=8", "--quiet"],
     looks: [],
   },
   // Pages without a player, or with others around it, for readers of screens.
