@@ -39,7 +39,7 @@ export async function variants(page) {
     return { count, lines: Array.from(xs).filter((x) => isNaN(x)).length, barrels, ends: bodies.length, nearest };
   }));
   for (const { count, lines, barrels, ends, nearest } of found) {
-    demand(count >= 60 && ends === count * barrels, `${ends} ends of ${barrels} barrels in ${count} variants`);
+    demand(count >= 20 && ends === count * barrels, `${ends} ends of ${barrels} barrels in ${count} variants`);
     demand(lines > 0 && lines % count === 0, `${lines} lines of ${count} variants`);
     demand(nearest < 0.02, `no variant ends where the run that is shown does: the nearest is ${nearest} m away`);
   }
