@@ -54,8 +54,9 @@ described! {
     pub struct Stability {
         /// Deepest sinking of a body into its contacts as the stack comes to rest, which is that of the top.
         pub sinking: f64 as "m",
-        /// Longest period of sway while nothing slips, by Rayleigh's quotient.
-        pub period: f64 as "s",
+        /// Longest period of sway while nothing slips, by Rayleigh's quotient; null where the stack does not bear a push of
+        /// a ten thousandth of its weight.
+        pub period: Option<f64> as "s",
         /// Tilt of the floor at which the stack stands no more; null where it stands at 45°.
         pub tilt: Option<f64> as "rad",
         /// The body that goes first at that tilt.
@@ -82,11 +83,12 @@ pub fn stability(scenario: &Scenario) -> Result<Stability, RunFailure> {
     })
 }
 
-/// The longest period (s) of sway of the stack of a scenario while nothing slips.
+/// Returns the longest period (s) of sway of the stack of a scenario while nothing slips; `None` where the stack does not
+/// bear a push of a ten thousandth of its weight.
 ///
 /// # Errors
 /// As [`stability`].
-pub fn sway_period(scenario: &Scenario) -> Result<f64, RunFailure> {
+pub fn sway_period(scenario: &Scenario) -> Result<Option<f64>, RunFailure> {
     Ok(period_of(&stand(scenario, 1.0)?))
 }
 
@@ -121,7 +123,9 @@ impl StabilityTable {
                         }
                         _ => "stands at 45°".to_owned(),
                     };
-                    format!("{:>10.1}  {:>10.3}  {tilt}", 1e3 * found.sinking, found.period)
+                    let period =
+                        found.period.map_or("–".to_owned(), |period| format!("{period:.3}"));
+                    format!("{:>10.1}  {period:>10}  {tilt}", 1e3 * found.sinking)
                 }
                 (None, refused) => refused.clone().unwrap_or_default(),
             };
@@ -131,17 +135,16 @@ impl StabilityTable {
     }
 }
 
-/// The longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways pull gives the stack: the work of
-/// the pull against the kinetic energy of that shape.
-fn period_of(standing: &Standing) -> f64 {
+/// Returns the longest period (s) of sway, by Rayleigh's quotient of the shape that a sideways push gives the stack: the
+/// work of the push against the kinetic energy of that shape. `None` where the pushed stack does not come to rest.
+fn period_of(standing: &Standing) -> Option<f64> {
     let model = &standing.assembly.model;
     let pull = -model.gravity().z * math::sin_cos(NUDGE).0;
-    let pulled = [-NUDGE, NUDGE].map(|tilt| {
+    let pulled = |tilt| {
         let (mut state, mut scratch) = (standing.state.clone(), standing.scratch.clone());
-        // What stands with any margin stands at a ten thousandth; where it does not, its last place is as good.
-        let _ = settle(&tilted(model, tilt), &mut state, &mut scratch, UNBALANCED);
-        state
-    });
+        settle(&tilted(model, tilt), &mut state, &mut scratch, UNBALANCED).ok().map(|_| state)
+    };
+    let pulled = [pulled(-NUDGE)?, pulled(NUDGE)?];
     let (mut work, mut swung) = (0.0, 0.0);
     for (id, body) in model.bodies().iter().enumerate() {
         if body.motion != Motion::Free {
@@ -153,7 +156,7 @@ fn period_of(standing: &Standing) -> f64 {
         work += body.mass * pull * moved.x;
         swung += body.mass * moved.dot(moved) + body.inertia * turned * turned;
     }
-    std::f64::consts::TAU * (swung / work).sqrt()
+    Some(std::f64::consts::TAU * (swung / work).sqrt())
 }
 
 /// The least tilt (rad) of the floor to either side at which the stack stands no more, and the body that goes first
@@ -209,7 +212,7 @@ fn word(lack: &Lack) -> &'static str {
     }
 }
 
-/// A model on a floor that is tilted by an angle (rad), seen from the floor: gravity pulls aside.
+/// Returns a model on a floor that is tilted by an angle (rad), in the frame of the floor: gravity acts to one side, too.
 fn tilted(model: &Model<Planar>, angle: f64) -> Model<Planar> {
     let (sin, cos) = math::sin_cos(angle);
     let down = -model.gravity().z;

@@ -116,7 +116,7 @@ fn factor(scenario: &Scenario, period: f64) -> Result<Option<f64>, CalibrateErro
             }
         }
         match sway_period(&changed) {
-            Ok(found) => Ok(found > period),
+            Ok(found) => Ok(found.is_none_or(|found| found > period)),
             // What is too soft to stand takes longer than any period.
             Err(RunFailure::Settle(_)) => Ok(true),
             Err(failure) => Err(failure.into()),

@@ -67,8 +67,8 @@ pub struct Height {
     pub by_acceleration: LimitCurve,
     /// Share of the barrels that fall, one for each stripe of `by_velocity`.
     pub fallen: Vec<f64>,
-    /// Static margin (m/s²): the horizontal acceleration at which it comes apart when that grows slowly, with the friction
-    /// of the catalog; none where it stands until 1 g.
+    /// Static margin (m/s²): the steady horizontal acceleration that it bears at most, with the friction and the seats of
+    /// the catalog; none where it bears 1 g.
     pub static_margin: Option<f64>,
 }
 

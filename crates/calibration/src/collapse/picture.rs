@@ -109,7 +109,7 @@ impl Rows {
         self.names.push(name);
     }
 
-    /// Draws the rows; `seen` has the observed value of every row.
+    /// Draws the rows, each beside its observed value.
     fn figure(self, id: &str, caption: &str, x: Axis, seen: Option<Vec<f64>>) -> Option<Figure> {
         let rows = (0..self.names.len()).map(Axis::row).collect();
         let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };

@@ -25,7 +25,7 @@ pub(crate) fn percent(share: f64) -> String {
     }
 }
 
-/// Formats the ends of an interval by `told`.
+/// Formats both ends of an interval with the same formatter.
 pub(crate) fn range(of: Interval, told: impl Fn(f64) -> String) -> String {
     format!("{} to {}", told(of.low), told(of.high))
 }
@@ -62,7 +62,7 @@ fn recurrence(rate: f64) -> String {
     format!("a collapse once in {} years", significant(1.0 / rate, 2))
 }
 
-/// Explains why there is no curve, with intensities formatted by `told`.
+/// Explains why there is no curve; the caller formats intensities.
 pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String {
     match reason {
         FitError::NothingFailed { largest } => format!(

@@ -59,8 +59,8 @@ described! {
         pub levels: u32 = height.levels,
         /// Direction of the shaking: across or along the barrels.
         pub direction: &'static str ["transverse", "longitudinal"] = height.view.name(),
-        /// Horizontal acceleration at which they come apart when it grows slowly, with the friction of the catalog; null
-        /// where they stand until 1 g.
+        /// Steady horizontal acceleration that they bear at most, with the friction and the seats of the catalog; null
+        /// where they bear 1 g.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
         /// What becomes of them at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),

@@ -302,7 +302,7 @@ fn direction(all: &Heights, view: View) -> Table {
     )
 }
 
-/// What each height bears of a push that grows slowly, beside the shaking at which it begins to collapse.
+/// Returns the steady push that each height bears, beside the shaking at which it begins to collapse.
 fn static_margins(all: &Heights) -> Table {
     let first = |height: &Height| {
         let falls = |at: &AtLevel| at.stripe.failures > 0;
@@ -310,9 +310,9 @@ fn static_margins(all: &Heights) -> Table {
         level.map_or_else(|| "at none".to_owned(), shaking)
     };
     Table::of(
-        "Static margin: the horizontal acceleration at which a stack comes apart when it grows slowly, within a minute, and \
-         the tilt of a floor that does the same; with the friction and the seats of the catalog. Shaking whose pulses last \
-         as long as the stack takes to tip fells it little above that.",
+        "Static margin: the steady horizontal acceleration that a stack bears at most, and the tilt of a floor that does the \
+         same; with the friction and the seats of the catalog. Shaking whose pulses last as long as the stack takes to tip \
+         fells it little above that.",
         &all.heights,
         &[
             ("levels", "", &|height| Cell::text(height.levels.to_string())),
