@@ -7,6 +7,7 @@
 
 mod browser;
 mod extra;
+mod lines;
 mod python;
 mod steps;
 mod tally;
@@ -28,6 +29,7 @@ tasks:
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)
+  lines      lines of product code and comments by crate, and the longest files
   fuzz       damaged files through every reader of records; `--executions N`, `--reader NAME`, `--first K`";
 
 fn main() -> ExitCode {
@@ -37,6 +39,7 @@ fn main() -> ExitCode {
         ["test"] => told(steps::test().map(done)),
         ["golden"] => told(steps::golden()),
         ["web"] => told(steps::web().map(done)),
+        ["lines"] => told(lines::list(&steps::root()).map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
             told(python::run(&steps::root(), rest.first().copied()).map(done))
         }

@@ -74,9 +74,11 @@ pub(crate) fn test() -> anyhow::Result<()> {
         if step.strict_docs {
             command.env("RUSTDOCFLAGS", "-D warnings");
         }
+        let begin = Instant::now();
         let (passed, tally) = watched(&mut command).with_context(|| format!("{heading} failed"))?;
         total.add(tally);
-        closing.extend((tally != Tally::default()).then(|| format!("{name}: {tally}")));
+        let counted = (tally != Tally::default()).then(|| format!(": {tally}"));
+        closing.push(format!("{name}{}{}", counted.unwrap_or_default(), after(begin)));
         if !passed {
             close(&closing, total, start);
             bail!("{heading} failed: {}", step.remedy);
@@ -94,13 +96,14 @@ pub(crate) fn test() -> anyhow::Result<()> {
                 continue;
             }
         };
+        let begin = Instant::now();
         if let Some(pages) = extra.pages {
             pages.build()?;
         }
         let (passed, tally) =
             watched(command.current_dir(&root)).with_context(|| format!("{heading} failed"))?;
         total.add(tally);
-        closing.push(format!("{}: {tally}", extra.name));
+        closing.push(format!("{}: {tally}{}", extra.name, after(begin)));
         if !passed {
             close(&closing, total, start);
             bail!("{heading} failed: {}", extra.remedy);
@@ -123,11 +126,16 @@ pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     check.renew()
 }
 
-/// The sum of each step that ran tests, then the sum of all, alone on its line.
+/// Formats the time since the begin of a step: ", 83 s".
+fn after(begin: Instant) -> String {
+    format!(", {:.0} s", begin.elapsed().as_secs_f64())
+}
+
+/// Prints the sum and the time of each step, then the sum of all, alone on its line.
 ///
-/// Says nothing where no test ran: `0 passed, 0 failed` would read like a success.
+/// Prints nothing where no test ran: `0 passed, 0 failed` would read like a success.
 fn close(closing: &[String], total: Tally, start: Instant) {
-    if closing.is_empty() {
+    if total == Tally::default() {
         return;
     }
     println!("\n== closing lines, after {:.0} s", start.elapsed().as_secs_f64());

@@ -79,24 +79,6 @@ fn code_of(folder: &Path, lines: &mut Vec<(PathBuf, String)>) {
 }
 
 #[test]
-fn no_file_and_no_crate_outgrows_who_reads_it() {
-    let mut all = 0;
-    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
-        let (path, mut texts) = (entry.unwrap().path(), Vec::new());
-        texts_of(&path.join("src"), &mut texts);
-        let mut lines = 0;
-        for (file, text) in &texts {
-            let count = text.lines().count();
-            assert!(count <= 500, "{} has {count} lines: more than one idea?", file.display());
-            lines += count;
-        }
-        assert!(lines <= 15_000, "{} has {lines} lines: more than one room?", path.display());
-        all += lines;
-    }
-    assert!(all > 50_000, "only {all} lines found");
-}
-
-#[test]
 fn libraries_name_no_option_and_no_subcommand_of_the_command() {
     let mut lines = Vec::new();
     for entry in std::fs::read_dir(root().join("crates")).unwrap() {

@@ -1,0 +1,83 @@
+//! Lines of product code by crate, and the longest files: a list to judge by, not a limit.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+
+/// Number of the longest files that are listed.
+const LONGEST: usize = 12;
+
+/// Counts of a text.
+#[derive(Clone, Copy, Default)]
+struct Lines {
+    code: usize,
+    comments: usize,
+}
+
+impl Lines {
+    /// Counts lines that are not blank; the tests of a file, which come last, are left out.
+    fn of(text: &str) -> Self {
+        let mut lines = Self::default();
+        let product = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or(text);
+        for line in product.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            if line.starts_with("//") {
+                lines.comments += 1;
+            } else {
+                lines.code += 1;
+            }
+        }
+        lines
+    }
+}
+
+/// Prints lines of code and of comments by crate, the longest files, and the sum.
+pub(crate) fn list(root: &Path) -> anyhow::Result<()> {
+    let (mut all, mut files) = (Lines::default(), Vec::new());
+    let mut crates: Vec<PathBuf> = entries(&root.join("crates"))?;
+    crates.sort();
+    println!("{:>7} {:>8}  crate", "code", "comments");
+    for folder in crates {
+        let mut own = Lines::default();
+        for path in sources(&folder.join("src"))? {
+            let text = std::fs::read_to_string(&path)
+                .with_context(|| format!("cannot read {}", path.display()))?;
+            let lines = Lines::of(&text);
+            own.code += lines.code;
+            own.comments += lines.comments;
+            files.push((lines.code, path));
+        }
+        all.code += own.code;
+        all.comments += own.comments;
+        let name = folder.file_name().unwrap_or_default().display().to_string();
+        println!("{:>7} {:>8}  {name}", own.code, own.comments);
+    }
+    println!("{:>7} {:>8}  in all\n\nlongest files", all.code, all.comments);
+    files.sort_by(|a, b| b.cmp(a));
+    for (code, path) in files.iter().take(LONGEST) {
+        println!("{code:>7}  {}", path.strip_prefix(root).unwrap_or(path).display());
+    }
+    Ok(())
+}
+
+/// Returns what a folder holds; nothing where there is no such folder.
+fn entries(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let read =
+        std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    read.map(|entry| Ok(entry?.path())).collect()
+}
+
+/// Returns the Rust files of a folder and of those in it.
+fn sources(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for path in entries(folder)? {
+        if path.is_dir() {
+            found.extend(sources(&path)?);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    Ok(found)
+}
