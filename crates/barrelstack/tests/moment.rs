@@ -86,7 +86,12 @@ fn a_barrel_is_tinted_by_the_stress_that_its_envelope_holds() {
 fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
     let scenario = scenario(
         "candia-8-barrels",
-        &["imperfections.variants=4", "stack.levels=2", "run.duration='6 s'"],
+        &[
+            "imperfections.variants=4",
+            "imperfections.until=rest",
+            "stack.levels=2",
+            "run.duration='6 s'",
+        ],
     );
     let answer = answer(&scenario, Asked::Number(3), &mut |_| ControlFlow::Continue(())).unwrap();
     let shown = &answer.decides;

@@ -2,9 +2,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
 
-use barrelstack::Scenario;
+use std::ops::ControlFlow;
+
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
-use barrelstack::watch::Ending;
+use barrelstack::outcome::Outcome;
+use barrelstack::watch::{Ending, VERDICT};
+use barrelstack::{Scenario, variants};
 use barrelstack_dynamics::lanes::Width;
 
 fn prepared(name: &str, changes: &[&str]) -> Prepared {
@@ -118,4 +121,59 @@ fn a_heap_at_rest_is_followed_with_whole_steps() {
     // Measured: 1.04. It was 2.25 while a fallen rack that pressed the ground half a millimeter deep divided
     // every step.
     assert!(divided < 1.5, "{divided}");
+}
+
+/// Runs variants of the demo followed to rest and for their verdict, at heights and strengths at which some fall and some
+/// stand; returns the numbers of cases, of collapses, and of steps of both.
+fn verdicts(variants: u32, levels: &[u32], factors: &[f64]) -> [u64; 4] {
+    let mut counts = [0; 4];
+    for (levels, factor) in levels.iter().flat_map(|one| factors.iter().map(move |f| (one, f))) {
+        let all = |until: &str| {
+            let changes = [
+                format!("imperfections.variants={variants}"),
+                format!("imperfections.until={until}"),
+                format!("stack.levels={levels}"),
+                format!("motion.scale.factor={factor}"),
+            ];
+            let scenario = Scenario::builtin("demo-napa", &changes).unwrap();
+            let planes = variants::planes(&scenario).unwrap();
+            variants::run(&planes, &|_, _| ControlFlow::Continue(())).unwrap().unwrap()
+        };
+        let (whole, short) = (all("rest"), all("verdict"));
+        let pairs = whole.iter().zip(&short);
+        for (one, other) in pairs.flat_map(|(a, b)| a.results.iter().zip(&b.results)) {
+            let place = format!("{levels} levels, × {factor}");
+            assert_eq!(one.outcome, other.outcome, "{place}");
+            let loads = |case: &CaseResult| case.demands.stave_utilization;
+            assert_eq!(loads(one), loads(other), "{place}");
+            let collapse = match &one.outcome {
+                Ok(Outcome::Collapse { time, .. }) if !one.fell_at_rest() => Some(*time),
+                _ => None,
+            };
+            let within = |at: f64| collapse.is_some_and(|time| at <= time + VERDICT);
+            assert_eq!(one.first_fall.filter(|at| within(*at)), other.first_fall, "{place}");
+            counts[0] += 1;
+            counts[1] += u64::from(collapse.is_some());
+            counts[2] += one.steps.unwrap_or(0);
+            counts[3] += other.steps.unwrap_or(0);
+        }
+    }
+    let [cases, collapsed, whole, short] = counts;
+    println!("{cases} cases, {collapsed} collapse; {short} steps in place of {whole}");
+    counts
+}
+
+#[test]
+fn a_run_that_ends_with_its_verdict_has_that_of_one_followed_to_rest() {
+    let [cases, collapsed, whole, short] = verdicts(3, &[4], &[1.0]);
+    assert_eq!(cases, 8);
+    assert!((2..8).contains(&collapsed), "{collapsed}");
+    assert!(short < whole, "{short} {whole}");
+}
+
+#[test]
+#[ignore = "a quarter of an hour: the same with two thousand variants"]
+fn two_thousand_variants_have_the_verdicts_of_those_followed_to_rest() {
+    let [cases, ..] = verdicts(49, &[2, 3, 4, 5, 6], &[0.6, 0.9, 1.2, 1.6]);
+    assert_eq!(cases, 2000);
 }

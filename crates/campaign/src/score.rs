@@ -21,7 +21,7 @@ use crate::decision::{Cases, DecisionError, LimitCurve, LimitState};
 use crate::ground::GroundError;
 use crate::protect::{changed, shaken, slug};
 use crate::run::RunFailure;
-use crate::scenario::{MotionSource, Scenario, ScenarioError, View};
+use crate::scenario::{MotionSource, Scenario, ScenarioError, Until, View};
 use crate::study::{Progress, RunOptions, Study, StudyError};
 
 pub use json::ScoreDocument;
@@ -222,7 +222,8 @@ pub fn score(
             let Some(view) = plane.view() else { continue };
             check(&plane.scenario)?;
             let (motions, velocities) = (protocol.motions(), &protocol.velocities);
-            let study = shaken("rockscore", &plane.scenario, protocol.seed, &motions, velocities)?;
+            let stack = (&plane.scenario, Until::Verdict);
+            let study = shaken("rockscore", stack, protocol.seed, &motions, velocities)?;
             studies.push((state.clone(), view, study));
         }
     }

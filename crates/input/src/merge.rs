@@ -185,6 +185,11 @@ fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
 ///
 /// Items of lists are identified by their name or their number, as in overrides.
 pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
+    node_at(table, keys).map(|node| node.origin)
+}
+
+/// Returns the value at a path with its origin, as [`origin_at`] does.
+pub fn node_at<'a>(table: &'a Table, keys: &[&str]) -> Option<&'a Node> {
     let (key, rest) = keys.split_first()?;
     let mut node = &table.get(key)?.node;
     let mut rest = rest;
@@ -193,8 +198,8 @@ pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
         rest = below;
     }
     match (&node.value, rest) {
-        (_, []) => Some(node.origin),
-        (Value::Table(below), _) => origin_at(below, rest),
+        (_, []) => Some(node),
+        (Value::Table(below), _) => node_at(below, rest),
         _ => None,
     }
 }

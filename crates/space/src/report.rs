@@ -134,7 +134,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     if let Some(fallen) = spread.barrels_fallen {
         row(
             "barrels fallen where it collapses",
-            format!("{} of {}", range(fallen, 0), spread.barrels),
+            format!("{} of {}{}", range(fallen, 0), spread.barrels, spread.counted()),
         );
     }
     let modes: Vec<String> = spread.modes.iter().map(|(mode, n)| format!("{mode} {n}")).collect();

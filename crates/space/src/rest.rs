@@ -2,8 +2,8 @@
 //! enough to change the outcome.
 
 use barrelstack::assemble::PartKind;
-use barrelstack::scenario::{Scenario, Until};
-use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm};
+use barrelstack::scenario::Scenario;
+use barrelstack::watch::rest::{CLIMB, HOLD, ON_FLOOR, calm, quiet_from};
 use barrelstack_dynamics::{BodyId, Linear as _, Space as _, Spatial, State, Vec3};
 
 use crate::ground::Ground;
@@ -24,17 +24,9 @@ pub(crate) struct Rest<'a> {
 impl<'a> Rest<'a> {
     pub(crate) fn new(scenario: &Scenario, stack: &'a Stack, ground: &Ground) -> Self {
         let gravity = scenario.run.gravity;
-        let by_rest = |time: f64| match scenario.run.until {
-            Until::Rest => time,
-            Until::Duration => f64::INFINITY,
-        };
-        Self {
-            stack,
-            still_from: by_rest(ground.end()),
-            calm_from: by_rest(ground.calm_from(gravity * calm(stack.model.interfaces()))),
-            slow: gravity * CLIMB,
-            moved: 0.0,
-        }
+        let calm = || ground.calm_from(gravity * calm(stack.model.interfaces()));
+        let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
+        Self { stack, still_from, calm_from, slow: gravity * CLIMB, moved: 0.0 }
     }
 
     /// Records an accepted state, and whether the stack has collapsed; returns `true` if all have come to rest.

@@ -11,7 +11,7 @@ use barrelstack::run::{
     thresholds,
 };
 use barrelstack::scenario::Scenario;
-use barrelstack::watch::{ElementFate, ElementFates, Ending, Loss, PROGRESS};
+use barrelstack::watch::{ElementFate, ElementFates, Ending, Loss, PROGRESS, after_collapse};
 use barrelstack::{Restless, RunFailure};
 use barrelstack_dynamics::{
     BodyId, Contact, Element, EnergyLedger, EnergySummary, Model, Observer, Scratch, Settled,
@@ -199,7 +199,7 @@ pub fn run_on(
         rest: Rest::new(scenario, &stack, &ground),
         frames: Frames::default(),
         every: 1.0 / scenario.record.frame_rate,
-        after_collapse: scenario.run.stop_after_collapse.unwrap_or(f64::INFINITY),
+        after_collapse: after_collapse(scenario),
         next_look: 0.0,
         steps: 0,
         observer,

@@ -185,7 +185,7 @@ pub fn run_all(
             let over = stopped.load(Ordering::Relaxed);
             if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let variant = plane.variant(*number);
+        let variant = plane.trial(*number);
         let interrupted =
             || Case { result: CaseResult::interrupted(), first: None, debris: Vec::new() };
         if going(()).is_break() {
@@ -238,8 +238,7 @@ pub fn answer(
     let done = results.iter().filter(|one| one.outcome != Ok(Outcome::Interrupted)).count();
     let unfinished = (done < results.len()).then_some(Unfinished { done, of: results.len() });
     let whole = !cases.is_empty() && unfinished.is_none();
-    let imperfections = plane.scenario.imperfections().filter(|_| whole);
-    let spread = imperfections.map(|imperfections| Spread::of(imperfections, &results));
+    let spread = whole.then(|| Spread::of(&plane, &results)).flatten();
     let number = match (asked, &spread) {
         (Asked::Number(number) | Asked::Alone(number), _) => number,
         (Asked::Typical, Some(spread))

@@ -343,7 +343,7 @@ pub fn end_time(
         return Ok(duration * time_scale);
     }
     match (run.until, motion_end) {
-        (Until::Rest, end) => Ok(end.unwrap_or(0.0) + run.patience * time_scale),
+        (Until::Rest | Until::Verdict, end) => Ok(end.unwrap_or(0.0) + run.patience * time_scale),
         (Until::Duration, Some(end)) => Ok(end + 5.0 * time_scale),
         (Until::Duration, None) => Err(RunFailure::Duration(
             "the scenario has no motion, so the run has no natural end: set run.duration, such as \

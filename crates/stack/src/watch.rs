@@ -15,7 +15,7 @@ use barrelstack_dynamics::{EnergyLedger, Model, Observer, Planar, Scratch, State
 
 use crate::assemble::Assembly;
 use crate::ground::Ground;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Until};
 
 pub use elements::{ElementFate, ElementFates};
 pub use fate::{Fate, Fates, Loss, PeakMotion, Thresholds};
@@ -82,13 +82,21 @@ pub struct End<R: Real = f64> {
 impl End {
     /// Creates the criteria of a scenario.
     pub fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
-        let run = &scenario.run;
-        let after = run.stop_after_collapse.map(|after| after * run.similitude.sqrt());
         Self {
             rest: Rest::new(scenario, assembly, ground),
-            after_collapse: after.unwrap_or(f64::INFINITY),
+            after_collapse: after_collapse(scenario) * scenario.run.similitude.sqrt(),
         }
     }
+}
+
+/// Duration (s), at full size, after the first loss of a seat of a run that ends when its verdict is known.
+pub const VERDICT: f64 = 2.0;
+
+/// Returns the duration (s), at full size, for which a run goes on after a collapse; infinite for no limit.
+pub fn after_collapse(scenario: &Scenario) -> f64 {
+    let run = &scenario.run;
+    let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);
+    run.stop_after_collapse.or(by_verdict).unwrap_or(f64::INFINITY)
 }
 
 impl<R: Real> End<R> {

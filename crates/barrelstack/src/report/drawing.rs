@@ -99,8 +99,8 @@ pub fn legend(scene: &Scene) -> String {
     }
     if let Some(ghosts) = &scene.ghosts {
         let ways = format!(
-            " With “{}” thin lines are the ways of the barrels of the top level in each, and the darker a \
-             place, the more often a barrel ends there.",
+            " With “{}” thin lines are the paths of the barrels of the top level in each until it ends, and the darker a \
+             place, the more often a barrel is there then.",
             ghosts.label
         );
         legend += &ways;

@@ -3,7 +3,21 @@
 use barrelstack_report::{Block, Cell, Table, significant};
 
 use crate::run::Run;
-use crate::scenario::{Setting, Source, catalog};
+use crate::scenario::{Scenario, Setting, Source, catalog};
+
+/// Formats the value of a given input: as it was written, then in SI units where these are others.
+fn given(scenario: &Scenario, one: &Setting) -> String {
+    let value = shown(&one.path, &one.value);
+    // Other texts, such as paths and names, are the value itself.
+    let is_quantity =
+        |text: &str| text.split_once(' ').is_some_and(|(number, _)| number.parse::<f64>().is_ok());
+    match scenario.as_written(&one.path) {
+        Some(text) if text != value && is_quantity(text) && is_quantity(&one.value) => {
+            format!("{text} = {value}")
+        }
+        _ => value,
+    }
+}
 
 /// Tabulates settings.
 pub(crate) fn settings_table(caption: &str, settings: &[Setting]) -> Table {
@@ -58,11 +72,11 @@ pub(super) fn inputs(run: &Run) -> Vec<Block> {
         setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
     });
     let chosen = Table::of(
-        "Inputs that differ from their defaults. Quantities are in SI units.",
+        "Inputs that differ from their defaults, as they were given, and in SI units.",
         settings.iter().filter(|one| one.source == Source::Given),
         &[
             ("input", "", &|one| Cell::text(&one.path)),
-            ("value", "", &|one| Cell::text(shown(&one.path, &one.value))),
+            ("value", "", &|one| Cell::text(given(&run.stated, one))),
             ("meaning", "", &|one| Cell::text(one.help)),
         ],
     );

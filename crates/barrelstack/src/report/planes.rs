@@ -120,7 +120,7 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
     row("barrels fallen where it collapses", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
             let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
-            format!("{within} ({})", span(least, most, 0))
+            format!("{within} ({}){}", span(least, most, 0), spread.counted())
         })
     });
     row("by mode", &|spread| {

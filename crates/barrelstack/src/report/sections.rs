@@ -201,7 +201,7 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
     let mut caption = "Horizontal displacement relative to the ground.".to_owned();
     if !band.is_empty() {
-        caption += " Between the thin lines are 90 % of all variants.";
+        caption += " Between the thin lines are 90 % of all variants, each where it was last once it has ended.";
     }
     series.extend(band);
     let axis = Axis { range, ..Axis::new("displacement", "cm") };

@@ -33,7 +33,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::ensemble::{CaseResult, Ensemble, Prepared};
 use crate::ground::{Ground, GroundError, from_disk, other_component};
 use crate::outcome::Outcome;
-use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, View};
+use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, Until, View};
+use crate::watch::after_collapse;
 
 pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
@@ -106,6 +107,20 @@ impl Plane {
         variant
     }
 
+    /// Returns a variant by its number as it is run for its verdict, which may end before all has come to rest.
+    pub fn trial(&self, number: u32) -> Scenario {
+        let mut trial = self.variant(number);
+        if let (Until::Rest, Some(imperfections)) = (trial.run.until, trial.imperfections()) {
+            trial.run.until = imperfections.until;
+        }
+        trial
+    }
+
+    /// Returns the time (s) after the first loss of a seat at which trials end; `None` where they are followed to rest.
+    pub fn counted_for(&self) -> Option<f64> {
+        Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
+    }
+
     /// Returns the motion of a variant.
     fn motion(&self, number: u32) -> &MotionSpec {
         let exchanged = self.exchanged.as_ref().filter(|_| self.is_exchanged(number));
@@ -150,7 +165,7 @@ impl Plane {
             exchanged.as_ref().filter(|_| self.is_exchanged(number)).unwrap_or(&own)
         };
         let case = |number| Prepared {
-            scenario: Arc::new(self.variant(number)),
+            scenario: Arc::new(self.trial(number)),
             ground: Arc::clone(ground(number)),
         };
         Ok(numbers.iter().copied().map(case).collect())
@@ -228,8 +243,7 @@ pub(crate) fn run_as_far(
 pub fn together(planes: &[Plane], numbers: &[u32], results: Vec<Vec<CaseResult>>) -> Vec<Variants> {
     let mut found = Vec::new();
     for (plane, results) in planes.iter().zip(results) {
-        let Some(imperfections) = plane.scenario.imperfections() else { continue };
-        let spread = Spread::of(imperfections, &results);
+        let Some(spread) = Spread::of(plane, &results) else { continue };
         found.push(Variants { view: plane.view(), results, spread });
     }
     let all: Vec<&[CaseResult]> = found.iter().map(|one| one.results.as_slice()).collect();

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use barrelstack_fragility::{quantile, wilson};
 use barrelstack_report::described;
 
+use super::Plane;
 use super::typical::Order;
 use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
-use crate::scenario::Imperfections;
 use crate::scenario::field::Named as _;
 
 /// Confidence level of all intervals.
@@ -32,8 +32,11 @@ described! {
         pub interval: [f64; 2] as "1",
         /// When the first barrel had fallen, of the variants in which one falls while they are shaken.
         pub first_fall: Option<Range> as "s",
-        /// Barrels that fall in variants that collapse while they are shaken.
+        /// Barrels that fall in variants that collapse while they are shaken, until these end.
         pub barrels_fallen: Option<Range> as "1",
+        /// Time after the first loss of a seat at which variants end, until which their falls are counted; null where
+        /// they are followed until nothing moves.
+        pub counted_for: Option<f64> as "s",
         /// Barrels in all.
         pub barrels: usize,
         /// The earliest end of a variant that stood while some of the motion was left; null where none was cut
@@ -91,8 +94,10 @@ impl Range {
 }
 
 impl Spread {
-    /// Summarizes the results of the nominal case and of its variants, in this order.
-    pub fn of(imperfections: &Imperfections, results: &[CaseResult]) -> Self {
+    /// Summarizes the results of the nominal case of a plane and of its variants, in this order; `None` for a scene
+    /// without variants.
+    pub fn of(plane: &Plane, results: &[CaseResult]) -> Option<Self> {
+        let imperfections = plane.scenario.imperfections()?;
         let variants = results.get(1..).unwrap_or_default();
         let judged = || variants.iter().filter(|result| judged(result));
         let falling = || judged().filter(|result| collapsed(result));
@@ -108,7 +113,7 @@ impl Spread {
         let interval = |falls| wilson(falls, count + broken, LEVEL);
         let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
-        Self {
+        Some(Self {
             kind: imperfections.kind.name(),
             seed: imperfections.seed,
             variants: count,
@@ -117,6 +122,7 @@ impl Spread {
             interval: [interval(falls).low, interval(falls + broken).high],
             first_fall: Range::of(shaken().filter_map(|result| result.first_fall)),
             barrels_fallen: Range::of(shaken().map(|result| fallen(result) as f64)),
+            counted_for: plane.counted_for(),
             barrels: results.iter().map(|result| result.barrels).max().unwrap_or(0),
             standing_until: judged()
                 .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
@@ -144,7 +150,13 @@ impl Spread {
             typical: order.typical,
             gentlest: order.gentlest,
             worst: order.worst,
-        }
+        })
+    }
+
+    /// Describes until when falls are counted: " within 2 s of the first loss of a seat"; empty where until rest.
+    pub fn counted(&self) -> String {
+        let within = |time| format!(" within {time} s of the first loss of a seat");
+        self.counted_for.map_or_else(String::new, within)
     }
 
     /// Returns the number of variants that were run, with or without a verdict.

@@ -235,7 +235,9 @@ pub fn course(spread: &Spread) -> String {
         format!("first between {from} and {to} s")
     };
     match spread.barrels_fallen {
-        Some(fallen) => format!("{when}; {}", barrels(fallen, spread.barrels)),
+        Some(fallen) => {
+            format!("{when}; {}{}", barrels(fallen, spread.barrels), spread.counted())
+        }
         None => when,
     }
 }
@@ -324,6 +326,7 @@ mod tests {
             interval: [interval.low, interval.high],
             first_fall: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
             barrels_fallen: falls.then(|| range(4.0, 8.0, 4.0, 8.0)),
+            counted_for: None,
             barrels: 10,
             standing_until: None,
             modes: BTreeMap::new(),

@@ -80,17 +80,33 @@ fn by_themselves(all: &Ranking) -> String {
 fn headline(all: &Ranking) -> String {
     let Some(base) = all.as_it_is() else { return "Nothing was tried.".to_owned() };
     if base.fallen.mean <= 0.0 {
-        return format!("The stack stands as it is: no barrel falls {}.", per(all));
+        return format!("{} stands as it is: no barrel falls {}.", stack(all), per(all));
     }
     let Some(best) = all.best() else {
         return "Nothing that was tried helps beyond doubt.".to_owned();
     };
+    let direction = if best.direction == base.direction {
+        base.direction.words().to_owned()
+    } else {
+        format!("{} as it is and {} with it", base.direction.words(), best.direction.words())
+    };
     format!(
-        "Most is saved for its cost by this: {}. On average {} barrels of a stack fall {}, instead of {}.",
+        "Most is saved for its cost by this: {}. {}, shaken {direction}, where more barrels fall, loses on average {} \
+         barrels {}, instead of {}.",
         best.protection.name,
+        stack(all),
         significant(best.fallen.mean, 2),
         per(all),
         significant(base.fallen.mean, 2)
+    )
+}
+
+/// Describes the stack: "A stack of 4 levels on `two-barrel` racks".
+fn stack(all: &Ranking) -> String {
+    let stack = all.request.scenario.stack();
+    stack.map_or_else(
+        || "The stack".to_owned(),
+        |stack| format!("A stack of {} levels on `{}` racks", stack.levels, stack.rack.base),
     )
 }
 

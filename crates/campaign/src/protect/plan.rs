@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Request;
 use crate::heights::{quoted, synthetic};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Until};
 use crate::study::Study;
 use crate::study::StudyError;
 use crate::unknown::factors;
@@ -35,24 +35,25 @@ pub(super) fn study(
     round: u32,
 ) -> Result<Study, StudyError> {
     let seed = request.seed.wrapping_add(round);
-    shaken("protection", scenario, seed, &motions(request, round), levels)
+    // Losses are those of cases followed to rest.
+    shaken("protection", (scenario, Until::Rest), seed, &motions(request, round), levels)
 }
 
 /// Returns the study of a stack under motions, each scaled to levels of peak ground velocity (m/s), with uncertain
-/// parameters drawn for each run by a seed.
+/// parameters drawn for each run by a seed; its runs end by themselves as given.
 ///
 /// # Errors
 /// When a record cannot be read.
 pub(crate) fn shaken(
     title: &str,
-    scenario: &Scenario,
+    (scenario, until): (&Scenario, Until),
     seed: u32,
     motions: &str,
     levels: &[f64],
 ) -> Result<Study, StudyError> {
     let mut text = format!(
         "schema = 1\ntitle = \"{title}\"\nseed = {seed}\n\n{}\n",
-        scenario.to_toml_table("base")
+        scenario.to_toml_table("base", until)
     );
     text.push_str(&factors(scenario));
     text.push_str(motions);

@@ -62,19 +62,20 @@ fn by_themselves(sheet: &Sheet) -> String {
 fn headline(sheet: &Sheet) -> String {
     let Some(weakest) = sheet.weakest() else { return "Nothing was run.".to_owned() };
     let score = sheet.score();
-    let levels = sheet.protocol.levels;
+    let stacks = format!("stacks of {} levels on {}", sheet.protocol.levels, scored(sheet));
+    let direction = weakest.view.words();
     match weakest.capacity {
         Capacity::Fitted(..) => format!(
-            "RockScore {score}: shaken to {score} cm/s, nine in ten of these stacks of {levels} levels stand."
+            "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
         ),
-        Capacity::Between(..) => format!(
-            "RockScore {score}: shaken to {score} cm/s, all of these stacks of {levels} levels stand."
-        ),
+        Capacity::Between(..) => {
+            format!("RockScore {score}: shaken {direction} to {score} cm/s, all {stacks} stand.")
+        }
         Capacity::Above(_) => format!(
-            "RockScore {score} at least: nothing in the protocol is stronger than what these stacks of {levels} levels bear."
+            "RockScore {score} at least: nothing in the protocol is stronger than what {stacks} bear."
         ),
         Capacity::Below(lowest) => format!(
-            "RockScore 0: of these stacks of {levels} levels more than one in ten collapses at {} cm/s, the weakest \
+            "RockScore 0: of {stacks} more than one in ten collapses when shaken {direction} to {} cm/s, the weakest \
              shaking of the protocol.",
             shown(lowest)
         ),
@@ -190,7 +191,8 @@ fn rules(sheet: &Sheet) -> Vec<String> {
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device as use leaves it, \
          one at a time."
             .into(),
-        "Collapse: a barrel or a rack loses its seat. A run goes on until nothing moves.".into(),
+        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once \
+         the stack has come to rest on ground that stays below 0.02 g.".into(),
         "A protocol never changes under its name; what is changed gets the next number.".into(),
     ]
 }

@@ -4,6 +4,7 @@ use barrelstack_input::{named, section};
 
 use super::dimension::Dimension;
 use super::field::{Default, Kind, Range, names};
+use super::run::Until;
 
 named! {
     /// What variants differ in.
@@ -28,6 +29,8 @@ section! {
     pub static IMPERFECTIONS = "imperfections";
     /// Variants of the stack that are run beside it, in each plane; 0 for the stated case alone.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
+    /// What ends a variant by itself where `run.until` is "rest": "verdict" 2 s after its first loss of a seat, or when it has come to rest on ground that stays below 0.02 g; "rest" when every barrel has come to its end.
+    until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the sequence that they are drawn by.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
     /// What they differ in: "hair", places and masses, which no cellar has twice; "ignorance", friction and contact constants, which nobody has measured on this stack; or both.
@@ -45,7 +48,7 @@ section! {
     stiffness: f64 = DISPERSION, Default::Value("0.6");
     /// Ignorance: the same for all impacts (an assumption).
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
-    /// Ignorance: standard deviation of ln c, or of the logarithm of the damping ratio where a restitution is stated, lognormal, one draw for all seats with a damper (a restitution of 0.8 then then lies between 0.69 and 0.88 in nineteen of twenty; the number is an assumption).
+    /// Ignorance: standard deviation of ln c, or of the logarithm of the damping ratio where a restitution is stated, lognormal, one draw for all seats with a damper (a restitution of 0.8 then lies between 0.69 and 0.88 in nineteen of twenty; the number is an assumption).
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Whether half of the variants are shaken the other way round, as stacks that face the other way are.
     sign: bool = Kind::Flag, Default::Value("false");

@@ -202,6 +202,16 @@ impl Scenario {
         }
     }
 
+    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` where it was not written
+    /// so.
+    pub fn as_written(&self, path: &str) -> Option<&str> {
+        let (_, table) = self.written.0.as_deref()?;
+        match &merge::node_at(table, &path.split('.').collect::<Vec<_>>())?.value {
+            tree::Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
     /// Returns the scenario as text that reads back equal: all defaults written out, all quantities in SI, paths
     /// unchanged.
     pub fn to_resolved_toml(&self) -> String {
@@ -209,21 +219,23 @@ impl Scenario {
     }
 
     /// Returns bodies and run settings as the table of a key in another file such as a study; without title and
-    /// motion, and without the end of its runs, which was chosen for its own motion.
-    pub fn to_toml_table(&self, key: &str) -> String {
+    /// motion, and with runs that end by themselves as given, since the stated end was chosen for its own motion.
+    pub fn to_toml_table(&self, key: &str, until: Until) -> String {
         let plain = |key: &str, value| tree::Entry {
             key: key.to_owned(),
             origin: tree::Origin::Default,
             node: tree::Node { origin: tree::Origin::Default, value },
         };
-        let mut own = root::write(self);
+        let mut ended = self.clone();
+        ended.run.until = until;
+        let mut own = root::write(&ended);
         own.remove("title");
         own.remove("motion");
         if let Some(tree::Entry {
             node: tree::Node { value: tree::Value::Table(run), .. }, ..
         }) = own.get_mut("run")
         {
-            for end in run::ENDS {
+            for end in run::ENDS.into_iter().filter(|end| *end != "until") {
                 run.remove(end);
             }
         }

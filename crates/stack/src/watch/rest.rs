@@ -21,8 +21,8 @@ pub const HOLD: f64 = 3.0;
 
 /// Acceleration of calm ground over gravity.
 ///
-/// It neither slides nor tips bodies after a collapse, and the last third of many records is weaker. A standing stack
-/// is followed to the end: swaying on round barrels accumulates even weak shaking.
+/// It neither slides nor tips bodies, and the last third of many records is weaker. A standing stack is followed to the
+/// end nevertheless, since its displacements are results, unless only the verdict is wanted.
 const CALM: f64 = 0.02;
 /// Acceleration of calm ground over gravity, relative to the smallest coefficient of friction.
 const CALM_OF_FRICTION: f64 = 0.1;
@@ -66,8 +66,8 @@ impl Ending {
     /// Returns the reason for an end by time.
     pub fn of_time(scenario: &Scenario) -> Self {
         match scenario.run.until {
-            Until::Rest if scenario.run.duration.is_none() => Self::Patience,
-            Until::Rest | Until::Duration => Self::Duration,
+            Until::Rest | Until::Verdict if scenario.run.duration.is_none() => Self::Patience,
+            Until::Rest | Until::Verdict | Until::Duration => Self::Duration,
         }
     }
 }
@@ -123,20 +123,29 @@ impl Rest {
                 },
             })
         };
-        let by_rest = |time: f64| match scenario.run.until {
-            Until::Rest => time,
-            Until::Duration => f64::INFINITY,
-        };
+        let calm = || ground.calm_from(scenario.run.gravity * calm(assembly.model.interfaces()));
+        let (still_from, calm_from) = quiet_from(scenario.run.until, ground.end(), calm);
         Self {
-            still_from: by_rest(ground.end()),
-            calm_from: by_rest(
-                ground.calm_from(scenario.run.gravity * calm(assembly.model.interfaces())),
-            ),
+            still_from,
+            calm_from,
             slow: scenario.run.gravity * CLIMB * scale,
             hold: HOLD * scale.sqrt(),
             bodies: assembly.parts.iter().enumerate().filter_map(mover).collect(),
             moved: 0.0,
         }
+    }
+}
+
+/// Returns the times (s) from which a standing and a collapsed stack may be at rest, of the end of the motion (s) and the
+/// time (s) from which the ground is calm; infinite if the run does not end by rest.
+pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f64) {
+    match until {
+        Until::Rest => (end, calm()),
+        Until::Verdict => {
+            let calm = calm();
+            (calm, calm)
+        }
+        Until::Duration => (f64::INFINITY, f64::INFINITY),
     }
 }
 
