@@ -376,3 +376,43 @@ fn dates_that_cannot_be_read_are_reported_in_every_format_that_states_them() {
         assert!(warned(&after), "{file}: {:?}", after.warnings);
     }
 }
+
+#[test]
+fn a_row_of_units_of_which_one_is_damaged_is_refused_and_never_read_as_names() {
+    let rows: String = (0..60)
+        .map(|k| {
+            let t = 0.01 * f64::from(k);
+            let row = [t, (9.0 * t).sin(), (7.0 * t).cos(), (5.0 * t).sin()];
+            row.map(|value| format!("{value:.4}")).join(",") + "\n"
+        })
+        .collect();
+    let table = |header: &str| {
+        read(format!("{header}\n{rows}").as_bytes(), "t.csv", &ReadOptions::default())
+    };
+    let names = "Time,Acceleration,Velocity,Displacement";
+    let record = table(&format!("{names}\ns,g,cm/s,cm")).unwrap();
+    assert_eq!(record.channels.len(), 1);
+    let damaged = [
+        ("s,gc,cm/s,cm", "\"gc\""),
+        ("s,g,cmvelocity/s,cm", "\"cmvelocity/s\""),
+        ("times,g,cm/s,cm", "\"times\""),
+        ("(s),(g),(cm s),(cmm)", "\"cm s\""),
+        ("[s],[g]],[cm/0s],[c.m]", "\"cm/0s\""),
+    ];
+    for (units, found) in damaged {
+        let error = table(&format!("{names}\n{units}")).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Damaged, "{units}: {error}");
+        let words = error.to_string();
+        assert!(words.contains("line 2") && words.contains(found), "{units}: {words}");
+    }
+    // Names that resemble units stay names, and a sentence with a unit stays a sentence.
+    for header in ["Unit: g\ntime (s),EW (g),NS (g),UD (g)", "time,g,EW (g),NS (g)"] {
+        table(header).unwrap();
+    }
+    let two: String = (0..60).map(|k| format!("{:.2} {}\n", 0.01 * f64::from(k), k % 5)).collect();
+    for header in ["Unit: g", "units, g", "time g"] {
+        let result = read(format!("{header}\n{two}").as_bytes(), "t.txt", &ReadOptions::default());
+        let refused = result.err().filter(|error| error.refusal == Refusal::Damaged);
+        assert!(refused.is_none(), "{header}: {refused:?}");
+    }
+}

@@ -78,7 +78,7 @@ fn read_table(
     let (width, rows) = (table.len(), table[0].len());
     // Comments in files of this crate are free text on their history.
     let own = header > 0 && source.text(0) == FIRST_LINE;
-    let mut named = names::find(source, header, width);
+    let mut named = names::find(source, header, width)?;
     if let Some((_, names)) = named.as_mut().filter(|_| own) {
         let acceleration = Holds::Motion(Quantity::Acceleration);
         for name in names.iter_mut().skip(1) {

@@ -1,8 +1,11 @@
 //! Names of columns: a header line has them only if they are quantities.
 
+use std::cmp::Ordering;
+
 use super::facts::time_factor;
 use crate::direction::Direction;
-use crate::format::source::Source;
+use crate::error::ReadError;
+use crate::format::source::{Source, quoted};
 use crate::record::Quantity;
 use crate::units::MotionUnit;
 
@@ -48,11 +51,27 @@ impl Name {
 }
 
 /// Finds the line of names right above a table of `width` columns; returns its 0-based number and the names.
-pub(super) fn find(source: &Source<'_>, first: usize, width: usize) -> Option<(usize, Vec<Name>)> {
+///
+/// # Errors
+/// If that line is a row of units of which some are no units.
+pub(super) fn find(
+    source: &Source<'_>,
+    first: usize,
+    width: usize,
+) -> Result<Option<(usize, Vec<Name>)>, ReadError> {
     let mut lines = (0..first).rev().filter(|&line| !is_rule(&source.text(line)));
-    let last = lines.next()?;
-    let Some(units) = units_row(&source.text(last), width) else {
-        return Some((last, names(&source.text(last), width)?));
+    let Some(last) = lines.next() else { return Ok(None) };
+    let text = source.text(last);
+    let Some(units) = units_row(&text, width) else {
+        if let Some(damaged) = damaged_unit(&text, width) {
+            return Err(source.damaged(
+                last,
+                format!("{width} units, one for each column"),
+                format!("{}, which is none", quoted(&damaged)),
+                "correct it, or write names and units in one line, such as \"time (s), acceleration (g)\"",
+            ));
+        }
+        return Ok(names(&text, width).map(|names| (last, names)));
     };
     let above = lines.next().and_then(|line| Some((line, names(&source.text(line), width)?)));
     let (line, mut names) = above.unwrap_or_else(|| {
@@ -67,7 +86,7 @@ pub(super) fn find(source: &Source<'_>, first: usize, width: usize) -> Option<(u
         name.unit = name.unit.take().or(Some(unit).filter(|unit| unit != "-"));
         name.holds = holds(&name.label, name.unit.as_deref());
     }
-    Some((line, by_company(names)))
+    Ok(Some((line, by_company(names))))
 }
 
 /// `true` if a line is empty or a drawn rule.
@@ -97,9 +116,11 @@ fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     all
 }
 
+const BRACKETS: [char; 7] = ['(', ')', '[', ']', '{', '}', ' '];
+
 /// Parses a row of units alone, below the names.
 fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
-    let bare = |part: &str| part.trim_matches(['(', ')', '[', ']', '{', '}', ' ']).to_owned();
+    let bare = |part: &str| part.trim_matches(BRACKETS).to_owned();
     splits(plain(text)).into_iter().find_map(|(_, parts)| {
         let units: Vec<String> = parts.iter().map(|part| bare(part)).collect();
         let each = units.iter().all(|unit| is_unit(unit) || unit == "-" || unit == "#");
@@ -107,6 +128,31 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
         // A row of names may be "N E" or "S"; no units except "g" and "m" resemble a direction.
         let direction = units.iter().all(|unit| Direction::parse(unit) != Direction::default());
         (units.len() == width && each && any && !direction).then_some(units)
+    })
+}
+
+/// Returns the first part of a line that is no unit, where the other parts say that the line is a row of units.
+///
+/// More than half of them do, and half of them unless the rest are names, as in `time, g`.
+fn damaged_unit(text: &str, width: usize) -> Option<String> {
+    splits(plain(text)).into_iter().find_map(|(separated, parts)| {
+        if parts.len() != width || parts.iter().any(String::is_empty) {
+            return None;
+        }
+        let bare = |part: &String| part.trim_matches(BRACKETS).to_owned();
+        let others: Vec<String> = parts
+            .iter()
+            .map(bare)
+            .filter(|part| !is_unit(part) && !["-", "#"].contains(&part.as_str()))
+            .collect();
+        let names = others.iter().all(|part| name(part).holds != Holds::Unknown);
+        // In prose, "Unit: g" states the unit of all columns.
+        let enough = match (parts.len() - others.len()).cmp(&others.len()) {
+            Ordering::Greater => true,
+            Ordering::Equal => separated && !names && !text.to_lowercase().contains("unit"),
+            Ordering::Less => false,
+        };
+        others.into_iter().next().filter(|_| enough)
     })
 }
 
