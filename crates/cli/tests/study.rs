@@ -80,6 +80,10 @@ fn chunks_run_one_by_one_in_any_order_give_the_table_of_the_whole() {
             let status = barrelstack(["study", "status", &parts, "--json"]);
             let status: serde_json::Value = serde_json::from_str(&stdout(&status)).unwrap();
             assert_eq!(status["missing"], serde_json::json!([0, 1, 2, 3]));
+            // The last job of an array whose tasks are not all done must not pass for a finished one.
+            let output = barrelstack(["study", "collect", &parts]);
+            assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+            assert!(stderr(&output).contains("with 6 of 10 chunks done"), "{}", stderr(&output));
             let again =
                 barrelstack(["study", "run-chunk", &file, "--chunk", &chunk, "--out", &parts]);
             assert!(stdout(&again).contains("chunk 4 was done before"), "{}", stdout(&again));
