@@ -416,3 +416,60 @@ fn a_row_of_units_of_which_one_is_damaged_is_refused_and_never_read_as_names() {
         assert!(refused.is_none(), "{header}: {refused:?}");
     }
 }
+
+#[test]
+fn the_length_of_a_vector_beside_its_components_is_no_channel() {
+    let rows: String = (0..80)
+        .map(|k| {
+            let t = 0.01 * f64::from(k);
+            let (x, y) = ((9.0 * t).sin(), (7.0 * t).cos());
+            format!("{t:.3},{x:.5},{y:.5},{:.5}\n", x.hypot(y))
+        })
+        .collect();
+    for of in ["Absolute acceleration", "Abs", "Resultant acc", "acc total"] {
+        let header =
+            format!("\"Time (s)\",\"Acceleration x (g)\",\"Acceleration y (g)\",\"{of} (g)\"");
+        let text = format!("{header}\n{rows}");
+        let record = read(text.as_bytes(), "phone.csv", &ReadOptions::default()).unwrap();
+        assert_eq!(record.channels.len(), 2, "{of}");
+        assert!(record.warnings.iter().any(|w| w.message.contains(of)), "{of}");
+    }
+    // An absolute acceleration by itself is a motion.
+    let rows: String = (0..80)
+        .map(|k| format!("{:.2},{:.4}\n", 0.01 * f64::from(k), f64::from(k).sin()))
+        .collect();
+    let text = format!("time (s),absolute acceleration (g)\n{rows}");
+    let record = read(text.as_bytes(), "floor.csv", &ReadOptions::default()).unwrap();
+    assert_eq!(record.channels.len(), 1);
+}
+
+#[test]
+fn steps_and_counts_are_read_in_the_languages_of_the_agencies() {
+    let rows: String = (0..60).map(|k| format!("{:.4}\n", (0.2 * f64::from(k)).sin())).collect();
+    for (step, count) in [
+        ("Passo di campionamento (s): 0.005", "Numero dati: 60"),
+        ("Frequenza di campionamento: 200 Hz", "Numero di campioni: 60"),
+        ("Intervalo de muestreo: 0.005 s", "Numero de datos: 60"),
+    ] {
+        let text = format!("{step}\n{count}\naccelerations in cm/s2\n{rows}");
+        let record = read(text.as_bytes(), "t.txt", &ReadOptions::default());
+        let record = record.unwrap_or_else(|error| panic!("{step}: {error}"));
+        assert!((record.channels[0].time_step - 0.005).abs() < 1e-9, "{step}");
+        let text = text.replace(": 60", ": 90");
+        let error = read(text.as_bytes(), "t.txt", &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("90"), "{count}: {error}");
+    }
+}
+
+#[test]
+fn a_velocity_stated_on_the_line_of_the_count_is_refused_whatever_the_unit_given() {
+    let rows: String = (0..60).map(|k| format!("{:.5E}\n", (0.2 * f64::from(k)).sin())).collect();
+    for quantity in ["VELOCITY IN M/SEC", "Displacement in cm"] {
+        let text = format!("{quantity}, NPTS=   60, DT= .00500 SEC\n{rows}");
+        let given = ReadOptions { unit: Some(AccelerationUnit::G), ..ReadOptions::default() };
+        for options in [given, ReadOptions::default()] {
+            let error = read(text.as_bytes(), "t.txt", &options).unwrap_err();
+            assert_eq!(error.refusal, Refusal::NotAcceleration, "{quantity}: {error}");
+        }
+    }
+}

@@ -148,7 +148,7 @@ fn find_unit(
     last: usize,
     hints: &Hints<'_>,
 ) -> Result<AccelerationUnit, ReadError> {
-    for line in 0..last {
+    for line in 0..=last {
         let stated = |quantity: &str| {
             source.find(line, quantity).is_some_and(|at| at < 4) && !source.has(line, "ACCEL")
         };
@@ -161,7 +161,7 @@ fn find_unit(
             ));
         }
     }
-    for line in 0..last {
+    for line in 0..=last {
         for key in ["UNITS OF ", "UNITS ARE ", "UNITS: "] {
             let Some((column, word)) = source.word_after(line, key) else { continue };
             return word.parse().map_err(|_| {

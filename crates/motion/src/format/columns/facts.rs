@@ -40,7 +40,7 @@ pub(super) struct Facts {
     pub(super) component: Option<String>,
 }
 
-const STEP_KEYS: [&str; 20] = [
+const STEP_KEYS: [&str; 24] = [
     "dt",
     "delta t",
     "delta-t",
@@ -61,8 +61,12 @@ const STEP_KEYS: [&str; 20] = [
     "sampling step",
     "intervals of",
     "equally spaced at",
+    "passo di campionamento",
+    "intervallo di campionamento",
+    "intervalo de muestreo",
+    "ornekleme araligi",
 ];
-const RATE_KEYS: [&str; 8] = [
+const RATE_KEYS: [&str; 10] = [
     "sampling rate",
     "sample rate",
     "sampling_rate",
@@ -71,8 +75,10 @@ const RATE_KEYS: [&str; 8] = [
     "sampling freq",
     "sample frequency",
     "fs",
+    "frequenza di campionamento",
+    "frecuencia de muestreo",
 ];
-const COUNT_KEYS: [&str; 20] = [
+const COUNT_KEYS: [&str; 24] = [
     "npts",
     "ndata",
     "nsamp",
@@ -93,6 +99,10 @@ const COUNT_KEYS: [&str; 20] = [
     "samples",
     "points",
     "data points",
+    "numero dati",
+    "numero di campioni",
+    "numero de datos",
+    "numero de muestras",
 ];
 const DURATION_KEYS: [&str; 5] =
     ["duration", "record length", "length of record", "total time", "length"];

@@ -306,8 +306,15 @@ fn accelerations(
         Holds::Time | Holds::Index | Holds::Spectrum | Holds::Other => false,
     };
     let all: Vec<String> = names.iter().map(Name::shown).collect();
-    let (kept, left): (Vec<_>, Vec<_>) =
-        names.into_iter().zip(table).partition(|(name, _)| taken(name));
+    let several = names.iter().filter(|name| taken(name)).count() > 1;
+    // The length of a vector beside its components, as phones write it.
+    let length = |name: &Name, values: &[f64]| {
+        several && name.says_length() && values.iter().all(|value| *value >= 0.0)
+    };
+    let (kept, left): (Vec<_>, Vec<_>) = names
+        .into_iter()
+        .zip(table)
+        .partition(|(name, values)| taken(name) && !length(name, values));
     if kept.is_empty() {
         return Err(source.not_acceleration(
             line,

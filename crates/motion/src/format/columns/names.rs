@@ -41,6 +41,15 @@ impl Name {
         self.unit.as_deref().and_then(MotionUnit::parse)
     }
 
+    /// `true` if the name is that of the length of a vector.
+    pub(super) fn says_length(&self) -> bool {
+        let lower = self.label.to_lowercase();
+        let mut words = lower.split(|c: char| !c.is_alphanumeric());
+        words.any(|word| {
+            ["abs", "absolute", "resultant", "magnitude", "norm", "total", "vector"].contains(&word)
+        })
+    }
+
     /// Formats name and unit for messages.
     pub(super) fn shown(&self) -> String {
         match &self.unit {
