@@ -119,34 +119,48 @@ fn alone(spread: &Spread) -> String {
     }
 }
 
-/// Returns the verdict of both planes, which is that of the worse.
+/// Returns the verdict of both planes, which is that of the worse, then their counts, those of the worse first.
 fn together(planes: [(View, &Spread); 2]) -> String {
-    let mut parts = Vec::new();
-    for (at, (view, spread)) in planes.into_iter().enumerate() {
-        // The first clause names the barrels.
-        let place = if at == 0 {
-            capital(view.words())
-        } else {
-            view.words().replace("the barrels", "them")
-        };
-        let fate = fate(spread);
-        let fate = if at == 0 { &fate } else { fate.trim_end_matches(" of variants") };
-        parts.push(match spread.share {
-            None => format!("{place} no variant has a verdict"),
-            Some(_) => format!("{place} it {fate}"),
-        });
-    }
-    let worst = planes.iter().filter_map(|(_, spread)| judged_share(spread)).reduce(f64::max);
-    let verdict = match worst {
-        None => return format!("{}.", parts.join("; ")),
-        Some(share) if share >= FALLS => "it falls",
-        Some(share) if share > STANDS => UNSAFE,
-        Some(_) if planes.iter().any(|(_, spread)| spread.standing_until.is_some()) => {
-            "but the runs end before the motion does"
+    let severity = |(_, spread): &(View, &Spread)| judged_share(spread).unwrap_or(-1.0);
+    let [first, second] = planes;
+    let [first, second] =
+        if severity(&first) < severity(&second) { [second, first] } else { [first, second] };
+    let verdict = match judged_share(first.1) {
+        None => {
+            return "No variant has a verdict, neither across the barrels nor along them."
+                .to_owned();
         }
-        Some(_) => "it stands",
+        Some(share) if share >= FALLS => "Falls",
+        Some(share) if share > STANDS => "Not safe",
+        Some(_) if [first, second].iter().any(|(_, spread)| spread.standing_until.is_some()) => {
+            "Not decided, since the runs end before the motion does"
+        }
+        Some(_) => "Stands",
     };
-    format!("{}: {verdict}.", parts.join("; "))
+    // The first clause names the barrels and the variants.
+    let place = second.0.words().replace("the barrels", "them");
+    let second = match counts(second.1, "") {
+        Some(counts) => format!("{place} {counts}"),
+        None => format!("{place} none has a verdict"),
+    };
+    let first = format!("{} {}", first.0.words(), counts(first.1, " variants").unwrap_or_default());
+    format!("{verdict}. Shaken {first}, {second}.")
+}
+
+/// Describes how many variants fall, with the 95 % interval of their share: "53 of 64 variants fall (72–90 %)"; `None`
+/// without any verdict.
+fn counts(spread: &Spread, noun: &str) -> Option<String> {
+    let Spread { variants, collapsed, interval, .. } = spread;
+    let [low, high] = interval.map(percent);
+    spread.share?;
+    Some(match *collapsed {
+        0 => format!("none of {variants}{noun} falls (at most {high})"),
+        all if all == *variants => format!("all {all}{noun} fall (at least {low})"),
+        one => {
+            let fall = if one == 1 { "falls" } else { "fall" };
+            format!("{one} of {variants}{noun} {fall} ({}–{high})", low.trim_end_matches(" %"))
+        }
+    })
 }
 
 /// Returns the sentences that support the headline of a run and its variants.
@@ -412,7 +426,10 @@ mod tests {
             both.starts_with("Along the barrels, 2 of 65 variants fall under their own weight"),
             "{both}"
         );
-        assert!(both.ends_with("along them it stands in 97 %: treat it as not safe."), "{both}");
+        assert!(
+            both.contains("Not safe. Shaken along the barrels 2 of 61 variants fall"),
+            "{both}"
+        );
         // Variants without a verdict do not count as standing.
         (one.cannot_stand, one.collapsed, one.share) = (0, 0, Some(0.0));
         let said = headline(&[(View::Transverse, &one)]);
@@ -433,7 +450,10 @@ mod tests {
             "Until 1.0 s, where the runs end and the motion does not, this stack stands in all 64 variants."
         );
         let both = headline(&[(View::Transverse, &one), (View::Longitudinal, &one)]);
-        assert!(both.ends_with("variants: but the runs end before the motion does."), "{both}");
+        assert!(
+            both.starts_with("Not decided, since the runs end before the motion does. Shaken"),
+            "{both}"
+        );
     }
 
     #[test]
@@ -446,28 +466,32 @@ mod tests {
         };
         assert_eq!(
             both(25, 62),
-            "Across the barrels it stands in 61 % of variants; along them it falls in 97 %: it falls."
+            "Falls. Shaken along the barrels 62 of 64 variants fall (89–99 %), across them 25 of 64 fall (28–51 %)."
         );
         assert_eq!(
             both(0, 0),
-            "Across the barrels it stands in all 64 variants; along them it stands in all 64 variants: it \
-             stands."
+            "Stands. Shaken across the barrels none of 64 variants falls (at most 6 %), along them none of 64 falls (at \
+             most 6 %)."
         );
         assert_eq!(
             both(64, 1),
-            "Across the barrels it falls in all 64 variants; along them it stands in 98 %: it falls."
+            "Falls. Shaken across the barrels all 64 variants fall (at least 94 %), along them 1 of 64 falls (1–8 %)."
         );
-        assert!(both(3, 20).ends_with("it stands in 69 %: treat it as not safe."));
+        assert!(
+            both(3, 20)
+                .starts_with("Not safe. Shaken along the barrels 20 of 64 variants fall (21–43 %)")
+        );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(64, 64))]);
         assert_eq!(
             none,
-            "Across the barrels no variant has a verdict; along them it falls in all 64 variants: it falls."
+            "Falls. Shaken along the barrels all 64 variants fall (at least 94 %), across them none has a verdict."
         );
         let none =
             headline(&[(View::Transverse, &spread(0, 0)), (View::Longitudinal, &spread(0, 0))]);
-        assert!(none.ends_with("along them no variant has a verdict."), "{none}");
+        assert!(none.starts_with("No variant has a verdict"), "{none}");
     }
+
     #[test]
     fn crushed_staves_follow_the_verdict_of_their_plane() {
         let mut one = spread(64, 0);
@@ -479,6 +503,9 @@ mod tests {
         let said = headline(&[(View::Transverse, &one)]);
         assert!(said.ends_with(&format!("at most 6 % fall. In {crushed}")), "{said}");
         let both = headline(&[(View::Transverse, &spread(64, 0)), (View::Longitudinal, &one)]);
-        assert!(both.ends_with(&format!("it stands. Along the barrels, in {crushed}")), "{both}");
+        assert!(
+            both.ends_with(&format!("(at most 6 %). Along the barrels, in {crushed}")),
+            "{both}"
+        );
     }
 }
