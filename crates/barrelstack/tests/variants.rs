@@ -9,7 +9,9 @@ use barrelstack::Scenario;
 use barrelstack::outcome::Outcome;
 use barrelstack::report::answer_document;
 use barrelstack::scenario::{BodyOverride, MotionSource, Scale, Scene, StackBody, View};
-use barrelstack::variants::{Answer, Asked, Plane, Spread, Variants, answer, planes, run};
+use barrelstack::variants::{
+    Advance, Answer, Asked, Plane, Spread, Variants, answer, planes, run, words,
+};
 use barrelstack_report::{capital, markdown};
 
 fn scenario(name: &str, changes: &[&str]) -> Scenario {
@@ -53,6 +55,37 @@ fn a_variant_that_is_shown_is_the_one_that_was_counted() {
     }
     let typical = answered(&scenario, Asked::Typical).decides.summary;
     assert_eq!(typical.variant, all[0].spread.typical);
+}
+
+#[test]
+fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
+    let mut scenario = two_levels(&["motion.scale.factor=0.7"]);
+    if let Scene::Stack { imperfections, .. } = &mut scenario.scene {
+        imperfections.variants = 20;
+    }
+    let (mut first, mut done) = (Vec::new(), Vec::new());
+    let all = answer(&scenario, Asked::Typical, &mut |now| {
+        match now {
+            Advance::First { variants, headline } => first.push((variants, headline)),
+            Advance::Variants { done: so_far, of } => done.push((so_far, of)),
+            Advance::Run(_) => {}
+        }
+        ControlFlow::Continue(())
+    });
+    let results = all.unwrap().decides.variants.unwrap().results;
+    let plane = &planes(&scenario).unwrap()[0];
+    let eight = Spread::of(plane, &results[..9]).unwrap();
+    assert_eq!((eight.variants, first.len()), (8, 1));
+    assert_eq!(first[0], (8, words::headline(&[(View::Transverse, &eight)])));
+    assert_eq!(done.iter().max(), Some(&(21, 21)));
+    // With eight variants there is nothing left to wait for.
+    let scenario = two_levels(&[]);
+    let mut early = 0;
+    let _ = answer(&scenario, Asked::Typical, &mut |now| {
+        early += u32::from(matches!(now, Advance::First { .. }));
+        ControlFlow::Continue(())
+    });
+    assert_eq!(early, 0);
 }
 
 #[test]

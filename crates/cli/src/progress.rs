@@ -80,6 +80,9 @@ impl Progress {
     pub(crate) fn told_of(&self, told: variants::Advance) -> ControlFlow<()> {
         match told {
             variants::Advance::Run(reached) => self.at(reached),
+            variants::Advance::First { variants, headline } => {
+                self.said(&format!("after the first {variants} variants: {headline}"))
+            }
             variants::Advance::Variants { done, of } => {
                 self.counted(done as u64, of as u64, "variants")
             }
@@ -90,6 +93,16 @@ impl Progress {
     pub(crate) fn counted_of_part(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.lines.part();
         self.counted(done, of, things)
+    }
+
+    /// Prints a line of its own, if progress is shown.
+    fn said(&self, line: &str) -> ControlFlow<()> {
+        if let Some(bar) = &self.bar.0 {
+            bar.println(line);
+        } else if self.lines.told.is_some() {
+            printer::note(line);
+        }
+        self.interrupt.flow()
     }
 
     /// Reports the number of tries of a search of unknown length.

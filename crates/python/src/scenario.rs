@@ -255,6 +255,7 @@ pub(crate) fn with_variants(
 pub(crate) fn told(hear: &Hear, now: Advance) -> ControlFlow<()> {
     match now {
         Advance::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
+        Advance::First { .. } => ControlFlow::Continue(()),
         Advance::Run(now) => hear.tell(now.time, now.end_time, "s"),
     }
 }

@@ -180,6 +180,7 @@ pub fn answered(
     let planes = || planes(scenario).map_err(|error| placed(error.into()));
     let mut told = |told| match told {
         Advance::Variants { done, of } => observer(done as f64, of as f64),
+        Advance::First { .. } => ControlFlow::Continue(()),
         Advance::Run(progress) => observer(progress.time, progress.end_time),
     };
     match request.ask {

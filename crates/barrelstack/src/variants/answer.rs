@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use super::typical::typical;
-use super::{Plane, Spread, Variants, planes, run_as_far, together};
+use super::{Plane, Spread, Variants, planes, run_as_far, together, words};
 use crate::check::check;
 use crate::ensemble::CaseResult;
 use crate::ground::{GroundError, from_disk};
@@ -16,7 +16,7 @@ use crate::scenario::{Scenario, View};
 use crate::summary::{Summary, Unfinished};
 
 /// Progress.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Advance {
     /// Finished variants.
     Variants {
@@ -24,6 +24,13 @@ pub enum Advance {
         done: usize,
         /// Number of all variants.
         of: usize,
+    },
+    /// Verdict of the first variants, in the order of their numbers, while the others are still to be run.
+    First {
+        /// Number of these variants, in each plane.
+        variants: u32,
+        /// The sentence.
+        headline: String,
     },
     /// Progress of the shown runs, in aggregate.
     Run(Progress),
@@ -180,9 +187,7 @@ fn answered(
     let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
     let results = match known {
         Some(results) if varied => results,
-        _ if varied => {
-            run_as_far(&planes, &numbers(), &|done, of| tell(Advance::Variants { done, of }))?
-        }
+        _ if varied => in_order(&planes, &numbers(), &tell)?,
         _ => Vec::new(),
     };
     let done = |one: &&CaseResult| one.outcome != Ok(Outcome::Interrupted);
@@ -221,6 +226,42 @@ fn answered(
     let other = shown.pop();
     decides.summary.other_plane = other.as_ref().map(|other| Box::new(other.summary.clone()));
     Ok(Answer { scenario: scenario.clone(), decides, other })
+}
+
+/// Number of variants after which a first verdict is reported.
+const FIRST: u32 = 8;
+
+/// Runs variants, the first ones and then the others, and reports what the first ones say; those that are not finished
+/// when canceled are interrupted.
+///
+/// The first to finish would be a biased sample, since runs that collapse end early.
+fn in_order(
+    planes: &[Plane],
+    numbers: &[u32],
+    tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
+) -> Result<Vec<Vec<CaseResult>>, GroundError> {
+    let of = planes.len() * numbers.len();
+    let (first, others) = numbers.split_at(numbers.len().min(FIRST as usize + 1));
+    let mut results = run_as_far(planes, first, &|done, _| tell(Advance::Variants { done, of }))?;
+    let open = |one: &CaseResult| one.outcome == Ok(Outcome::Interrupted);
+    if others.len() > first.len() && !results.iter().flatten().any(open) {
+        let spreads: Vec<(View, Spread)> = planes
+            .iter()
+            .zip(&results)
+            .filter_map(|(plane, results)| Some((plane.view()?, Spread::of(plane, results)?)))
+            .collect();
+        let spreads: Vec<(View, &Spread)> =
+            spreads.iter().map(|(view, spread)| (*view, spread)).collect();
+        // A stop is noticed by the next variant.
+        let _ = tell(Advance::First { variants: FIRST, headline: words::headline(&spreads) });
+    }
+    let before = planes.len() * first.len();
+    let more =
+        run_as_far(planes, others, &|done, _| tell(Advance::Variants { done: before + done, of }))?;
+    for (results, more) in results.iter_mut().zip(more) {
+        results.extend(more);
+    }
+    Ok(results)
 }
 
 /// Returns the number of the run to show; the nominal case if that does not stand, so that the reason is
