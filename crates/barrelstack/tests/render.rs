@@ -263,3 +263,28 @@ fn of_two_runs_into_one_new_or_empty_folder_the_second_is_refused() {
         assert_eq!(std::fs::read(path.join("summary.json")).unwrap(), b"one");
     }
 }
+
+#[test]
+fn what_a_killed_rendering_left_is_refused_and_with_leave_removed() {
+    let (run, summary) = rocking_block();
+    let out = tempfile::tempdir().unwrap();
+    let at = |name: &str| out.path().join(name);
+    // As a process leaves them that is killed within a file.
+    let left = ["report.pdf.41.part", "report.md.41.part", "figures/drift.svg.41.part"];
+    // Of somebody else, whatever the name resembles.
+    let kept = ["notes.part", "report.pdf.part", "report.txt.41.part", "figures/mine.txt"];
+    std::fs::create_dir(at("figures")).unwrap();
+    for name in left.iter().chain(&kept) {
+        std::fs::write(at(name), "half").unwrap();
+    }
+    for part in [Part::Figures, Part::Report] {
+        let refused = RenderFolder::prepare(out.path(), &[part], false).unwrap_err();
+        assert!(refused.to_string().contains("41.part"), "{refused}");
+    }
+    let parts = [Part::Figures, Part::Report];
+    let folder = RenderFolder::prepare(out.path(), &parts, true).unwrap();
+    folder.write(&run, &summary, &Rendering::default()).unwrap();
+    assert!(left.iter().all(|name| !at(name).exists()), "{:?}", names(out.path()));
+    assert!(kept.iter().all(|name| at(name).exists()), "{:?}", names(out.path()));
+    assert!(std::fs::read(at("report.pdf")).unwrap().starts_with(b"%PDF-"));
+}

@@ -282,14 +282,16 @@ impl RenderFolder {
             Part::Figures => Some(self.path.join("report.md")),
             Part::Animation | Part::Frames | Part::Paraview => None,
         };
-        let mut files: Vec<PathBuf> = alone.into_iter().filter(|file| file.exists()).collect();
-        if !place.is_dir() {
-            return Ok(files);
+        let mut files = Vec::new();
+        if let Some(alone) = alone {
+            let name = alone.file_name().unwrap_or_default().to_os_string();
+            // A killed rendering leaves the part of a file beside its place.
+            let own = |path: &PathBuf| {
+                *path == alone || system::is_unfinished(path, |whole| *whole == *name)
+            };
+            files.extend(entries(&self.path)?.into_iter().filter(own));
         }
-        let entries =
-            std::fs::read_dir(&place).map_err(|error| ExportError::refused(&place, &error))?;
-        for entry in entries {
-            let path = entry.map_err(|error| ExportError::refused(&place, &error))?.path();
+        for path in entries(&place)? {
             let kind = path.extension().and_then(|kind| kind.to_str()).unwrap_or_default();
             let unfinished = system::is_unfinished(&path, |whole| {
                 KINDS.iter().any(|kind| whole.ends_with(kind))
@@ -301,6 +303,16 @@ impl RenderFolder {
         files.sort();
         Ok(files)
     }
+}
+
+/// Returns the paths in a folder; none if it is no folder.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let refused = |error| ExportError::refused(folder, &error);
+    let found = std::fs::read_dir(folder).map_err(refused)?;
+    found.map(|entry| Ok(entry.map_err(refused)?.path())).collect()
 }
 
 /// Writes the figures of a document in formats besides SVG, named as the SVG files; `dpi` (dots per inch)
