@@ -249,6 +249,37 @@ fn every_mistake_is_one_error_at_its_place() {
 }
 
 #[test]
+fn advice_on_a_missing_value_has_the_dimension_of_what_it_is_missing_from() {
+    let design = "[design]\nkind = \"monte-carlo\"\nmost = 10\n";
+    let drawn = "[intensity]\nmeasure = \"pgv\"\ndistribution = { kind = \"uniform\", ";
+    let mut cases = vec![
+        (format!("{drawn}to = \"1 m/s\" }}\n"), design.to_owned(), "from", "60 cm/s"),
+        (format!("{drawn}from = \"1 cm/s\" }}\n"), design.to_owned(), "to", "60 cm/s"),
+    ];
+    for (measure, example) in [("pga", "0.35 g"), ("pgv", "60 cm/s"), ("arias", "60 cm/s")] {
+        let intensity = format!("[intensity]\nmeasure = \"{measure}\"\n");
+        let ranged = format!("{intensity}range = {{ to = \"{example}\", count = 3 }}\n");
+        cases.push((ranged, "[design]\nkind = \"stripes\"\n".to_owned(), "from", example));
+        for (given, missing) in [("first", "step"), ("step", "first")] {
+            let hunt = format!("[design]\nkind = \"ida\"\n{given} = \"{example}\"\n");
+            cases.push((intensity.clone(), hunt, missing, example));
+        }
+    }
+    for (intensity, design, missing, example) in cases {
+        let text = whole([HEAD, SCENE, FACTOR, &intensity, &design]);
+        let error = Study::parse("case.toml", &text).unwrap_err().to_string();
+        let line = format!("`{missing} = \"{example}\"`");
+        assert!(error.contains(&format!("`{missing}` is missing")), "{intensity}{design}: {error}");
+        assert!(error.contains(&line), "{intensity}{design}: no {line} in {error}");
+    }
+    // A number of a list has advice for that place of the list.
+    let text =
+        whole([HEAD, SCENE, FACTOR, "[intensity]\nmeasure = \"pgv\"\nlevels = [0.1]\n", DESIGN]);
+    let error = Study::parse("case.toml", &text).unwrap_err().to_string();
+    assert!(error.contains("write for example \"0.1 m/s\""), "{error}");
+}
+
+#[test]
 fn a_design_of_values_refuses_a_distribution() {
     let drawn = FACTOR.replace(
         "values = [0.3, 0.4]",

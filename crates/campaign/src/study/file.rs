@@ -7,7 +7,7 @@ use std::path::Path;
 use barrelstack_fragility::sobol;
 use barrelstack_motion::IntensityMeasure;
 
-use crate::scenario::field::Range;
+use crate::scenario::field::{Kind, Range};
 use crate::scenario::reader::{Reader, nearest};
 use crate::scenario::template::Opened;
 use crate::scenario::tree::Origin;
@@ -20,7 +20,7 @@ use super::ida::Hunt;
 use super::motions::{Motion, Shaking, hash_files, unreadable};
 use super::plan::{Chunks, Sizes};
 use super::prepare::runs;
-use super::setting::{Domain, Setting};
+use super::setting::{Domain, Setting, required};
 use factor::{LOW, Room, clash, read_factor, read_variation};
 
 use super::{Factor, Intensity, Levels, Study, Variation, ensembles};
@@ -432,16 +432,16 @@ fn read_hunt(reader: &Reader<'_>, intensity: Option<&Intensity>) -> Result<Hunt,
         return Err(reader.inconsistent("kind", message.to_owned()));
     };
     let dimensions = dimension_of(*measure).unwrap_or(&[Dimension::NONE]);
-    let read = |name: &'static str, range: Range| -> Result<Option<f64>, ScenarioError> {
-        let Some(node) = reader.node(name)? else { return Ok(None) };
-        reader.read_quantity(name, &node, dimensions, range).map(|quantity| Some(quantity.value))
+    let needed = |name: &'static str| {
+        let kind = Kind::Quantity(dimensions, Range::POSITIVE);
+        let node = required(reader, name, kind)?;
+        reader.read_quantity(name, &node, dimensions, Range::POSITIVE).map(|read| read.value)
     };
-    let (Some(first), Some(step)) =
-        (read("first", Range::POSITIVE)?, read("step", Range::POSITIVE)?)
-    else {
-        return Err(reader.missing("first"));
-    };
-    let growth = read("growth", Range::NOT_NEGATIVE)?.unwrap_or(0.5 * step);
+    let (first, step) = (needed("first")?, needed("step")?);
+    let growth = reader.node("growth")?.map_or(Ok(0.5 * step), |node| {
+        let read = reader.read_quantity("growth", &node, dimensions, Range::NOT_NEGATIVE);
+        read.map(|read| read.value)
+    })?;
     let resolution = reader.number("resolution")?;
     Ok(Hunt { first, step, growth, resolution, runs: reader.integer("runs")? })
 }

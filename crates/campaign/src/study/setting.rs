@@ -56,6 +56,16 @@ impl PartialEq for Domain {
     }
 }
 
+/// Reads a single value as written whose kind depends on other fields; where it is missing, the advice is of that kind.
+pub(super) fn required(
+    reader: &Reader<'_>,
+    name: &'static str,
+    kind: Kind,
+) -> Result<Node, ScenarioError> {
+    let node = if reader.has(name) { reader.node(name)? } else { None };
+    node.ok_or_else(|| reader.missing_as(name, kind))
+}
+
 impl Domain {
     /// Returns the domain of a field, or `None` if it does not hold a single value.
     pub(super) fn of(field: &Field) -> Option<Self> {
@@ -169,7 +179,7 @@ impl Domain {
         reader: &Reader<'_>,
         name: &'static str,
     ) -> Result<f64, ScenarioError> {
-        let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
+        let node = required(reader, name, self.kind)?;
         // A range or a deviation may lie outside of the field's range, so that only its unit is checked.
         let open = if let Kind::Quantity(dimensions, _) = self.kind {
             Kind::Quantity(dimensions, Range::ANY)
@@ -211,7 +221,7 @@ impl Domain {
             return Err(reader.inconsistent("from", message));
         }
         let end = |name| -> Result<f64, ScenarioError> {
-            let Some(node) = reader.node(name)? else { return Err(reader.missing(name)) };
+            let node = required(reader, name, self.kind)?;
             Ok(self.read(reader, name, &node)?.number())
         };
         let (from, to) = (end("from")?, end("to")?);

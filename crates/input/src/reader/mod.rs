@@ -178,6 +178,13 @@ impl<'a> Reader<'a> {
         self.sources.error(self.origin, problem)
     }
 
+    /// Creates an error about a missing field whose kind of value depends on other fields, with a value of that kind.
+    pub fn missing_as(&self, name: &str, kind: Kind) -> InputError {
+        let example = format!("`{name} = {}`", kind.example());
+        let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
+        self.sources.error(self.origin, problem)
+    }
+
     /// Returns the kind of value of a field.
     pub fn kind_of(&self, name: &'static str) -> Kind {
         self.field(name).kind

@@ -393,7 +393,14 @@ impl Reader<'_> {
 
     /// Creates an error about a number without a unit, which advises to add the SI unit.
     fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
-        let example = format!("`{name} = \"{number} {unit}\"`");
+        let of_a_list = self.section.any_field(name).is_some_and(|field| {
+            matches!(field.kind, Kind::Values | Kind::Point(_) | Kind::Triple(_) | Kind::Points(_))
+        });
+        let example = if of_a_list {
+            format!("\"{number} {unit}\"")
+        } else {
+            format!("`{name} = \"{number} {unit}\"`")
+        };
         let found = node.value.describe();
         let problem = Problem::BareNumber { field: self.path_of(name), found, example };
         self.sources.error(node.origin, problem)
