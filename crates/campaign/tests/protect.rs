@@ -81,6 +81,14 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
     assert_eq!(json(&found), json(&resumed));
     assert_eq!(html(&found.document), html(&resumed.document));
 
+    // The headline states what the motions can prove of the stack that it recommends, or of the one as it is.
+    let headline = &found.document.verdict.headline;
+    assert!(
+        headline.contains("(95 %)") && headline.contains(" motions") || found.best().is_none(),
+        "{headline}"
+    );
+    println!("{headline}");
+
     // One count of what was tried, in the sentence, on the page and in the numbers; the stack as it is is none of it.
     let tries = (found.all.len() - 1).to_string();
     let said = &found.document.verdict.sentences;
@@ -139,4 +147,16 @@ fn a_free_scene_and_a_hazard_over_another_measure_are_refused_before_anything_is
     let said = ranking(&over, folder.path()).unwrap_err().to_string();
     assert!(said.contains("napa.csv is over pga") && said.contains("over pgv"), "{said}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_stack_that_stands_as_it_is_is_said_to_with_what_the_motions_can_prove() {
+    let folder = tempfile::tempdir().unwrap();
+    let weak = Shaking::Levels(vec![0.02]);
+    let request = Request { shaking: weak, budget: Some(0.0), rounds: 1, ..request() };
+    let headline = ranking(&request, folder.path()).unwrap().document.verdict.headline;
+    assert!(headline.contains(" stands as it is: no barrel falls"), "{headline}");
+    let bound = headline.split("it never collapses: at most ").nth(1);
+    let percent = bound.and_then(|rest| rest.split(" % (95 %)").next()?.parse::<f64>().ok());
+    assert!(percent.is_some_and(|percent| (20.0..=100.0).contains(&percent)), "{headline}");
 }

@@ -80,7 +80,12 @@ fn by_themselves(all: &Ranking) -> String {
 fn headline(all: &Ranking) -> String {
     let Some(base) = all.as_it_is() else { return "Nothing was tried.".to_owned() };
     if base.fallen.mean <= 0.0 {
-        return format!("{} stands as it is: no barrel falls {}.", stack(all), per(all));
+        return format!(
+            "{} stands as it is: no barrel falls {}.{}",
+            stack(all),
+            per(all),
+            known(all, base)
+        );
     }
     let Some(best) = all.best() else {
         return "Nothing that was tried helps beyond doubt.".to_owned();
@@ -92,12 +97,30 @@ fn headline(all: &Ranking) -> String {
     };
     format!(
         "Most is saved for its cost by this: {}. {}, shaken {direction}, where more barrels fall, loses on average {} \
-         barrels {}, instead of {}.",
+         barrels {}, instead of {}.{}",
         best.protection.name,
         stack(all),
         significant(best.fallen.mean, 2),
         per(all),
-        significant(base.fallen.mean, 2)
+        significant(base.fallen.mean, 2),
+        known(all, best)
+    )
+}
+
+/// States how often a stack collapses, how often at most, and how many motions say so.
+fn known(all: &Ranking, one: &Ranked) -> String {
+    let (mean, high) = (one.collapse.mean, collapse(all, one.collapse.high));
+    if mean <= 0.0 {
+        return format!(
+            " Under {} motions it never collapses: at most {high} (95 %).",
+            one.motions
+        );
+    }
+    let runs = if is_site(all) { "" } else { "in " };
+    format!(
+        " It collapses {runs}{} under {} motions, at most {high} (95 %).",
+        collapse(all, mean),
+        one.motions
     )
 }
 
