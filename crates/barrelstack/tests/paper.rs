@@ -73,7 +73,7 @@ fn eight_barrels_lose_their_top_level_first_by_ejection() {
     println!("eight barrels: {mode:?} of level {level} at {time:.3} s, falls {:?}", falls(run, 4));
     assert_eq!(mode, CollapseMode::Ejection);
     assert_eq!(level, 4);
-    // The paper: first barrel at 1.5 s, second at 2.5 s; measured 1.60 s and 2.64 s.
+    // The paper: first barrel at 1.5 s, second at 2.5 s; measured 1.59 s and 2.63 s.
     within("loss of seat", time, 1.0, 2.0);
     within("first fall", run.fates.first_fall().unwrap(), 1.3, 1.8);
     within("second fall", falls(run, 4)[1], 2.2, 2.9);

@@ -12,7 +12,6 @@ mod friction;
 mod integrators;
 mod invariants;
 mod masses;
-mod order;
 mod patches;
 mod racks;
 mod regimes;

@@ -332,13 +332,13 @@ fn a_stick_keeps_its_length_and_its_plane_wherever_it_is_carried() {
         let (from, to) = (unit(dice.vector()), unit(dice.vector()));
         let displacement = Spatial::<f64>::tangential(dice.vector(), from);
         let stick: Stick<Spatial> = Stick { displacement, slipping: false, tangent_plane: from };
-        let carried = stick.in_surface(Rotation3::identity(), to);
+        let carried = stick.carried(to);
         let length = carried.displacement.length();
         let scale = 1.0 / (1.0 + from.dot(to)).max(1e-9);
         assert!(carried.displacement.dot(to).abs() < 1e-15 * scale);
         assert!((length - displacement.length()).abs() < 1e-15 * scale);
         // And back again.
-        let back = carried.in_surface(Rotation3::identity(), from).displacement - displacement;
+        let back = carried.carried(from).displacement - displacement;
         assert!(back.length() < 1e-14 * scale);
     }
 }

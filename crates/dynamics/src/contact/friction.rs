@@ -46,7 +46,8 @@ pub enum FrictionLaw<R = f64> {
 /// Stick memory of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
-    /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
+    /// Elastic tangential displacement of the contactor relative to the target (m), in the frame of the
+    /// target's surface.
     pub displacement: S::Tangent,
     /// The plane of the displacement when the last step was accepted: contacts travel over round targets.
     pub tangent_plane: S::TangentPlane,
@@ -125,17 +126,16 @@ impl<R: Real> FrictionLaw<R> {
 }
 
 impl<S: Space> Stick<S> {
-    /// Transports the stick into the current tangent plane of its contact, and rotates it into the frame of the
-    /// target's surface.
+    /// Transports the stick into the current tangent plane of its contact.
     #[inline(always)]
     #[must_use]
-    pub fn in_surface(self, rotation: S::Rotation, to: S::TangentPlane) -> Self {
-        let carried = S::carry(self.displacement, self.tangent_plane, to);
-        Self { displacement: S::unrotate_tangent(rotation, carried), tangent_plane: to, ..self }
+    pub fn carried(self, to: S::TangentPlane) -> Self {
+        let displacement = S::carry(self.displacement, self.tangent_plane, to);
+        Self { displacement, tangent_plane: to, ..self }
     }
 
     /// Returns the stick memory after an accepted step: the displacement limited by friction, and whether the node
-    /// slips; all in the inertial frame.
+    /// slips.
     ///
     /// `self` has the displacement reached by the step; `weight` is that of [`FrictionLaw::force`].
     #[inline(always)]

@@ -25,8 +25,7 @@ pub struct Contact<S: Space> {
     pub node: u32,
     /// The lanes in which it touches; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
-    /// Where the force acts on both bodies (m), in the frame of the target's surface: for a fixed node its companion
-    /// point on that surface, for an exact contact the middle of the overlap.
+    /// The companion point (m), in the frame of the target's surface: the force acts there on both bodies.
     pub point: S::Vector,
     /// Unit normal in the same frame, out of the target.
     pub normal: S::Vector,
@@ -108,7 +107,7 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of the displacement of every stick (m/s), in the inertial frame; zero where it does not touch.
+    /// Slip rate of every element (m/s); zero where it does not touch.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
@@ -143,7 +142,7 @@ pub struct Pressed<S: Space> {
     pub node: u32,
     /// The lanes in which it touches.
     pub touching: <S::Real as Real>::Mask,
-    /// [`Contact::point`].
+    /// The companion point (m), in the frame of the target's surface.
     pub point: S::Vector,
     /// Tangent plane, stored by its stick with the displacement.
     tangent_plane: S::TangentPlane,
@@ -339,17 +338,17 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
         state,
         scratch,
         #[inline(always)]
-        |_, stick, to| S::carry(stick.displacement, stick.tangent_plane, to),
+        |_, displacement| displacement,
     );
 }
 
-/// Accepts as [`commit`], with displacements `corrected` first: from an element, its stick and its current tangent
-/// plane to the displacement (m) to accept, in that plane.
+/// Accepts as [`commit`], with displacements `corrected` first: from an element and its displacement (m) to the
+/// accepted one.
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
     scratch: &Scratch<S>,
-    corrected: impl Fn(usize, Stick<S>, S::TangentPlane) -> S::Tangent,
+    corrected: impl Fn(usize, S::Tangent) -> S::Tangent,
 ) {
     S::Real::scope(
         #[inline(always)]
@@ -365,7 +364,7 @@ fn commit_all<S: Space>(
     model: &Model<S>,
     elements: &mut ContactElements<S>,
     scratch: &Scratch<S>,
-    corrected: &impl Fn(usize, Stick<S>, S::TangentPlane) -> S::Tangent,
+    corrected: &impl Fn(usize, S::Tangent) -> S::Tangent,
 ) {
     let ContactElements { sticks, .. } = elements;
     let mut next = 0;
@@ -413,7 +412,7 @@ fn commit_all<S: Space>(
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,
-    corrected: &impl Fn(usize, Stick<S>, S::TangentPlane) -> S::Tangent,
+    corrected: &impl Fn(usize, S::Tangent) -> S::Tangent,
     pressed: &[Pressed<S>],
     slip_rates: &[S::Tangent],
     sticks: &mut [Stick<S>],
@@ -428,9 +427,8 @@ fn commit_pair<S: Space>(
         *next = element + 1;
 
         let stick = &mut sticks[element];
-        let to = contact.tangent_plane;
-        let displacement = corrected(element, *stick, to);
-        let carried = Stick { displacement, tangent_plane: to, ..*stick };
+        stick.displacement = corrected(element, stick.displacement);
+        let carried = stick.carried(contact.tangent_plane);
         *stick = carried.commit(&law(), slip_rates[element], contact.normal_force, contact.weight);
         let counted = S::Real::select(contact.touching, S::Real::splat(1.0), S::Real::zero());
         stick.displacement = stick.displacement * counted;

@@ -271,10 +271,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                 let center = self.frame.to_surface(*center);
                 let mut gap = surface.gap(center);
                 gap.distance -= *radius;
-                self.look_ahead(center - gap.normal * *radius, gap);
+                let node = center - gap.normal * *radius;
+                self.look_ahead(node, gap);
                 if gap.distance.lt(S::Real::zero()).any() {
-                    let inset = *radius - gap.distance * S::Real::splat(0.5);
-                    self.node(group.first, center - gap.normal * inset, gap, one);
+                    self.node(group.first, node, gap, one);
                 }
             }
             Nodes::Whole(whole) => {
@@ -351,9 +351,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let rate = contact.penetration_rate;
         let normal = self.law(shared.unwrap_or(contact.penetration), rate);
         let normal_force = normal.total * weight;
-        let rotation = self.frame.rotation;
-        let tangent_plane = S::tangent_plane(rotation, contact.normal);
-        let stick = self.elements.sticks[element].in_surface(rotation, tangent_plane);
+        let tangent_plane = S::tangent_plane(contact.normal);
+        let stick = self.elements.sticks[element].carried(tangent_plane);
         let friction =
             (self.laws)().friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
         self.totals.elastic += normal.energy * weight;
@@ -369,8 +368,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
         self.resist_rolling(normal_force);
 
-        self.slip_rates[element] =
-            meeting.stick_rate(contact.slip_rate, stick.displacement, contact.normal);
+        self.slip_rates[element] = contact.slip_rate;
         self.pressed.push(Pressed {
             element,
             pair: self.pair,

@@ -105,9 +105,6 @@ fn accept<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: &Scratch<S>
         state,
         scratch,
         #[inline(always)]
-        |element, stick, to| {
-            let (planes, rates) = ([stick.tangent_plane, to], [old[element], new[element]]);
-            S::carry_corrected(stick.displacement, planes, rates, share)
-        },
+        |element, displacement| displacement + (new[element] - old[element]) * share,
     );
 }

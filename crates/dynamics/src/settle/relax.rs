@@ -325,11 +325,7 @@ impl<S: Space> Relaxation<S> {
             };
             let slip = S::unrotate(touch.rotation, way(0) - way(1));
             let counted = S::Real::select(touch.touching, S::Real::splat(1.0), S::Real::zero());
-            let slip = S::rotate_tangent(touch.rotation, S::tangential(slip, touch.normal));
-            let displacement = &mut sticks[touch.element].displacement;
-            let spins = touch.bodies.map(|body| self.ways[body].angular);
-            let normal = S::rotate(touch.rotation, touch.normal);
-            *displacement += S::turning(slip, *displacement, spins, normal) * counted;
+            sticks[touch.element].displacement += S::tangential(slip, touch.normal) * counted;
         }
     }
 
@@ -346,8 +342,7 @@ impl<S: Space> Relaxation<S> {
                 let share = depth / S::Real::select(partly, approach, one);
                 let share =
                     S::Real::select(partly, share, S::Real::select(fresh, one, S::Real::zero()));
-                let rate = scratch.slip_rates[contact.element];
-                sticks[contact.element].displacement += rate * (steps * share);
+                sticks[contact.element].displacement += contact.slip_rate * (steps * share);
             }
         }
     }

@@ -140,34 +140,13 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// Returns a tangent as a vector.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Returns the data stored with tangents of a surface with this unit normal, in its frame; stored ones are in the
-    /// inertial frame, to which `rotation` transforms.
-    fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
-    /// Rotates a tangent into the inertial frame.
-    fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Rotates a tangent from the inertial frame back.
-    fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
+    /// Returns the data stored with tangents of a surface with this unit normal.
+    fn tangent_plane(normal: Self::Vector) -> Self::TangentPlane;
     /// Transports a tangent from one tangent plane into another.
     fn carry(
         tangent: Self::Tangent,
         from: Self::TangentPlane,
         to: Self::TangentPlane,
-    ) -> Self::Tangent;
-    /// Returns the rate, in the inertial frame, of a tangent that grows at `rate` and turns about the normal with the
-    /// mean of the spins of two bodies, so that neither is preferred.
-    fn turning(
-        rate: Self::Tangent,
-        tangent: Self::Tangent,
-        spins: [Self::Spin; 2],
-        normal: Self::Vector,
-    ) -> Self::Tangent;
-    /// Transports as [`Space::carry`] a tangent that has grown by a `share` (s) of an old rate in the old plane, where
-    /// the same share of a new rate in the new plane is to take its place.
-    fn carry_corrected(
-        tangent: Self::Tangent,
-        planes: [Self::TangentPlane; 2],
-        rates: [Self::Tangent; 2],
-        share: Self::Real,
     ) -> Self::Tangent;
     /// Limits the length of a tangent to `limit` (not negative).
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;

@@ -256,26 +256,10 @@ impl<R: Real> Space for Planar<R> {
         Vec2::new(normal.z * tangent, -(normal.x * tangent))
     }
     #[inline(always)]
-    fn tangent_plane(_rotation: Rotation2<R>, _normal: Vec2<R>) {}
-    #[inline(always)]
-    fn rotate_tangent(_rotation: Rotation2<R>, tangent: R) -> R {
-        tangent
-    }
-    #[inline(always)]
-    fn unrotate_tangent(_rotation: Rotation2<R>, tangent: R) -> R {
-        tangent
-    }
+    fn tangent_plane(_normal: Vec2<R>) {}
     #[inline(always)]
     fn carry(tangent: R, (): (), (): ()) -> R {
         tangent
-    }
-    #[inline(always)]
-    fn turning(rate: R, _tangent: R, _spins: [R; 2], _normal: Vec2<R>) -> R {
-        rate
-    }
-    #[inline(always)]
-    fn carry_corrected(tangent: R, _planes: [(); 2], [old, new]: [R; 2], share: R) -> R {
-        tangent + (new - old) * share
     }
     #[inline(always)]
     fn shorten(tangent: R, limit: R) -> R {

@@ -188,16 +188,8 @@ impl<R: Real> Space for Spatial<R> {
         tangent
     }
     #[inline(always)]
-    fn tangent_plane(rotation: Rotation3<R>, normal: Vec3<R>) -> Vec3<R> {
-        rotation.apply(normal)
-    }
-    #[inline(always)]
-    fn rotate_tangent(rotation: Rotation3<R>, tangent: Vec3<R>) -> Vec3<R> {
-        rotation.apply(tangent)
-    }
-    #[inline(always)]
-    fn unrotate_tangent(rotation: Rotation3<R>, tangent: Vec3<R>) -> Vec3<R> {
-        rotation.unapply(tangent)
+    fn tangent_plane(normal: Vec3<R>) -> Vec3<R> {
+        normal
     }
     /// By the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: a vector
     /// in the old plane keeps its length, and the result is always in the new plane.
@@ -207,24 +199,6 @@ impl<R: Real> Space for Spatial<R> {
         let least = R::splat(1e-9);
         let scale = (R::splat(1.0) + from.dot(to)).max(least);
         tangent - (from + to) * (tangent.dot(to) / scale)
-    }
-    #[inline(always)]
-    fn turning(
-        rate: Vec3<R>,
-        tangent: Vec3<R>,
-        [one, other]: [Vec3<R>; 2],
-        normal: Vec3<R>,
-    ) -> Vec3<R> {
-        rate + normal.cross(tangent) * (R::splat(0.5) * (one + other).dot(normal))
-    }
-    #[inline(always)]
-    fn carry_corrected(
-        tangent: Vec3<R>,
-        [from, to]: [Vec3<R>; 2],
-        [old, new]: [Vec3<R>; 2],
-        share: R,
-    ) -> Vec3<R> {
-        Self::carry(tangent - old * share, from, to) + new * share
     }
     #[inline(always)]
     fn shorten(tangent: Vec3<R>, limit: R) -> Vec3<R> {

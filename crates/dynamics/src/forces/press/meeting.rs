@@ -27,8 +27,6 @@ struct Motion<S: Space> {
     linear: S::Vector,
     /// Spin (rad/s) of the contactor relative to the target.
     spin: S::Spin,
-    /// Spins (rad/s) of contactor and target.
-    spins: [S::Spin; 2],
 }
 
 impl<S: Space> Seen<S> {
@@ -43,13 +41,11 @@ impl<S: Space> Seen<S> {
         let (contactor, target) = (state.twists[pair.contactor], state.twists[pair.target]);
         let apart = frame.contactor - frame.target;
         let target_spin = S::unrotate_spin(frame.rotation, target.angular);
-        let contactor_spin = S::unrotate_spin(frame.rotation, contactor.angular);
         let motion = Motion {
             apart,
             linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
                 - S::velocity_at(target_spin, apart),
-            spin: contactor_spin - target_spin,
-            spins: [contactor_spin, target_spin],
+            spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
         };
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
@@ -100,24 +96,10 @@ impl<'a, S: Space> Meeting<'a, S> {
         self.motion.linear + S::velocity_at(self.motion.spin, point - self.frame.contactor)
     }
 
-    /// Returns the rate (m/s), in the inertial frame, of the displacement of a stick (m) from its slip rate (m/s), both
-    /// in the surface's frame.
-    #[inline(always)]
-    pub(super) fn stick_rate(
-        &self,
-        slip_rate: S::Tangent,
-        displacement: S::Tangent,
-        normal: S::Vector,
-    ) -> S::Tangent {
-        let rate = S::turning(slip_rate, displacement, self.motion.spins, normal);
-        S::rotate_tangent(self.frame.rotation, rate)
-    }
-
     /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
     ///
-    /// The force acts on both bodies at the companion point of that node, and both velocities are taken there, so the
-    /// pair conserves momentum, and force times relative velocity is the power it loses. Exact contacts state half of
-    /// their overlap further in as the node, so that they act in its middle, whichever body is the target.
+    /// The force acts on both bodies at the companion point, and both velocities are taken there, so the pair
+    /// conserves momentum, and force times relative velocity is the power it loses.
     #[inline(always)]
     pub(super) fn contact(
         &self,
