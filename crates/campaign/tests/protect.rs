@@ -87,7 +87,6 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
         headline.contains("(95 %)") && headline.contains(" motions") || found.best().is_none(),
         "{headline}"
     );
-    println!("{headline}");
 
     // One count of what was tried, in the sentence, on the page and in the numbers; the stack as it is is none of it.
     let tries = (found.all.len() - 1).to_string();

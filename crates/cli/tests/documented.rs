@@ -17,13 +17,13 @@ mod common;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
-const AWAIT: Duration = Duration::from_millis(1200);
+const AWAIT: Duration = Duration::from_secs(3);
 /// Time within which a stopped line ends; measured 0.1 to 2 s, on a busy machine more.
 const AT_MOST: Duration = Duration::from_secs(60);
 /// Exit status of a stopped command.
@@ -159,11 +159,11 @@ fn start(line: &str, folder: &Path, program: &Path, said: &Path) -> Child {
 }
 
 /// Waits for the end of a line until a time; `None` if it goes on.
-fn ended(child: &mut Child, limit: Duration) -> Option<Option<i32>> {
+fn ended(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
     let begin = Instant::now();
     while begin.elapsed() < limit {
         if let Some(status) = child.try_wait().unwrap() {
-            return Some(status.code());
+            return Some(status);
         }
         std::thread::sleep(Duration::from_millis(10));
     }
@@ -173,14 +173,14 @@ fn ended(child: &mut Child, limit: Duration) -> Option<Option<i32>> {
 /// Runs a line to its end, or stops it; returns the failure, if any.
 fn run(line: &str, folder: &Path, program: &Path, said: &Path) -> Option<String> {
     let mut child = start(line, folder, program, said);
-    let code = ended(&mut child, AWAIT).unwrap_or_else(|| {
+    let status = ended(&mut child, AWAIT).unwrap_or_else(|| {
         Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
         ended(&mut child, AT_MOST).unwrap_or_else(|| {
             child.kill().unwrap();
-            child.wait().unwrap();
-            None
+            child.wait().unwrap()
         })
     });
+    let code = status.code();
     let words = fs::read_to_string(said.join("stderr")).unwrap();
     let fine = matches!(code, Some(0 | STOPPED)) && !words.contains("panicked");
     (!fine).then(|| format!("{line}\n  status {code:?}: {words}"))
@@ -262,8 +262,10 @@ fn lines_of_all_other_documents_work_from_an_empty_folder() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs");
     let mut count = 0;
     for entry in fs::read_dir(docs).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
-        if name.ends_with(".md") && name != "command-line.md" {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.extension().is_some_and(|extension| extension == "md") && name != "command-line.md"
+        {
             count += documented(&format!("docs/{name}"));
         }
     }

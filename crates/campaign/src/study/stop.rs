@@ -76,6 +76,7 @@ impl StopRule {
 }
 
 #[cfg(test)]
+#[expect(clippy::print_stdout, reason = "the rows of the table of validation/statistics.md")]
 mod tests {
     use barrelstack_motion::Random;
 

@@ -206,10 +206,9 @@ impl Scenario {
     /// so.
     pub fn as_written(&self, path: &str) -> Option<&str> {
         let (_, table) = self.written.0.as_deref()?;
-        match &merge::node_at(table, &path.split('.').collect::<Vec<_>>())?.value {
-            tree::Value::Text(text) => Some(text),
-            _ => None,
-        }
+        let keys: Vec<&str> = path.split('.').collect();
+        let value = &merge::node_at(table, &keys)?.value;
+        if let tree::Value::Text(text) = value { Some(text) } else { None }
     }
 
     /// Returns the scenario as text that reads back equal: all defaults written out, all quantities in SI, paths
