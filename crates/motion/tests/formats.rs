@@ -692,3 +692,56 @@ fn velocities_of_new_formats_are_no_accelerations_until_the_caller_has_them_diff
     let bbp = refusal(&bytes("bbp/example.000"), "a.000");
     assert_eq!(bbp.refusal, Refusal::Missing(Given::Unit), "{bbp}");
 }
+
+#[test]
+fn a_count_that_the_values_contradict_is_refused_with_both_numbers() {
+    let of = |file: &str| String::from_utf8(bytes(file)).unwrap();
+    let csmnc = of("csmnc/example.dat")
+        .replace("POINTS:   103", "POINTS:    80")
+        .replace("DURATION:  1.03", "DURATION:  0.80");
+    let esm = of("esm/example.ACC.ASC").replace("NDATA: 103", "NDATA: 80");
+    let bbp = of("bbp/example.000").replacen("103  1.0", "80  1.0", 1);
+    for (text, file) in [(csmnc, "a.dat"), (esm, "b.ASC"), (bbp, "c.000")] {
+        let given = ReadOptions { unit: Some(AccelerationUnit::Gal), ..ReadOptions::default() };
+        let error = read(text.as_bytes(), file, &given).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Damaged, "{file}: {error}");
+        for number in ["80", "103"] {
+            assert!(error.to_string().contains(number), "{file}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_title_alone_makes_no_file_of_volume_1_or_2() {
+    for title in ["Corrected accelerogram", "UNCORRECTED ACCELEROGRAM DATA"] {
+        let mut text = format!("{title}\ntime (s)  acceleration (m/s2)\n");
+        for k in 0..60 {
+            let time = 0.01 * f64::from(k);
+            text += &format!("{time:.2}  {:.6}\n", 1.5 * (6.0 * time).sin());
+        }
+        let record = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap();
+        assert_eq!(record.channels.len(), 1);
+        assert!((record.channels[0].time_step - 0.01).abs() < 1e-12, "{title}");
+    }
+}
+
+#[test]
+fn sac_of_version_7_is_read_with_the_step_of_its_footer() {
+    for (file, big) in [("sac/little.sac", false), ("sac/big.sac", true)] {
+        let old = bytes(file);
+        let mut new = old.clone();
+        let put = |value: f64| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+        let version = if big { 7_i32.to_be_bytes() } else { 7_i32.to_le_bytes() };
+        new[304..308].copy_from_slice(&version);
+        new.extend(put(1.0 / 300.0));
+        for _ in 1..22 {
+            new.extend(put(-12345.0));
+        }
+        let [six, seven] =
+            [&old, &new].map(|file_bytes| read(file_bytes, file, &options(file)).unwrap());
+        assert_eq!(seven.channels[0].acceleration, six.channels[0].acceleration);
+        assert_eq!(seven.channels[0].time_step, 1.0 / 300.0);
+        let cut = read(&new[..new.len() - 8], file, &options(file)).unwrap_err();
+        assert!(cut.to_string().contains("footer"), "{cut}");
+    }
+}

@@ -20,7 +20,10 @@ use crate::utc::{DateOrder, Utc};
 pub(crate) const CSMIP: Format = Format {
     name: "csmip-v1",
     title: "CSMIP/CDMG/CGS volume 1 (uncorrected)",
-    sniff: |source| source.find(0, "UNCORRECTED ACCELEROGRAM DATA").is_some_and(|at| at < 4),
+    sniff: |source| {
+        source.find(0, "UNCORRECTED ACCELEROGRAM DATA").is_some_and(|at| at < 4)
+            && holds_integers(source)
+    },
     read: |source, hints| read_blocks(source, hints, CSMIP.name, 0),
 };
 
@@ -50,6 +53,21 @@ pub(crate) const USC: Format = Format {
     },
     read: |source, hints| read_blocks(source, hints, USC.name, 1),
 };
+
+/// Lines within which the integers of a header stand.
+const FIRST_LINES: usize = 40;
+/// Shortest line of integers, of five characters each.
+const INTEGERS: usize = 40;
+
+/// `true` if a line of the header holds integers in fixed columns (16I5), as all files of this layout do; a title alone
+/// may stand above any table.
+pub(super) fn holds_integers(source: &Source<'_>) -> bool {
+    (1..FIRST_LINES).any(|line| {
+        let raw = source.raw(line);
+        let plain = |byte: &u8| byte.is_ascii_digit() || [b' ', b'-', b'\r'].contains(byte);
+        raw.len() >= INTEGERS && raw.iter().all(plain) && raw.iter().any(u8::is_ascii_digit)
+    })
+}
 
 /// Text lines and the 7 + 7 lines of integers and reals.
 const HEADER_LINES: usize = 27;

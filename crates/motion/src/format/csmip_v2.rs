@@ -3,7 +3,7 @@
 //! 25 text lines, 7 lines 16I5, 13 lines of reals, then three blocks, each with a data line.
 //! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
-use super::cdmg::{channel_name, format_in, start, stated_start, station_name};
+use super::cdmg::{channel_name, format_in, holds_integers, start, stated_start, station_name};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
@@ -22,7 +22,7 @@ const INTEGER_LINES: usize = 7;
 const HEADER_LINES: usize = 45;
 
 fn sniff(source: &Source<'_>) -> bool {
-    source.find(0, "CORRECTED ACCELEROGRAM").is_some_and(|at| at < 2)
+    (source.find(0, "CORRECTED ACCELEROGRAM").is_some_and(|at| at < 2) && holds_integers(source))
         || source.has(0, "RESPONSE AND FOURIER AMPLITUDE SPECTRA")
 }
 

@@ -363,9 +363,14 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     Err(source.header(line, format!("{what}, 1 or more"), value.to_string()))
 }
 
+/// Most values by which a last line is filled up: one less than the ten of the widest layouts.
+const FILLED: usize = 9;
+
 /// Returns the number of values used where a count is stated: all, for one less or two more, because headers in
-/// circulation are off by that much; the stated number, for more; fewer mean a truncated file, and twice as many
-/// another kind of file.
+/// circulation are off by that much; the stated number, where a last line is filled up.
+///
+/// # Errors
+/// For fewer and for more: the file is cut, or its header belongs to another.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
@@ -383,8 +388,8 @@ fn check_count(
         );
         return Ok(found);
     }
-    // Twice as many are not a surplus: a comma for the point makes two numbers of each.
-    if found > stated && found < 2 * stated {
+    // Twice as many are not a filled line: a comma for the point makes two numbers of each.
+    if found > stated && found <= stated + FILLED && found < 2 * stated {
         record.warn(
             line + 1,
             format!(

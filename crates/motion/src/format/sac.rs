@@ -1,6 +1,7 @@
 //! SAC binary: a header of 158 words and one component; the unit must come from the caller.
 //!
-//! Spec: SAC users manual, "SAC data file format", header version 6.
+//! Spec: SAC users manual, "SAC data file format", header versions 6 and 7; that of version 7 has a footer of 22 numbers in
+//! double precision, of which the first is the step.
 
 use super::source::{Source, latin1};
 use super::{Format, Hints, seed};
@@ -16,6 +17,8 @@ use crate::utc::Utc;
 pub(crate) const FORMAT: Format = Format { name: "sac", title: "SAC binary", sniff, read };
 
 const HEADER_BYTES: usize = 632;
+/// Length of the footer of version 7.
+const FOOTER_BYTES: usize = 176;
 const UNDEFINED: f64 = -12345.0;
 /// Word 76: header version; word 79: number of points; word 85: file type, 1 = time series;
 /// word 105: evenly spaced.
@@ -49,7 +52,7 @@ fn byte_order(bytes: &[u8]) -> Option<bool> {
         return None;
     }
     [false, true].into_iter().find(|&big| {
-        integer(bytes, VERSION, big) == 6
+        [6, 7].contains(&integer(bytes, VERSION, big))
             && (-12345..=100).contains(&integer(bytes, FILE_TYPE, big))
     })
 }
@@ -65,7 +68,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         source.error(
             (),
             Refusal::Unrecognized,
-            "a SAC header of version 6, 632 bytes",
+            "a SAC header of version 6 or 7, 632 bytes",
             format!("{} bytes of something else", bytes.len()),
             "give a SAC file, binary",
         )
@@ -106,14 +109,26 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         .filter(|count| *count > 0)
         .ok_or_else(|| damaged("a number of points above 0", points.to_string()))?;
     let data = &bytes[HEADER_BYTES..];
-    if data.len() / 4 != count || !data.len().is_multiple_of(4) {
+    let (footer_bytes, and) = match integer(bytes, VERSION, big) {
+        7 => (FOOTER_BYTES, " and a footer of 176"),
+        _ => (0, ""),
+    };
+    if count.checked_mul(4).and_then(|length| length.checked_add(footer_bytes)) != Some(data.len())
+    {
         return Err(damaged(
-            &format!("{count} samples of 4 bytes after the header"),
+            &format!("{count} samples of 4 bytes after the header{and}"),
             format!("{} bytes", data.len()),
         ));
     }
-    let time_step =
-        step(bytes, big).ok_or_else(|| damaged("a step above 0 in word 1", "none".to_owned()))?;
+    let (data, footer) = data.split_at(4 * count);
+    let time_step = match footer.first_chunk() {
+        Some(eight) if big => Some(f64::from_be_bytes(*eight)),
+        Some(eight) => Some(f64::from_le_bytes(*eight)),
+        None => step(bytes, big),
+    };
+    let time_step = time_step
+        .filter(|step| step.is_finite() && *step > 0.0)
+        .ok_or_else(|| damaged("a step above 0", "none".to_owned()))?;
     let text = |from: usize, length: usize| {
         let raw = bytes.get(from..from + length).unwrap_or(&[]);
         let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
