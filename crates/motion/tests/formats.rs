@@ -714,11 +714,12 @@ fn a_count_that_the_values_contradict_is_refused_with_both_numbers() {
 #[test]
 fn a_title_alone_makes_no_file_of_volume_1_or_2() {
     for title in ["Corrected accelerogram", "UNCORRECTED ACCELEROGRAM DATA"] {
-        let mut text = format!("{title}\ntime (s)  acceleration (m/s2)\n");
-        for k in 0..60 {
+        let row = |k: i32| {
             let time = 0.01 * f64::from(k);
-            text += &format!("{time:.2}  {:.6}\n", 1.5 * (6.0 * time).sin());
-        }
+            format!("{time:.2}  {:.6}\n", 1.5 * (6.0 * time).sin())
+        };
+        let rows: String = (0..60).map(row).collect();
+        let text = format!("{title}\ntime (s)  acceleration (m/s2)\n{rows}");
         let record = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap();
         assert_eq!(record.channels.len(), 1);
         assert!((record.channels[0].time_step - 0.01).abs() < 1e-12, "{title}");
