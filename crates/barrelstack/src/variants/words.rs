@@ -241,7 +241,9 @@ pub fn course(spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "before it is shaken".to_owned();
     }
-    let Some(first) = spread.first_fall else { return "but no barrel leaves it".to_owned() };
+    let Some(first) = spread.first_fall else {
+        return format!("but no barrel falls{}", spread.counted());
+    };
     let [from, to] = [first.p05, first.p95].map(|time| format!("{time:.1}"));
     let when = if from == to {
         format!("first after {from} s")
@@ -406,7 +408,7 @@ mod tests {
         one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
         assert!(of(&one).ends_with("first after 6.0 s; all 10 barrels."));
         one.first_fall = None;
-        assert_eq!(of(&one), "This stack falls: in all 64 variants, but no barrel leaves it.");
+        assert_eq!(of(&one), "This stack falls: in all 64 variants, but no barrel falls.");
     }
 
     #[test]
