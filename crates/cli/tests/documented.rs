@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 use common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
-const AWAIT: Duration = Duration::from_secs(3);
+const AWAIT: Duration = Duration::from_secs(2);
 /// Time within which a stopped line ends; measured 0.1 to 2 s, on a busy machine more.
 const AT_MOST: Duration = Duration::from_secs(60);
 /// Exit status of a stopped command.
