@@ -36,12 +36,12 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["test"] => told(steps::test().map(done)),
-        ["golden"] => told(steps::golden()),
-        ["web"] => told(steps::web().map(done)),
-        ["lines"] => told(lines::list(&steps::root()).map(done)),
+        ["test"] => status(steps::test().map(done)),
+        ["golden"] => status(steps::golden()),
+        ["web"] => status(steps::web().map(done)),
+        ["lines"] => status(lines::list(&steps::root()).map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {
-            told(python::run(&steps::root(), rest.first().copied()).map(done))
+            status(python::run(&steps::root(), rest.first().copied()).map(done))
         }
         ["golden", "bits"] => release(&["--package", "barrelstack", "--example", "golden"], &[]),
         ["validate", rest @ ..] => release(&["--package", "barrelstack-validation"], rest),
@@ -66,7 +66,7 @@ fn done((): ()) -> ExitCode {
 }
 
 /// The status of a task; why it failed is told.
-fn told(result: anyhow::Result<ExitCode>) -> ExitCode {
+fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");
         ExitCode::FAILURE

@@ -58,6 +58,27 @@ fn a_variant_that_is_shown_is_the_one_that_was_counted() {
 }
 
 #[test]
+fn falls_are_counted_as_long_as_every_variant_is_followed_after_its_first_loss() {
+    let mut scenario = two_levels(&[]);
+    let spread = |scenario: &Scenario| found(&planes(scenario).unwrap()).remove(0).spread;
+    assert_eq!(spread(&scenario).counted_for, Some(0.2));
+    scenario.run.similitude = 0.25;
+    assert_eq!(spread(&scenario).counted_for, Some(0.1));
+    scenario.run.similitude = 1.0;
+    scenario.run.stop_after_collapse = None;
+    let whole = spread(&scenario);
+    assert_eq!(whole.counted_for, Some(2.0));
+    // A duration that ends the last variant 0.3 s after its first loss of a seat.
+    let last = whole.first_loss.unwrap().most;
+    scenario.run.duration = Some(last + 0.3);
+    let cut = spread(&scenario);
+    // Measured: 0.3 s to within a step of 0.4 ms.
+    assert!((cut.counted_for.unwrap() - 0.3).abs() < 1e-3, "{:?}", cut.counted_for);
+    assert_eq!(cut.first_loss, whole.first_loss);
+    assert!(words::course(&cut).ends_with(" within 0.3 s of that"), "{}", words::course(&cut));
+}
+
+#[test]
 fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
     let mut scenario = two_levels(&["motion.scale.factor=0.7"]);
     if let Scene::Stack { imperfections, .. } = &mut scenario.scene {

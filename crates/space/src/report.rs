@@ -128,13 +128,21 @@ fn variants(summary: &Summary) -> Option<Table> {
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {
         format!("{p05:.decimals$} to {p95:.decimals$}")
     };
+    if let Some(loss) = spread.first_loss {
+        row("first loss of a seat", format!("{} s", range(loss, 1)));
+    }
     if let Some(fall) = spread.first_fall {
-        row("first fall", format!("{} s", range(fall, 1)));
+        row("first fall", format!("{} s{}", range(fall, 1), spread.counted("the first loss")));
     }
     if let Some(fallen) = spread.barrels_fallen {
         row(
             "barrels fallen where it collapses",
-            format!("{} of {}{}", range(fallen, 0), spread.barrels, spread.counted()),
+            format!(
+                "{} of {}{}",
+                range(fallen, 0),
+                spread.barrels,
+                spread.counted("the first loss")
+            ),
         );
     }
     let modes: Vec<String> = spread.modes.iter().map(|(mode, n)| format!("{mode} {n}")).collect();

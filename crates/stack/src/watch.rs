@@ -84,7 +84,7 @@ impl End {
     pub fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         Self {
             rest: Rest::new(scenario, assembly, ground),
-            after_collapse: after_collapse(scenario) * scenario.run.similitude.sqrt(),
+            after_collapse: after_collapse(scenario),
         }
     }
 }
@@ -92,11 +92,11 @@ impl End {
 /// Duration (s), at full size, after the first loss of a seat of a run that ends when its verdict is known.
 pub const VERDICT: f64 = 2.0;
 
-/// Returns the duration (s), at full size, for which a run goes on after a collapse; infinite for no limit.
+/// Returns the duration (s) for which a run goes on after a collapse, at its scale of time; infinite for no limit.
 pub fn after_collapse(scenario: &Scenario) -> f64 {
     let run = &scenario.run;
     let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);
-    run.stop_after_collapse.or(by_verdict).unwrap_or(f64::INFINITY)
+    run.stop_after_collapse.or(by_verdict).unwrap_or(f64::INFINITY) * run.similitude.sqrt()
 }
 
 impl<R: Real> End<R> {

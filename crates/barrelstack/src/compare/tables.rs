@@ -63,7 +63,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         row("variants that collapse, with the 95 % interval of their share", &|side| {
             collapse(side.summary.ensemble.as_ref())
         });
-        row("first fall, and barrels fallen, in these", &|side| {
+        row("first loss of a seat, and barrels fallen, in these", &|side| {
             let spread = side.summary.ensemble.as_ref().filter(|spread| spread.collapsed > 0);
             Cell::maybe(spread.map(course))
         });

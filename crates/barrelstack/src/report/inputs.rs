@@ -12,7 +12,12 @@ fn given(scenario: &Scenario, one: &Setting) -> String {
     let is_quantity =
         |text: &str| text.split_once(' ').is_some_and(|(number, _)| number.parse::<f64>().is_ok());
     match scenario.as_written(&one.path) {
-        Some(text) if text != value && is_quantity(text) && is_quantity(&one.value) => {
+        Some(text)
+            if text != one.value
+                && text != value
+                && is_quantity(text)
+                && is_quantity(&one.value) =>
+        {
             format!("{text} = {value}")
         }
         _ => value,

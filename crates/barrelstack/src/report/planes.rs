@@ -112,15 +112,21 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
+    row("first loss of a seat", &|spread| {
+        spread.first_loss.map(|Range { p05, p95, least, most, .. }| {
+            format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))
+        })
+    });
     row("first fall", &|spread| {
         spread.first_fall.map(|Range { p05, p95, least, most, .. }| {
-            format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))
+            let within = format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1));
+            within + &spread.counted("the first loss")
         })
     });
     row("barrels fallen where it collapses", &|spread| {
         spread.barrels_fallen.map(|Range { p05, p95, least, most, .. }| {
             let within = format!("{} of {}", span(p05, p95, 0), spread.barrels);
-            format!("{within} ({}){}", span(least, most, 0), spread.counted())
+            format!("{within} ({}){}", span(least, most, 0), spread.counted("the first loss"))
         })
     });
     row("by mode", &|spread| {

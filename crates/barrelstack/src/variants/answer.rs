@@ -231,33 +231,36 @@ fn answered(
 /// Number of variants after which a first verdict is reported.
 const FIRST: u32 = 8;
 
-/// Runs variants, the first ones and then the others, and reports what the first ones say; those that are not finished
-/// when canceled are interrupted.
+/// Runs variants, the first ones and then the others, and reports the verdict of the first ones; those that are not
+/// finished when canceled are interrupted.
 ///
 /// The first to finish would be a biased sample, since runs that collapse end early.
 fn in_order(
     planes: &[Plane],
     numbers: &[u32],
-    tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Vec<CaseResult>>, GroundError> {
     let of = planes.len() * numbers.len();
     let (first, others) = numbers.split_at(numbers.len().min(FIRST as usize + 1));
-    let mut results = run_as_far(planes, first, &|done, _| tell(Advance::Variants { done, of }))?;
+    let counted = |before: usize| {
+        move |done: usize, _: usize| report(Advance::Variants { done: before + done, of })
+    };
+    let mut results = run_as_far(planes, first, &counted(0))?;
+    if others.is_empty() {
+        return Ok(results);
+    }
     let open = |one: &CaseResult| one.outcome == Ok(Outcome::Interrupted);
     if others.len() > first.len() && !results.iter().flatten().any(open) {
-        let spreads: Vec<(View, Spread)> = planes
-            .iter()
-            .zip(&results)
+        let spreads = planes.iter().zip(&results);
+        let spreads: Vec<(View, Spread)> = spreads
             .filter_map(|(plane, results)| Some((plane.view()?, Spread::of(plane, results)?)))
             .collect();
-        let spreads: Vec<(View, &Spread)> =
+        let of_views: Vec<(View, &Spread)> =
             spreads.iter().map(|(view, spread)| (*view, spread)).collect();
         // A stop is noticed by the next variant.
-        let _ = tell(Advance::First { variants: FIRST, headline: words::headline(&spreads) });
+        let _ = report(Advance::First { variants: FIRST, headline: words::headline(&of_views) });
     }
-    let before = planes.len() * first.len();
-    let more =
-        run_as_far(planes, others, &|done, _| tell(Advance::Variants { done: before + done, of }))?;
+    let more = run_as_far(planes, others, &counted(planes.len() * first.len()))?;
     for (results, more) in results.iter_mut().zip(more) {
         results.extend(more);
     }

@@ -116,7 +116,7 @@ impl Plane {
         trial
     }
 
-    /// Returns the time (s) after the first loss of a seat at which trials end; `None` where they are followed to rest.
+    /// Returns the time (s) after the first loss of a seat at which trials end; `None` if they are followed to rest.
     pub fn counted_for(&self) -> Option<f64> {
         Some(after_collapse(&self.trial(0))).filter(|time| time.is_finite())
     }

@@ -30,12 +30,15 @@ described! {
         pub share: Option<f64> as "1",
         /// Wilson's interval of that share, 95 %; it spans what variants without a verdict could make of it.
         pub interval: [f64; 2] as "1",
-        /// When the first barrel had fallen, of the variants in which one falls while they are shaken.
+        /// When the first body lost its seat, of the variants that collapse while they are shaken.
+        pub first_loss: Option<Range> as "s",
+        /// When the first barrel had fallen, of the variants in which one falls while they are shaken, until these
+        /// end.
         pub first_fall: Option<Range> as "s",
         /// Barrels that fall in variants that collapse while they are shaken, until these end.
         pub barrels_fallen: Option<Range> as "1",
-        /// Time after the first loss of a seat at which variants end, until which their falls are counted; null where
-        /// they are followed until nothing moves.
+        /// Time after the first loss of a seat until which falls are counted in every variant; null where all are
+        /// followed until nothing moves.
         pub counted_for: Option<f64> as "s",
         /// Barrels in all.
         pub barrels: usize,
@@ -113,6 +116,11 @@ impl Spread {
         let interval = |falls| wilson(falls, count + broken, LEVEL);
         let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
+        // The duration may end a variant sooner; differences of times have rounding errors.
+        let after = plane.counted_for();
+        let cut = shaken().filter(|result| result.cut.is_some_and(|left| left > 0.0));
+        let cut = cut.filter_map(|result| Some(result.end_time? - loss(result)?));
+        let cut = cut.filter(|time| after.is_none_or(|after| *time < after - 1e-9));
         Some(Self {
             kind: imperfections.kind.name(),
             seed: imperfections.seed,
@@ -120,9 +128,10 @@ impl Spread {
             collapsed: falls,
             share: (count > 0).then(|| f64::from(falls) / f64::from(count)),
             interval: [interval(falls).low, interval(falls + broken).high],
+            first_loss: Range::of(shaken().filter_map(loss)),
             first_fall: Range::of(shaken().filter_map(|result| result.first_fall)),
             barrels_fallen: Range::of(shaken().map(|result| fallen(result) as f64)),
-            counted_for: plane.counted_for(),
+            counted_for: cut.reduce(f64::min).or(after),
             barrels: results.iter().map(|result| result.barrels).max().unwrap_or(0),
             standing_until: judged()
                 .filter(|result| !collapsed(result) && result.cut.is_some_and(|left| left > 0.0))
@@ -153,9 +162,9 @@ impl Spread {
         })
     }
 
-    /// Describes until when falls are counted: " within 2 s of the first loss of a seat"; empty where until rest.
-    pub fn counted(&self) -> String {
-        let within = |time| format!(" within {time} s of the first loss of a seat");
+    /// Describes until when falls are counted: " within 2 s of" a loss of a seat; empty if until rest.
+    pub fn counted(&self, loss: &str) -> String {
+        let within = |time: f64| format!(" within {} s of {loss}", (10.0 * time).round() / 10.0);
         self.counted_for.map_or_else(String::new, within)
     }
 
@@ -184,6 +193,14 @@ pub(super) fn shown(result: &CaseResult) -> bool {
 /// `true` if it collapsed.
 pub(super) fn collapsed(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Collapse { .. }))
+}
+
+/// Returns the time (s) at which the first body lost its seat.
+fn loss(result: &CaseResult) -> Option<f64> {
+    match &result.outcome {
+        Ok(Outcome::Collapse { time, .. }) => Some(*time),
+        _ => None,
+    }
 }
 
 /// Returns the number of barrels that fell.

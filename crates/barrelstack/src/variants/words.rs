@@ -236,26 +236,24 @@ pub fn fate(spread: &Spread) -> String {
     }
 }
 
-/// Describes time and extent of the fall: "first between 5.6 and 6.4 s; 4 to 8 of 10 barrels".
+/// Describes time and extent of the fall: "the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall".
 pub fn course(spread: &Spread) -> String {
     if spread.collapsed == spread.cannot_stand {
         return "before it is shaken".to_owned();
     }
-    let Some(first) = spread.first_fall else {
-        return format!("but no barrel falls{}", spread.counted());
-    };
-    let [from, to] = [first.p05, first.p95].map(|time| format!("{time:.1}"));
-    let when = if from == to {
-        format!("first after {from} s")
-    } else {
-        format!("first between {from} and {to} s")
-    };
-    match spread.barrels_fallen {
-        Some(fallen) => {
-            format!("{when}; {}{}", barrels(fallen, spread.barrels), spread.counted())
+    let when = spread.first_loss.map_or_else(String::new, |first| {
+        let [from, to] = [first.p05, first.p95].map(|time| format!("{time:.1}"));
+        if from == to {
+            format!("the first seat is lost after {from} s; ")
+        } else {
+            format!("the first seat is lost between {from} and {to} s; ")
         }
-        None => when,
-    }
+    });
+    let fallen = match (spread.first_fall, spread.barrels_fallen) {
+        (Some(_), Some(fallen)) => format!("{} fall", barrels(fallen, spread.barrels)),
+        _ => "no barrel falls".to_owned(),
+    };
+    format!("{when}{fallen}{}", spread.counted("that"))
 }
 
 /// Describes the number of fallen barrels: "4 to 8 of 10 barrels".
@@ -340,7 +338,8 @@ mod tests {
             collapsed,
             share: (variants > 0).then(|| f64::from(collapsed) / f64::from(variants)),
             interval: [interval.low, interval.high],
-            first_fall: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
+            first_loss: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
+            first_fall: falls.then(|| range(5.7, 6.6, 5.1, 7.2)),
             barrels_fallen: falls.then(|| range(4.0, 8.0, 4.0, 8.0)),
             counted_for: None,
             barrels: 10,
@@ -365,28 +364,28 @@ mod tests {
         let cases = [
             (
                 61,
-                "This stack falls: in 61 of 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+                "This stack falls: in 61 of 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 64,
-                "This stack falls: in all 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+                "This stack falls: in all 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (0, "This stack stands in all 64 variants: of stacks like it at most 6 % fall."),
             (
                 2,
-                "This stack stands: in 62 of 64 variants; in 2 it falls, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels.",
+                "This stack stands: in 62 of 64 variants; in 2 it falls, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 10,
-                "This stack falls in 10 of 64 variants, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+                "This stack falls in 10 of 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
             ),
             (
                 30,
-                "This stack falls in half of the variants, 30 of 64, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+                "This stack falls in half of the variants, 30 of 64, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
             ),
             (
                 50,
-                "This stack falls in most variants, 50 of 64, first between 5.6 and 6.4 s; 4 to 8 of 10 barrels: treat it as not safe.",
+                "This stack falls in most variants, 50 of 64, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
             ),
         ];
         for (collapsed, sentence) in cases {
@@ -398,17 +397,18 @@ mod tests {
     #[test]
     fn times_and_numbers_that_are_all_the_same_are_told_once() {
         let mut one = spread(64, 64);
-        one.first_fall = Some(range(6.01, 6.04, 6.0, 6.1));
+        one.first_loss = Some(range(6.01, 6.04, 6.0, 6.1));
         one.barrels_fallen = Some(range(8.0, 8.0, 8.0, 8.0));
         let of = |one: &Spread| headline(&[(View::Longitudinal, one)]);
         assert_eq!(
             of(&one),
-            "This stack falls: in all 64 variants, first after 6.0 s; 8 of 10 barrels."
+            "This stack falls: in all 64 variants, the first seat is lost after 6.0 s; 8 of 10 barrels fall."
         );
         one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
-        assert!(of(&one).ends_with("first after 6.0 s; all 10 barrels."));
+        one.counted_for = Some(2.0);
+        assert!(of(&one).ends_with("after 6.0 s; all 10 barrels fall within 2 s of that."));
         one.first_fall = None;
-        assert_eq!(of(&one), "This stack falls: in all 64 variants, but no barrel falls.");
+        assert!(of(&one).ends_with("after 6.0 s; no barrel falls within 2 s of that."));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use barrelstack_fragility::Interval;
 use barrelstack_report::{
-    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, listed, significant,
+    Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, capital, listed, significant,
 };
 
 use super::{Estimate, Kind, Ranked, Ranking, Shaking};
@@ -82,7 +82,7 @@ fn headline(all: &Ranking) -> String {
     if base.fallen.mean <= 0.0 {
         return format!(
             "{} stands as it is: no barrel falls {}.{}",
-            stack(all),
+            capital(&stack(all)),
             per(all),
             known(all, base)
         );
@@ -90,18 +90,15 @@ fn headline(all: &Ranking) -> String {
     let Some(best) = all.best() else {
         return "Nothing that was tried helps beyond doubt.".to_owned();
     };
-    let direction = if best.direction == base.direction {
-        base.direction.words().to_owned()
-    } else {
-        format!("{} as it is and {} with it", base.direction.words(), best.direction.words())
-    };
+    let shaken = |one: &Ranked| format!(", shaken {}", one.direction.words());
+    let other = if best.direction == base.direction { String::new() } else { shaken(base) };
     format!(
-        "Most is saved for its cost by this: {}. {}, shaken {direction}, where more barrels fall, loses on average {} \
-         barrels {}, instead of {}.{}",
+        "Most is saved for its cost by this: {}. With it {} loses {} barrels on average {}{}; as it is {}{other}.{}",
         best.protection.name,
         stack(all),
         significant(best.fallen.mean, 2),
         per(all),
+        shaken(best),
         significant(base.fallen.mean, 2),
         known(all, best)
     )
@@ -124,12 +121,12 @@ fn known(all: &Ranking, one: &Ranked) -> String {
     )
 }
 
-/// Describes the stack: "A stack of 4 levels on `two-barrel` racks".
+/// Describes the stack: "a stack of 4 levels on `two-barrel` racks".
 fn stack(all: &Ranking) -> String {
     let stack = all.request.scenario.stack();
     stack.map_or_else(
-        || "The stack".to_owned(),
-        |stack| format!("A stack of {} levels on `{}` racks", stack.levels, stack.rack.base),
+        || "the stack".to_owned(),
+        |stack| format!("a stack of {} levels on `{}` racks", stack.levels, stack.rack.base),
     )
 }
 

