@@ -314,7 +314,8 @@ function fitStages(panes, figure) {
     stage.head = HEAD + (slender ? ABOVE : 0);
   }
   const canvases = panes.map(({ stage }) => stage.canvas);
-  const rows = new Set(canvases.map((canvas) => Math.round(canvas.parentElement.getBoundingClientRect().top))).size || 1;
+  // Panes of a row begin at one height; their canvases, which end at one, differ by rounding.
+  const rows = new Set(canvases.map((canvas) => Math.round((canvas.closest(".pane") ?? canvas).getBoundingClientRect().top))).size || 1;
   const rest = used - rows * first.stage.canvas.offsetHeight;
   const opens = above < 0.5 * window.innerHeight;
   const full = document.fullscreenElement === screen;

@@ -78,6 +78,9 @@ async function pin(page) {
       get: own.get,
       set(value) { own.set.call(this, value.replace(/system-ui.*$/, families)); },
     });
+    // A picture of the whole page is taken in a window as high as the page, in which a player would be higher, if it
+    // had the time to notice.
+    Object.defineProperty(window, "innerHeight", { value: window.innerHeight });
   }, FAMILIES);
 }
 

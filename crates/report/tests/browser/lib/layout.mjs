@@ -63,6 +63,12 @@ export async function phone(page) {
   const small = await page.evaluate(() => [...document.querySelectorAll(".transport button")]
     .filter((button) => button.getBoundingClientRect().height < 40).length);
   demand(small === 0, `${small} buttons of the player are lower than 40 px`);
+  // A phone that is turned and turned back measures its page again.
+  const heights = () => page.evaluate(() => [...document.querySelectorAll(".player canvas")].map((canvas) => canvas.offsetHeight).join(", "));
+  const first = await heights();
+  await page.evaluate(() => { for (const player of window.barrelstack.players) player.refresh(); });
+  const again = await heights();
+  demand(first === again, `canvases were ${first} px high, and are ${again} px high when they are measured again`);
   await page.emulateMedia({ colorScheme: "light" });
   await page.setViewportSize(DESKTOP);
 }
