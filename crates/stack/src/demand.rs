@@ -184,19 +184,3 @@ impl Seen<'_> {
         self.stresses.of(body)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{DEMANDS, Demands};
-
-    #[test]
-    fn keys_in_files_are_those_of_the_list_in_its_order() {
-        let written = serde_json::to_string(&Demands::default()).unwrap();
-        let places: Vec<usize> =
-            DEMANDS.iter().map(|d| written.find(&format!("\"{}\":", d.name)).unwrap()).collect();
-        assert!(places.is_sorted(), "{written}");
-        assert_eq!(written.matches(':').count(), DEMANDS.len());
-        let tilt = DEMANDS.iter().find(|demand| demand.name == "rack_tilt_peak").unwrap();
-        assert_eq!(tilt.factor, 180.0 / std::f64::consts::PI);
-    }
-}

@@ -36,20 +36,3 @@ pub fn map<T: Sync, R: Send>(
     // Every slot is filled: a thread that panics takes the scope, and so this call, with it.
     slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
-    #[test]
-    fn results_keep_the_order_of_their_tasks() {
-        let tasks: Vec<usize> = (0..200).collect();
-        let told = AtomicUsize::new(0);
-        let squares = super::map(&tasks, |task| task * task, &|done| {
-            told.fetch_max(done, Ordering::Relaxed);
-        });
-        assert_eq!(squares, tasks.iter().map(|task| task * task).collect::<Vec<_>>());
-        assert_eq!(told.into_inner(), 200);
-        assert!(super::map(&[] as &[usize], |task| *task, &|_| ()).is_empty());
-    }
-}

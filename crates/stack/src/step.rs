@@ -319,15 +319,3 @@ pub fn round_down(value: f64) -> f64 {
     let digit = value / power;
     power * DIGITS.into_iter().rev().find(|kept| digit >= *kept).unwrap_or(1.0)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::round_down;
-
-    #[test]
-    fn steps_are_round_numbers() {
-        for (value, kept) in [(1.4e-4, 1.2e-4), (2.7e-4, 2.5e-4), (9.9e-4, 8e-4), (1.0e-3, 1e-3)] {
-            assert!((round_down(value) / kept - 1.0).abs() < 1e-12, "{value}");
-        }
-    }
-}
