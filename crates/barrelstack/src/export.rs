@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use barrelstack_report::column::column_name;
 use barrelstack_report::{
     Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
 };
@@ -335,27 +336,20 @@ fn start_of(scenario: &Scenario) -> Value {
 fn histories_npz(run: &Run) -> std::io::Result<Vec<u8>> {
     let recording = &run.recording;
     let mut arrays = vec![("time".to_owned(), recording.times.as_slice())];
-    let mut add = |name: String, values| {
-        let named = |name: &str| arrays.iter().any(|(known, _)| known == name);
-        let name = array_name(&name);
-        let mut names = (2..).map(|number| format!("{name}_{number}"));
-        let name = if named(&name) { names.find(|name| !named(name)) } else { Some(name) };
-        arrays.push((name.unwrap_or_default(), values));
-    };
     for channel in &recording.channels {
-        add(channel.name.clone(), channel.values.as_slice());
+        arrays.push((channel.name.clone(), channel.values.as_slice()));
     }
     for joint in &recording.joints {
-        add(format!("{} vertical force", joint.name), &joint.vertical);
-        add(format!("{} horizontal force", joint.name), &joint.horizontal);
+        let [vertical, horizontal] = force_names(&joint.name);
+        arrays.push((vertical, &joint.vertical));
+        arrays.push((horizontal, &joint.horizontal));
     }
     barrelstack_motion::write::archive(&arrays)
 }
 
-/// Converts a name to one of a file in the archive, without separators, so that it unpacks into its own folder.
-fn array_name(name: &str) -> String {
-    let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
-    name.chars().map(kept).collect()
+/// Names the columns of the forces of a contact, such as "R1 on ground".
+fn force_names(contact: &str) -> [String; 2] {
+    ["vertical", "horizontal"].map(|axis| format!("{}_{axis}_force", column_name(contact)))
 }
 
 /// Writes columns, `time (s)` first: their names, and the values of a row, which may be missing.
@@ -382,7 +376,7 @@ fn csv<R: Iterator<Item = Option<f64>>>(
 /// Writes one row for the nominal case and for every variant, in every plane.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
-        "plane,variant,outcome,mode,first body,collapse (s),first fall (s),barrels fallen,barrels\n",
+        "plane,variant,outcome,mode,first_body,collapse (s),first_fall (s),barrels_fallen,barrels\n",
     );
     let planes = std::iter::once(&answer.decides).chain(&answer.other);
     for Shown { run, variants, stopped, .. } in planes {
@@ -419,9 +413,8 @@ fn histories_csv(run: &Run) -> String {
 
 fn forces_csv(run: &Run) -> String {
     let joints = || run.recording.joints.iter();
-    let names = joints().flat_map(|joint| {
-        ["vertical", "horizontal"].map(|axis| format!("{} {axis} (N)", joint.name))
-    });
+    let names =
+        joints().flat_map(|joint| force_names(&joint.name).map(|name| format!("{name} (N)")));
     let row = |at: usize| {
         let of = move |values: &Vec<f64>| values.get(at).copied();
         joints().flat_map(move |joint| [&joint.vertical, &joint.horizontal].map(of))
@@ -431,8 +424,8 @@ fn forces_csv(run: &Run) -> String {
 
 fn envelopes_csv(run: &Run) -> String {
     let mut text = String::from(
-        "body,x (m),z (m),coordinate (rad or m),length of boundary (m),stress at rest (N/m),\
-         largest stress until the first loss of seat (N/m),largest stress of the whole run (N/m)\n",
+        "body,x (m),z (m),coordinate (rad or m),length_of_boundary (m),stress_at_rest (N/m),\
+         peak_stress_until_first_loss_of_seat (N/m),peak_stress_of_whole_run (N/m)\n",
     );
     for envelope in &run.stresses.envelopes {
         let name = csv_field(&run.assembly.parts[envelope.body].name);
@@ -456,7 +449,7 @@ fn frames_csv(run: &Run) -> String {
     let frames = &run.recording.frames;
     let count = frames.times.len().min(frames.poses.len());
     let names = run.assembly.parts.iter().flat_map(|part| {
-        ["x (m)", "z (m)", "angle (rad)"].map(|what| format!("{} {what}", part.name))
+        ["x (m)", "z (m)", "angle (rad)"].map(|what| format!("{}_{what}", column_name(&part.name)))
     });
     let row = |at: usize| frames.poses[at].iter().flatten().copied().map(Some);
     csv(&frames.times[..count], names, row)

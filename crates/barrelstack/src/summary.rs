@@ -49,8 +49,8 @@ described! {
         /// The force elements of every device, where there are any.
         #[serde(flatten)]
         pub devices: Devices = Devices::of(run),
-        /// The energy books; null where numbers were lost.
-        pub energy: Option<EnergyBooks> = run.energy.as_ref().map(EnergyBooks::of),
+        /// The energy balance; null where numbers were lost.
+        pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
         /// What shook it.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
         /// How it was computed.
@@ -175,31 +175,31 @@ described! {
         pub peak_horizontal_whole_run_at: f64 as "s",
     }
 
-    /// The energy books at the end (J), relative to the start.
+    /// The energy balance at the end (J), relative to the start.
     #[derive(Clone, Debug)]
-    pub struct EnergyBooks of books: &EnergySummary {
+    pub struct EnergyBalance of balance: &EnergySummary {
         /// Kinetic energy.
-        pub kinetic: f64 as "J" = books.kinetic,
+        pub kinetic: f64 as "J" = balance.kinetic,
         /// Potential energy in gravity.
-        pub potential: f64 as "J" = books.potential,
+        pub potential: f64 as "J" = balance.potential,
         /// In contact springs and force elements.
-        pub elastic: f64 as "J" = books.elastic,
+        pub elastic: f64 as "J" = balance.elastic,
         /// In sticks.
-        pub stick: f64 as "J" = books.stick,
+        pub stick: f64 as "J" = balance.stick,
         /// Lost in the dampers of contacts and elements, and with elements that broke.
-        pub damped: f64 as "J" = books.damped,
+        pub damped: f64 as "J" = balance.damped,
         /// Lost to friction.
-        pub friction: f64 as "J" = books.friction,
+        pub friction: f64 as "J" = balance.friction,
         /// Lost to viscous damping.
-        pub viscous: f64 as "J" = books.viscous,
+        pub viscous: f64 as "J" = balance.viscous,
         /// Work of the ground.
-        pub ground_work: f64 as "J" = books.ground_work,
+        pub ground_work: f64 as "J" = balance.ground_work,
         /// What does not balance.
-        pub residual: f64 as "J" = books.residual,
+        pub residual: f64 as "J" = balance.residual,
         /// Energy that went through: absolute work of the ground plus the drop of potential energy.
-        pub input: f64 as "J" = books.throughput,
+        pub input: f64 as "J" = balance.throughput,
         /// |residual| / input.
-        pub residual_ratio: f64 as "1" = books.residual_ratio(),
+        pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 
     /// How it was computed.

@@ -243,7 +243,7 @@ fn apart_at(base: &Run, other: &Run) -> Option<f64> {
         .iter()
         .zip(&other.recording.channels)
         .filter(|(channel, _)| {
-            channel.name.contains(" displacement ") && !channel.name.starts_with("ground")
+            channel.name.contains("_displacement_") && !channel.name.starts_with("ground")
         })
         .collect();
     let times = &other.recording.times;

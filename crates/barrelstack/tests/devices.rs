@@ -85,10 +85,10 @@ fn a_lid_lets_go_of_a_barrel_that_is_out_from_under_it() {
                 &format!("motion.scale.pgv=\"{velocity} cm/s\""),
             ],
         );
-        let books = run.energy.map(|energy| energy.residual_ratio());
-        println!("{levels} levels, {velocity} cm/s: {:?}, books {books:?}", run.outcome);
+        let balance = run.energy.map(|energy| energy.residual_ratio());
+        println!("{levels} levels, {velocity} cm/s: {:?}, balance {balance:?}", run.outcome);
         assert_eq!(run.outcome.kind(), "collapse", "{:?}", run.outcome);
-        assert!(books.unwrap() < 1e-4); // measured 5.1e-6
+        assert!(balance.unwrap() < 1e-4); // measured 5.1e-6
     }
 }
 
@@ -139,8 +139,8 @@ fn every_candidate_and_what_becomes_of_it_can_be_put_on_the_demo_in_both_planes(
                     let short = ["run.duration=\"0.05 s\"", "run.until=duration", view];
                     let all = [&short[..], &settings].concat();
                     let run = run("demo-napa", &all);
-                    let books = run.energy.unwrap();
-                    assert!(books.residual_ratio() < 1e-3, "{all:?}: {books:?}");
+                    let balance = run.energy.unwrap();
+                    assert!(balance.residual_ratio() < 1e-3, "{all:?}: {balance:?}");
                 }
             }
         }
@@ -201,11 +201,11 @@ fn a_stack_of_a_quarter_of_the_size_with_all_devices_is_the_full_one_in_another_
         for (a, b) in full.elements.iter().zip(&quarter.elements) {
             worst = worst.max((64.0 * b.peak.0 - a.peak.0).abs() / a.peak.0.abs().max(100.0));
         }
-        let books = full.energy.unwrap();
+        let balance = full.energy.unwrap();
         let count = full.elements.len();
         println!(
             "{name}: {count} elements, {worst:e} apart, residual {:e}",
-            books.residual_ratio()
+            balance.residual_ratio()
         );
         // Bodies without a boundary settle along other paths, to within rounding: measured 3.8e-4.
         assert!(worst < 2e-3, "{worst:e}");
@@ -219,7 +219,7 @@ fn a_stack_of_a_quarter_of_the_size_with_all_devices_is_the_full_one_in_another_
         for (a, b) in full.elements.iter().zip(&quarter.elements) {
             assert_eq!(64.0 * b.peak.0, a.peak.0, "bits of what touches");
         }
-        assert!(books.residual_ratio() < 1e-3);
+        assert!(balance.residual_ratio() < 1e-3);
     }
 }
 

@@ -107,8 +107,8 @@ fn a_case_of_an_ensemble_is_a_run() {
         assert_eq!(result.first_fall, run.fates.first_fall(), "case {seed}");
         assert_eq!(result.end_time, Some(run.end_time), "case {seed}");
         assert_eq!(result.steps, Some(run.work.steps), "case {seed}");
-        let books = run.energy.map(|energy| energy.residual_ratio());
-        assert_eq!(result.energy_residual_ratio, books, "case {seed}");
+        let balance = run.energy.map(|energy| energy.residual_ratio());
+        assert_eq!(result.energy_residual_ratio, balance, "case {seed}");
     }
 }
 

@@ -62,7 +62,7 @@ fn within(what: &str, value: f64, low: f64, high: f64) {
     assert!((low..=high).contains(&value), "{what} = {value}, expected {low} to {high}");
 }
 
-fn books_close(run: &Run) {
+fn energy_balances(run: &Run) {
     within("energy residual ratio", run.energy.unwrap().residual_ratio(), 0.0, ENERGY);
 }
 
@@ -92,8 +92,8 @@ fn eight_barrels_drift_and_press_as_in_the_paper() {
 }
 
 #[test]
-fn eight_barrels_close_their_energy_books() {
-    books_close(eight());
+fn eight_barrels_balance_their_energy() {
+    energy_balances(eight());
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn along_the_barrels_a_rack_walks_off() {
     // The paper: the rack of the second level, at 4.5 s.
     assert_eq!(level, 2);
     within("collapse", time, 3.0, 6.0);
-    books_close(&run);
+    energy_balances(&run);
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn six_barrels_rock_off_above_the_first_level() {
     // at rest (paper: 2.9 on average), while the whole seat of barrel 1 bears 2.5 times.
     within("amplification", amplification, 2.5, 9.0);
     within("residual slip", slip.abs(), 0.0, 0.05);
-    books_close(&run);
+    energy_balances(&run);
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn a_slippery_floor_keeps_six_barrels_up_and_moves_them_further() {
     println!("slips {} m and {} m", slip(&slippery), slip(&rough));
     assert_eq!(slippery.outcome, Outcome::Stable);
     assert!(slip(&slippery).abs() > slip(&rough).abs());
-    books_close(&slippery);
+    energy_balances(&slippery);
 }
 
 #[test]

@@ -40,15 +40,15 @@ fn stacks_along_their_barrels_stand_as_they_are_drawn() {
                 most = (most.0.max(moved.abs()), most.1.max(turned.abs()));
             }
         }
-        let books = run.energy.unwrap().residual_ratio();
+        let balance = run.energy.unwrap().residual_ratio();
         println!(
-            "{changes:?}: moved {:.2} mm, turned {:.2} mrad, books {books:.1e}",
+            "{changes:?}: moved {:.2} mm, turned {:.2} mrad, balance {balance:.1e}",
             1e3 * most.0,
             1e3 * most.1
         );
         // Measured: 0.57 mm and 0.19 mrad inclined, less than 0.01 level.
         assert!(most.0 < 1e-3 && most.1 < 5e-4, "{changes:?}: {most:?}");
-        assert!(books < 1e-10); // measured 2e-13
+        assert!(balance < 1e-10); // measured 2e-13
     }
 }
 
@@ -114,7 +114,7 @@ fn every_device_goes_on_racks_on_posts_along_the_barrels_or_says_why_not() {
             }
         }
     }
-    println!("run: {ran:?}; refused: {refused:?}; books {worst:e}");
+    println!("run: {ran:?}; refused: {refused:?}; balance {worst:e}");
     // On posts a rack has no room to walk.
     assert_eq!(refused, BTreeSet::from(["walking stops"]));
     assert_eq!(ran.len(), DEVICES.len() - 1);

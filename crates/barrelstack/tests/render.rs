@@ -16,7 +16,7 @@ fn rocking_block() -> (Run, Summary) {
 }
 
 #[test]
-fn the_eye_can_close_the_books_of_energy() {
+fn a_reader_can_add_up_the_energy_balance() {
     let words = ["run.duration=4 s".to_owned()];
     let run = Scenario::builtin("candia-8-barrels", &words).unwrap().run().unwrap();
     let document = barrelstack::report::document(&run, &Summary::of(&run, None));

@@ -362,7 +362,7 @@ fn shaken() -> Scenario {
     Scenario::builtin("candia-8-barrels", &changes.map(str::to_owned)).unwrap()
 }
 
-const CHANNELS: [&str; 3] = ["R1 displacement x", "B1.1 displacement x", "B1.2 displacement z"];
+const CHANNELS: [&str; 3] = ["R1_displacement_x", "B1.1_displacement_x", "B1.2_displacement_z"];
 
 /// Returns a perfect recording of the scenario, 200 times a second.
 fn recorded(scenario: &Scenario) -> (Vec<f64>, Vec<Vec<f64>>) {

@@ -34,7 +34,7 @@ pub(crate) fn rows(
                 spread.collapsed, spread.variants
             ),
         );
-        if spread.first_fall.is_some() {
+        if spread.first_loss.is_some() {
             row("", course(spread));
         }
         let modes: Vec<String> =
@@ -92,7 +92,7 @@ pub(crate) fn rows(
     }
     if let Some(energy) = &summary.energy {
         row(
-            "energy books",
+            "energy balance",
             format!(
                 "residual {:.1e} of the {} that went through",
                 energy.residual_ratio,

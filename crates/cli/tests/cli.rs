@@ -256,7 +256,7 @@ fn a_run_that_broke_down_is_no_verdict_and_has_a_status_of_its_own() {
     let json_run = ["run", "candia-8-barrels", ONE, "--json"].into_iter().chain(broken);
     let summary = json(&stdout(&barrelstack(json_run)));
     assert_eq!(summary["outcome"]["kind"], "invalid");
-    assert!(summary["outcome"]["reason"].as_str().unwrap().contains("energy books"), "{summary}");
+    assert!(summary["outcome"]["reason"].as_str().unwrap().contains("energy balance"), "{summary}");
     assert_eq!(summary["outcome"]["mode"], Value::Null);
 }
 
@@ -270,7 +270,7 @@ fn a_free_scene_is_not_judged() {
 #[test]
 fn variants_are_told_counted_and_shown_by_their_number() {
     let text = stdout(&barrelstack(SHORT));
-    let headline = "  This stack falls: in all 4 variants, the first seat is lost between ";
+    let headline = "  This stack falls: in all 4 variants. The first seat is lost between ";
     assert!(text.contains("; no barrel falls within 0.1 s of that.\n"), "{text}");
     assert!(text.contains(headline), "{text}");
     assert!(text.contains("variants                4 of 4 collapse, 95 % interval "), "{text}");

@@ -74,7 +74,7 @@ fn every_command_ends_and_says_what_is_kept() {
     fs::write(at.join("seen.csv"), "mode,until (s)\nstands,8\n").unwrap();
     let rows: Vec<String> =
         (0..400).map(|row| format!("{:.1},{}\n", 0.1 * f64::from(row), row % 3)).collect();
-    let response = format!("time (s),B1.1 displacement x (mm)\n{}", rows.concat());
+    let response = format!("time (s),B1.1_displacement_x (mm)\n{}", rows.concat());
     fs::write(at.join("response.csv"), response).unwrap();
     let made = ["motion", "synth", "clough-penzien", "--duration=400 s", "-o", "long.txt"];
     let made = program(made).current_dir(at).output().unwrap();

@@ -187,3 +187,61 @@ fn what_a_command_reads_it_never_replaces() {
     assert!(names(&at("st")).unwrap().contains(&"study.toml".to_owned()));
     assert!(!stdout(&barrelstack(["scenarios"])).is_empty());
 }
+
+/// Names of the columns of a CSV file: what stands before the unit in parentheses.
+fn heads(csv: &str) -> Vec<String> {
+    let line = csv.lines().find(|line| !line.starts_with('#')).unwrap();
+    line.split(',').map(|cell| cell.split(" (").next().unwrap().to_owned()).collect()
+}
+
+/// Names of the arrays of a NumPy archive.
+fn arrays(archive: &[u8]) -> Vec<String> {
+    let mut names = Vec::new();
+    for at in 0..archive.len().saturating_sub(30) {
+        if archive[at..].starts_with(b"PK\x03\x04") {
+            let length = usize::from(u16::from_le_bytes([archive[at + 26], archive[at + 27]]));
+            let name = String::from_utf8_lossy(&archive[at + 30..at + 30 + length]);
+            names.push(name.trim_end_matches(".npy").to_owned());
+        }
+    }
+    names
+}
+
+#[test]
+fn a_column_has_one_name_in_all_files() {
+    let folder = place();
+    let done = |arguments: &[&str]| {
+        let made = program(arguments).current_dir(folder.path()).output().unwrap();
+        assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    };
+    let read = |path: &str| fs::read_to_string(folder.path().join(path)).unwrap();
+    let plain = |name: &String| {
+        name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_'))
+    };
+    done(&["demo", "--variants=2", "--no-remedy", "--set=run.duration=0.5 s", "--out", "run"]);
+    let mut all = arrays(&fs::read(folder.path().join("run/histories.npz")).unwrap());
+    let (histories, forces) = (heads(&read("run/histories.csv")), heads(&read("run/forces.csv")));
+    assert!(histories.contains(&"B4.1_displacement_x".to_owned()), "{histories:?}");
+    assert!(histories.contains(&"ground_acceleration_x".to_owned()), "{histories:?}");
+    assert!(forces.contains(&"R1_on_ground_vertical_force".to_owned()), "{forces:?}");
+    let mut written = [histories, forces[1..].to_vec()].concat();
+    all.sort();
+    written.sort();
+    assert_eq!(all, written);
+    for file in ["variants.csv", "envelopes.csv", "frames.csv"] {
+        all.extend(heads(&read(&format!("run/{file}"))));
+    }
+    assert!(all.iter().all(plain), "{all:?}");
+    // A study lists its columns; names of its own factors stand as they were written.
+    done(&["study", "run", "s.toml", "--out", "study"]);
+    let columns = read("study/columns.csv");
+    assert_eq!(columns.lines().next(), Some("name,unit,role,kind,meaning"));
+    let listed: Vec<&str> =
+        columns.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(heads(&read("study/table.csv")), listed);
+    let parquet = fs::read(folder.path().join("study/table.parquet")).unwrap();
+    let holds = |name: &str| parquet.windows(name.len()).any(|part| part == name.as_bytes());
+    assert!(listed.iter().all(|name| holds(name)), "{listed:?}");
+    let outcomes = ["first_fall", "energy_residual_ratio"];
+    assert!(outcomes.iter().all(|name| listed.contains(name)), "{listed:?}");
+}

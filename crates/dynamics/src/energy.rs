@@ -228,7 +228,7 @@ mod tests {
 
     /// Returns the residual ratio of a disc that falls on a floor and bounces, with an extra downward acceleration
     /// (m/s²) that has no energy.
-    fn books_of_a_bounce(unbooked: f64) -> f64 {
+    fn balance_of_a_bounce(unbooked: f64) -> f64 {
         let body = |name: &str, motion, z, surfaces, nodes| Body {
             name: name.to_owned(),
             motion,
@@ -284,11 +284,11 @@ mod tests {
     }
 
     #[test]
-    fn the_books_close_and_a_wrong_force_opens_them() {
-        let right = books_of_a_bounce(0.0);
+    fn energy_balances_and_not_with_a_wrong_force() {
+        let right = balance_of_a_bounce(0.0);
         assert!(right < 1e-6, "{right:e}"); // measured 3.1e-8
         // A hundredth of the weight.
-        let wrong = books_of_a_bounce(0.0981);
+        let wrong = balance_of_a_bounce(0.0981);
         assert!(wrong > 1e-3, "{wrong:e}"); // measured 3.2e-3
     }
 }

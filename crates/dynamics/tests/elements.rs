@@ -75,9 +75,9 @@ fn a_mass_on_a_guide_swings_as_a_damped_oscillator() {
     for (method, limit) in every_method(1e-9).into_iter().zip([1.0e-4, 5.4e-7, 1e-11, 1e-8]) {
         let mut scene = guided(guide(k, c), speed);
         let mut worst = 0.0_f64;
-        let books =
+        let balance =
             watch(scene.by(method), 1e-3, 3.0, |t, x, _| worst = worst.max((x - exact(t)).abs()));
-        println!("{}: {worst:e} m, residual {:e}", method.name(), books.residual_ratio());
+        println!("{}: {worst:e} m, residual {:e}", method.name(), balance.residual_ratio());
         // measured as listed
         assert!(worst < 2.0 * limit, "{}: {worst:e}", method.name());
     }
@@ -91,20 +91,23 @@ fn between_stops_a_mass_goes_to_and_fro_in_the_time_that_gap_and_spring_take() {
     let mut scene = guided(stops, speed);
     let (mut before, mut returns) = ((0.0, -1.0), Vec::new());
     let mut furthest = 0.0_f64;
-    let books = watch(&mut scene, 1e-5, 3.2 * period, |t, x, _| {
+    let balance = watch(&mut scene, 1e-5, 3.2 * period, |t, x, _| {
         if before.1 < 0.0 && x >= 0.0 && t > 0.0 {
             returns.push(before.0 + before.1 / (before.1 - x) * (t - before.0));
         }
         before = (t, x);
         furthest = furthest.max(x.abs());
     });
-    println!("{returns:?} of {period}, furthest {furthest}, residual {:e}", books.residual_ratio());
+    println!(
+        "{returns:?} of {period}, furthest {furthest}, residual {:e}",
+        balance.residual_ratio()
+    );
     assert_eq!(returns.len(), 3);
     for (count, time) in (1..).zip(&returns) {
         assert!((time / (period * f64::from(count)) - 1.0).abs() < 1e-7, "{time}"); // measured 1.7e-8
     }
     assert!((furthest / (gap + speed / omega) - 1.0).abs() < 1e-7); // measured 4.3e-9
-    assert!(books.residual_ratio() < 1e-9); // measured 4.4e-11
+    assert!(balance.residual_ratio() < 1e-9); // measured 4.4e-11
 }
 
 #[test]
@@ -121,14 +124,14 @@ fn the_damper_of_a_stop_acts_on_approach_only() {
     let exact = libm::exp(-ratio / root * libm::atan(root / ratio));
     let mut scene = guided(stops, speed);
     let mut least = f64::INFINITY;
-    let books =
+    let balance =
         watch(&mut scene, 1e-6, 0.02 / speed + PI / omega, |_, _, force| least = least.min(force));
     let found = -scene.state.twists[1].linear.x / speed;
     println!("restitution {found}, exact {exact}; least force {least} N");
     assert!((found / exact - 1.0).abs() < 5e-5, "{found}"); // measured 1.5e-5
     assert!(least >= 0.0);
     let lost = 0.5 * MASS * speed * speed * (1.0 - exact * exact);
-    assert!((books.damped / lost - 1.0).abs() < 1e-3, "{} J of {lost} J", books.damped);
+    assert!((balance.damped / lost - 1.0).abs() < 1e-3, "{} J of {lost} J", balance.damped);
 }
 
 #[test]
@@ -139,17 +142,17 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
         let mut scene = guided(guide, 0.0);
         scene.state.twists[1].linear = velocity;
         let mut most = 0.0_f64;
-        let books = watch(&mut scene, 1e-5, 0.3, |_, _, force| most = most.max(force.abs()));
-        (scene.state.memory[0].broken, scene.state.twists[1].linear, most, books)
+        let balance = watch(&mut scene, 1e-5, 0.3, |_, _, force| most = most.max(force.abs()));
+        (scene.state.memory[0].broken, scene.state.twists[1].linear, most, balance)
     };
     let spring = guide(MASS * omega * omega, 0.0);
-    let (gone, velocity, most, books) =
+    let (gone, velocity, most, balance) =
         broken(Guide { strength, ..spring.clone() }, Vec2::new(speed, 0.0));
     let left = 0.75_f64.sqrt() * speed;
-    println!("{gone}, {velocity:?} of {left}, {most} N, {books:?}");
+    println!("{gone}, {velocity:?} of {left}, {most} N, {balance:?}");
     assert!(gone && (velocity.x / left - 1.0).abs() < 2e-4 && (most / strength - 1.0).abs() < 1e-4);
-    assert!((books.damped / (0.25 * 0.5 * MASS * speed * speed) - 1.0).abs() < 2e-3);
-    assert!(books.residual_ratio() < 1e-3);
+    assert!((balance.damped / (0.25 * 0.5 * MASS * speed * speed) - 1.0).abs() < 2e-3);
+    assert!(balance.residual_ratio() < 1e-3);
 
     // Lifted beyond its reach it releases for good, otherwise it holds.
     for (reach, gone) in [(0.1, true), (0.4, false)] {
@@ -159,7 +162,7 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
 }
 
 #[test]
-fn a_tie_that_yields_keeps_what_it_gave_and_the_books_close() {
+fn a_tie_that_yields_keeps_what_it_gave_and_the_energy_balances() {
     // Caught after a slack: elastic up to the yield force, then plastic until the energy is absorbed.
     let (k, yields_at, slack, speed) = (1e5, 2e3, 0.05, 1.2);
     let tie = Strap {
@@ -177,20 +180,20 @@ fn a_tie_that_yields_keeps_what_it_gave_and_the_books_close() {
         let body = weight("weight", 0.0, 3.0, Vec2::new(speed, 0.0), 0.0);
         let mut scene = scene(vec![floor(), body], vec![tie.clone().into()], Vec2::default());
         let mut furthest = 0.0_f64;
-        let books = watch(&mut scene, step, 0.4, |_, x, _| furthest = furthest.max(x));
+        let balance = watch(&mut scene, step, 0.4, |_, x, _| furthest = furthest.max(x));
         let gave = scene.state.memory[0].plastic;
         let back = -scene.state.twists[1].linear.x;
         let exact = (2.0 * elastic / MASS).sqrt();
         println!(
             "gave {gave} m of {plastic} m, furthest {furthest} m, back at {back} m/s of {exact} m/s, residual {:e}",
-            books.residual_ratio()
+            balance.residual_ratio()
         );
         // measured 1.9e-6 and 1.5e-8 at most
         assert!((gave / plastic - 1.0).abs() < limit, "{gave}");
         assert!((furthest / (slack + yields_at / k + plastic) - 1.0).abs() < limit);
         assert!((back / exact - 1.0).abs() < 10.0 * limit);
-        assert!((books.damped / (kinetic - elastic) - 1.0).abs() < limit);
-        assert!(books.residual_ratio() < limit, "{:e}", books.residual_ratio());
+        assert!((balance.damped / (kinetic - elastic) - 1.0).abs() < limit);
+        assert!(balance.residual_ratio() < limit, "{:e}", balance.residual_ratio());
     }
 }
 
@@ -212,7 +215,7 @@ fn a_mass_on_a_rod_is_a_pendulum_and_its_sway_is_damped() {
     let mut scene = scene(vec![floor(), body], vec![rod.into()], DOWN);
     let damped = omega * (1.0 - ratio * ratio).sqrt();
     let (mut before, mut crossings) = ((0.0, place.x), Vec::new());
-    let books = watch(&mut scene, 1e-4, 4.0, |t, x, _| {
+    let balance = watch(&mut scene, 1e-4, 4.0, |t, x, _| {
         if before.1 * x < 0.0 {
             crossings.push(before.0 + before.1 / (before.1 - x) * (t - before.0));
         }
@@ -220,9 +223,9 @@ fn a_mass_on_a_rod_is_a_pendulum_and_its_sway_is_damped() {
     });
     let halves = (crossings[6] - crossings[0]) / 6.0;
     let exact = PI / damped * (1.0 + lean * lean / 16.0 * 0.5);
-    println!("half period {halves} of {exact}; residual {:e}", books.residual_ratio());
+    println!("half period {halves} of {exact}; residual {:e}", balance.residual_ratio());
     assert!((halves / exact - 1.0).abs() < 2e-5); // measured 4.8e-6
-    assert!(books.residual_ratio() < 1e-7); // measured 9.2e-9
+    assert!(balance.residual_ratio() < 1e-7); // measured 9.2e-9
     let first = (crossings[0] * damped - FRAC_PI_2).abs();
     assert!(first < 0.05, "{first}");
 }
@@ -262,14 +265,14 @@ fn two_bodies_on_guides_and_rods_keep_momentum_spin_and_energy() {
         let before = momenta(&scene);
         let mut most = 0.0_f64;
         scene.by(Method::VelocityVerlet);
-        let books = watch(&mut scene, 1e-4, 1.5, |_, _, force| most = most.max(force.abs()));
+        let balance = watch(&mut scene, 1e-4, 1.5, |_, _, force| most = most.max(force.abs()));
         let after = momenta(&scene);
-        println!("{before:?} {after:?}, up to {most} N, residual {:e}", books.residual_ratio());
+        println!("{before:?} {after:?}, up to {most} N, residual {:e}", balance.residual_ratio());
         assert!(most > 500.0);
         for (a, b) in before.iter().zip(after) {
             assert!((a - b).abs() < 1e-8, "{before:?} {after:?}");
         }
-        assert!(books.residual_ratio() < 1.5e-4, "{:e}", books.residual_ratio()); // measured 7.0e-5
+        assert!(balance.residual_ratio() < 1.5e-4, "{:e}", balance.residual_ratio()); // measured 7.0e-5
     }
 }
 

@@ -86,7 +86,7 @@ proptest! {
     }
 
     #[test]
-    fn the_energy_books_close(seed in any::<u64>()) {
+    fn the_energy_balances(seed in any::<u64>()) {
         let drive = Shake::Harmonic { acceleration: 3.0, omega: 9.0 };
         let ratio = |step: f64| {
             let mut scene = tumbling(seed);

@@ -130,7 +130,7 @@ fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
 }
 
 #[test]
-fn a_strap_tears_above_its_strength_and_the_books_close() {
+fn a_strap_tears_above_its_strength_and_the_energy_balances() {
     let slack = 0.2;
     let strength = 0.5 * STIFFNESS * stretch(slack);
     let mut scene = hanging(Strap { strength, ..hung() }, slack);

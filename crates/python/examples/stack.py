@@ -9,5 +9,5 @@ run = Scenario(
     }
 ).run(variants=0)
 print(run.headline)
-top = run.histories["B4.1 displacement x"]
+top = run.histories["B4.1_displacement_x"]
 print(f"{run.outcome.kind}; the top moves by up to {100 * abs(top).max():.1f} cm")

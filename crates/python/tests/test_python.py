@@ -27,7 +27,7 @@ def test_pandas_takes_histories_and_tables_by_column(run: Run) -> None:
     pd = pytest.importorskip("pandas", reason="no pandas")
     frame = pd.DataFrame(run.histories)
     assert list(frame.columns) == list(run.histories)
-    assert (frame["B2.1 rotation"].to_numpy() == run.histories["B2.1 rotation"]).all()
+    assert (frame["B2.1_rotation"].to_numpy() == run.histories["B2.1_rotation"]).all()
     table = run.variants
     assert table is not None
     frame = pd.DataFrame(table)

@@ -203,7 +203,7 @@ fn histories(scene: &Scene) -> Vec<Block> {
             series("lost to friction", times, |t| 12.0 * growth(t - 0.4).max(0.0)),
             series("lost to impacts", times, |t| 7.5 * growth(t - 0.9).max(0.0)),
             series("kinetic", times, |t| 1.2 * ground_acceleration(t).abs()),
-            series("error of the books", times, |t| 0.01 * t / DURATION),
+            series("error of the balance", times, |t| 0.01 * t / DURATION),
         ],
     );
     energy.series[0].style.area = true;
@@ -224,7 +224,7 @@ fn histories(scene: &Scene) -> Vec<Block> {
         ),
         figure(
             "energy",
-            "Energy books: what the ground put in and where it went.",
+            "Energy balance: what the ground put in and where it went.",
             FigureKind::Plot(energy),
         ),
     ]

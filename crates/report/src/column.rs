@@ -89,6 +89,13 @@ impl ColumnSpec {
     }
 }
 
+/// Converts words to the name of a column, one for all formats: letters, digits, `.` and `-` stay, all else becomes `_`,
+/// so that `B4.1 displacement x` is `B4.1_displacement_x`.
+pub fn column_name(words: &str) -> String {
+    let kept = |c: char| if c.is_alphanumeric() || matches!(c, '.' | '-') { c } else { '_' };
+    words.chars().map(kept).collect()
+}
+
 /// The values of a column, one a row; `None` where it does not apply or did not happen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]

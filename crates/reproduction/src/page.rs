@@ -353,8 +353,8 @@ fn provenance(results: &Results) -> Vec<(String, String)> {
         ("eight barrels at half scale", &results.half),
         ("along the barrels", &results.along),
     ] {
-        let books = summary.energy.as_ref();
-        let residual = books.map(|books| format!("{:.0e}", books.residual_ratio));
+        let balance = summary.energy.as_ref();
+        let residual = balance.map(|balance| format!("{:.0e}", balance.residual_ratio));
         let told = format!(
             "{}, step {} ms, constants per {}, energy residual {}",
             summary.run.method,

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let work = run.work;
     println!(
         "{}: {:?}, {:.1} s of motion in {seconds:.2} s: {:.1} times real time; {} steps of {:.3} ms or a part of it, \
-         {:.0} contact elements a step, {:.0} ns each; books {:.1e}; settled in {:?} steps",
+         {:.0} contact elements a step, {:.0} ns each; balance {:.1e}; settled in {:?} steps",
         scenario.title,
         run.outcome,
         run.end_time,

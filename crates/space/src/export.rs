@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use barrelstack_report::column::column_name;
 use barrelstack_report::{csv_field, html, shortest};
 
 use crate::fate::Heading;
@@ -30,7 +31,8 @@ fn frames_csv(run: &Run) -> String {
     let mut text = String::from("time (s)");
     for part in &run.stack.parts {
         for column in ["x (m)", "y (m)", "z (m)", "qw", "qx", "qy", "qz"] {
-            let _ = write!(text, ",{}", csv_field(&format!("{} {column}", part.name)));
+            let _ =
+                write!(text, ",{}", csv_field(&format!("{}_{column}", column_name(&part.name))));
         }
     }
     text.push('\n');
@@ -48,8 +50,8 @@ fn frames_csv(run: &Run) -> String {
 /// Writes the case as stated, number 0, and its variants, one row each.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
-        "variant,outcome,mode,collapse time (s),first body,heading,first fall (s),barrels fallen,debris right,debris \
-         left,debris away,debris near,energy residual ratio,reason\n",
+        "variant,outcome,mode,collapse (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\
+         debris_away,debris_near,energy_residual_ratio,reason\n",
     );
     for (number, case) in answer.cases.iter().enumerate() {
         use barrelstack::outcome::Outcome;

@@ -6,7 +6,7 @@ use barrelstack::ground::MotionSummary;
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
 use barrelstack::summary::Unfinished;
-use barrelstack::summary::{Devices, EnergyBooks, JointSummary, Provenance};
+use barrelstack::summary::{Devices, EnergyBalance, JointSummary, Provenance};
 use barrelstack::variants::Spread;
 use barrelstack_dynamics::Vec3;
 use barrelstack_report::described;
@@ -45,8 +45,8 @@ described! {
         /// What every element of the devices bore, where there are any.
         #[serde(flatten)]
         pub devices: Devices,
-        /// The energy books; null where numbers were lost.
-        pub energy: Option<EnergyBooks>,
+        /// The energy balance; null where numbers were lost.
+        pub energy: Option<EnergyBalance>,
         /// The component of the scenario, and the vertical one.
         pub motion: Option<MotionSummary>,
         /// The other horizontal component; null where the motion has none.
@@ -230,7 +230,7 @@ impl Summary {
             demands_whole_run: demands_in(Span::WholeRun),
             interfaces: if sound { interfaces(run) } else { Vec::new() },
             devices: Devices::borne(&run.devices()),
-            energy: run.energy.as_ref().map(EnergyBooks::of),
+            energy: run.energy.as_ref().map(EnergyBalance::of),
             motion: motion(first),
             other_component: run.ground.second.as_ref().and_then(motion),
             run: RunInSpace::of(run),

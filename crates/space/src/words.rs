@@ -154,7 +154,7 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     }
     if let Some(energy) = &summary.energy {
         row(
-            "energy books",
+            "energy balance",
             format!("{:.0e} of what went through is missing", energy.residual_ratio),
         );
     }

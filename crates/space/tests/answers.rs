@@ -361,7 +361,7 @@ fn a_mirrored_stack_with_all_devices_has_the_same_forces_on_the_other_side() {
     let peaks = |more: &[&str]| {
         let run = run(&stack(&[&all, more].concat(), &pulse(0.3, 0.4), 1.5, 0.0)).unwrap();
         let missing = run.energy.as_ref().unwrap().residual_ratio();
-        println!("{:?}, books {missing:e}", run.outcome);
+        println!("{:?}, balance {missing:e}", run.outcome);
         assert!(missing < 1e-6, "{missing:e}"); // measured 1.2e-7
         let mut all: Vec<f64> = run.elements.iter().map(|fate| fate.peak.0.abs()).collect();
         all.sort_by(f64::total_cmp);

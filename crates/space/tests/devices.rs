@@ -148,14 +148,14 @@ fn straps_hold_what_would_fall_and_tear_where_they_are_weak() {
     assert_eq!(with.outcome.kind(), "stable", "{:?}", with.outcome);
     let peak = with.elements.iter().map(|fate| fate.peak.0).fold(0.0, f64::max);
     let missing = with.energy.unwrap().residual_ratio();
-    println!("{peak:.0} N, books {missing:e}");
+    println!("{peak:.0} N, balance {missing:e}");
     assert!(peak > 5e3, "{peak}"); // measured 5416
     assert!(missing < 1e-8, "{missing:e}"); // measured 2e-10
     // Straps with a strength slightly above their tension at rest tear, and the energy balance includes it.
     let weak = of(&[&strapped[..], &["stack.strap.strength='5.1 kN'"]].concat());
     let torn = weak.elements.iter().filter(|fate| fate.broken_at.is_some()).count();
     let missing = weak.energy.unwrap().residual_ratio();
-    println!("{torn} of {} torn, {:?}, books {missing:e}", weak.elements.len(), weak.outcome);
+    println!("{torn} of {} torn, {:?}, balance {missing:e}", weak.elements.len(), weak.outcome);
     assert!(torn > 0); // measured 5 of 28
     assert!(missing < 5e-5, "{missing:e}"); // measured 1.1e-5
     assert!(weak.elements.iter().all(|fate| fate.broken_at.is_some() || fate.peak.0 <= 5.1e3));

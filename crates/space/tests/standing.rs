@@ -145,7 +145,7 @@ fn what_has_come_to_rest_stays() {
 }
 
 #[test]
-fn a_stack_that_is_shaken_keeps_its_books() {
+fn a_stack_that_is_shaken_keeps_its_energy_balance() {
     // While it stands, and after all has fallen and come to rest.
     for (end, most) in [("8.5 s", 1e-7), ("25 s", 1e-5)] {
         let duration = format!("run.duration='{end}'");

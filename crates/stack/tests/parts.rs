@@ -49,7 +49,10 @@ fn no_test_stands_in_the_sources_of_the_library() {
             } else {
                 let text = std::fs::read_to_string(&path).unwrap();
                 let file = path.display();
-                assert!(!text.contains("#[test]"), "{file}: this test does not run; move it to tests/");
+                assert!(
+                    !text.contains("#[test]"),
+                    "{file}: this test does not run; move it to tests/"
+                );
             }
         }
     }

@@ -29,7 +29,7 @@ pub const WORDS: &[Word] = &[
     word("PGV", "peak ground velocity: the largest speed of the ground"),
     word("contact constants", "how stiff and how damped bodies are where they touch"),
     word(
-        "energy books",
+        "energy balance",
         "what energy came in, is stored and was lost; what is missing is an error of the computation",
     ),
     word(

@@ -89,7 +89,7 @@ fn engineering((run, summary, variants): (&Run, &Summary, Option<&Variants>)) ->
         section(&mut blocks, 3, &capital(one.words.many), device_table(one));
     }
     section(&mut blocks, 3, "Ground motion", motion(run));
-    section(&mut blocks, 3, "Energy books", energy(run, summary));
+    section(&mut blocks, 3, "Energy balance", energy(run, summary));
     blocks
 }
 
@@ -372,7 +372,7 @@ fn motion(run: &Run) -> Vec<Block> {
 /// work of the ground.
 fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
     let recording = &run.recording;
-    let Some(books) = &summary.energy else { return Vec::new() };
+    let Some(balance) = &summary.energy else { return Vec::new() };
     // Each as its increase since the start, in kJ.
     let gained = |names: &[&str]| -> Vec<f64> {
         let channels: Vec<&[f64]> = names
@@ -405,13 +405,13 @@ fn energy(run: &Run, summary: &Summary) -> Vec<Block> {
         Block::Paragraph(format!(
             "What the ground gave and what the stack lost in height equals what is stored and what is \
              dissipated but for {} of {} kJ.",
-            significant(books.residual_ratio, 2),
-            significant(1e-3 * books.input, 3)
+            significant(balance.residual_ratio, 2),
+            significant(1e-3 * balance.input, 3)
         )),
         history(
             run,
             "energy",
-            "Energy gained since the start. The books close where all of these together run along the \
+            "Energy gained since the start. The balance holds where all of these together run along the \
              shaded work of the ground: what falls gives up its height to motion, and that to friction \
              and damping.",
             Axis::new("energy", "kJ"),

@@ -7,7 +7,7 @@ use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
-use crate::summary::{Device, EnergyBooks, RunSummary, Summary, Unfinished};
+use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
@@ -266,15 +266,15 @@ pub(crate) fn provenance(run: &Run, summary: &Summary) -> Vec<(String, String)> 
         other => other,
     };
     pair("contact constants", constants.to_owned());
-    let residual = |books: &EnergyBooks| {
+    let residual = |balance: &EnergyBalance| {
         format!(
             "residual {} of the {} kJ that went through",
-            significant(books.residual_ratio, 2),
-            significant(1e-3 * books.input, 3)
+            significant(balance.residual_ratio, 2),
+            significant(1e-3 * balance.input, 3)
         )
     };
     let lost = || "lost with the numbers".to_owned();
-    pair("energy books", summary.energy.as_ref().map_or_else(lost, residual));
+    pair("energy balance", summary.energy.as_ref().map_or_else(lost, residual));
     for (index, step) in summary.provenance.motion.iter().enumerate() {
         pair(&format!("motion, step {}", index + 1), step.clone());
     }

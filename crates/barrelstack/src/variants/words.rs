@@ -75,7 +75,12 @@ fn alone(spread: &Spread) -> String {
     let Some(share) = judged_share(spread) else {
         return "None of the variants of this stack has a verdict.".to_owned();
     };
-    let course = course(spread);
+    // Before the verdict of a stack that falls by itself, or as a sentence after it.
+    let (early, course) = if spread.collapsed == spread.cannot_stand {
+        (", before it is shaken", String::new())
+    } else {
+        ("", format!(" {}.", capital(&course(spread))))
+    };
     let standing = variants - collapsed;
     // A stack that stands when its motion is cut has not passed it.
     if let Some(until) = spread.standing_until.filter(|_| share <= STANDS) {
@@ -101,21 +106,23 @@ fn alone(spread: &Spread) -> String {
             percent(interval[1])
         ),
         (all, _) if all == *variants => {
-            format!("This stack falls: in {}, {course}.", all_of(*variants))
+            format!("This stack falls: in {}{early}.{course}", all_of(*variants))
         }
         (_, share) if share >= FALLS => {
-            format!("This stack falls: in {collapsed} of {variants} variants, {course}.")
+            format!("This stack falls: in {collapsed} of {variants} variants{early}.{course}")
         }
         (_, share) if share <= STANDS => format!(
-            "This stack stands: in {standing} of {variants} variants; in {collapsed} it falls, {course}."
+            "This stack stands: in {standing} of {variants} variants; in {collapsed} it falls{early}.{course}"
         ),
         (_, share) if (0.4..=0.6).contains(&share) => format!(
-            "This stack falls in half of the variants, {collapsed} of {variants}, {course}: {UNSAFE}."
+            "This stack falls in half of the variants, {collapsed} of {variants}{early}: {UNSAFE}.{course}"
         ),
         (_, share) if share > 0.6 => format!(
-            "This stack falls in most variants, {collapsed} of {variants}, {course}: {UNSAFE}."
+            "This stack falls in most variants, {collapsed} of {variants}{early}: {UNSAFE}.{course}"
         ),
-        _ => format!("This stack falls in {collapsed} of {variants} variants, {course}: {UNSAFE}."),
+        _ => format!(
+            "This stack falls in {collapsed} of {variants} variants{early}: {UNSAFE}.{course}"
+        ),
     }
 }
 
@@ -250,7 +257,10 @@ pub fn course(spread: &Spread) -> String {
         }
     });
     let fallen = match (spread.first_fall, spread.barrels_fallen) {
-        (Some(_), Some(fallen)) => format!("{} fall", barrels(fallen, spread.barrels)),
+        (Some(_), Some(fallen)) => {
+            let fall = if fallen.p95 < 1.5 && fallen.p05 > 0.5 { "falls" } else { "fall" };
+            format!("{} {fall}", barrels(fallen, spread.barrels))
+        }
         _ => "no barrel falls".to_owned(),
     };
     format!("{when}{fallen}{}", spread.counted("that"))
@@ -364,28 +374,28 @@ mod tests {
         let cases = [
             (
                 61,
-                "This stack falls: in 61 of 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
+                "This stack falls: in 61 of 64 variants. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 64,
-                "This stack falls: in all 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
+                "This stack falls: in all 64 variants. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (0, "This stack stands in all 64 variants: of stacks like it at most 6 % fall."),
             (
                 2,
-                "This stack stands: in 62 of 64 variants; in 2 it falls, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
+                "This stack stands: in 62 of 64 variants; in 2 it falls. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 10,
-                "This stack falls in 10 of 64 variants, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
+                "This stack falls in 10 of 64 variants: treat it as not safe. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 30,
-                "This stack falls in half of the variants, 30 of 64, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
+                "This stack falls in half of the variants, 30 of 64: treat it as not safe. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
             (
                 50,
-                "This stack falls in most variants, 50 of 64, the first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall: treat it as not safe.",
+                "This stack falls in most variants, 50 of 64: treat it as not safe. The first seat is lost between 5.6 and 6.4 s; 4 to 8 of 10 barrels fall.",
             ),
         ];
         for (collapsed, sentence) in cases {
@@ -402,7 +412,7 @@ mod tests {
         let of = |one: &Spread| headline(&[(View::Longitudinal, one)]);
         assert_eq!(
             of(&one),
-            "This stack falls: in all 64 variants, the first seat is lost after 6.0 s; 8 of 10 barrels fall."
+            "This stack falls: in all 64 variants. The first seat is lost after 6.0 s; 8 of 10 barrels fall."
         );
         one.barrels_fallen = Some(range(10.0, 10.0, 10.0, 10.0));
         one.counted_for = Some(2.0);

@@ -51,7 +51,7 @@ impl Measured {
         }
         if channels.is_empty() {
             return Err(table.unsuited(
-                "there is no channel beside the time: add columns such as `B1.1 displacement x (m)`",
+                "there is no channel beside the time: add columns such as `B1.1_displacement_x (m)`",
             ).into());
         }
         Ok(Self { times, channels })
@@ -121,8 +121,8 @@ impl<'a> Simulator<'a> {
             if run.recording.channel(name).is_none() {
                 let bodies = run.recording.channels.iter().map(|channel| channel.name.as_str());
                 let names: Vec<&str> = bodies
-                    .filter(|name| name.contains(" displacement ") || name.ends_with(" rotation"))
-                    .filter(|name| !name.starts_with("ground "))
+                    .filter(|name| name.contains("_displacement_") || name.ends_with("_rotation"))
+                    .filter(|name| !name.starts_with("ground_"))
                     .collect();
                 return Err(CalibrateError::Scenario(format!(
                     "the scenario has no channel \"{name}\"; it has {}",

@@ -19,30 +19,6 @@ use barrelstack_report::column::{Column, ColumnSpec, ValueKind, Values};
 /// Metadata key of the columns in a file: name, unit and role.
 const COLUMNS_KEY: &str = "barrelstack.columns";
 
-/// Converts names of columns for formats of columns: letters, digits and underscores, as SQL takes them without
-/// quotes.
-pub(super) fn plain_names<'a>(specs: impl Iterator<Item = &'a ColumnSpec>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for spec in specs {
-        let mut name: String = spec
-            .name
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
-            .collect();
-        if !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            name.insert_str(0, "c_");
-        }
-        let first = name.clone();
-        let mut again = 2;
-        while names.contains(&name) {
-            name = format!("{first}_{again}");
-            again += 1;
-        }
-        names.push(name);
-    }
-    names
-}
-
 /// `true` if a column holds lists of numbers, which tables in memory and CSV files have as text with semicolons between
 /// them: texts have no unit.
 pub(super) fn holds_lists(spec: &ColumnSpec) -> bool {
@@ -118,23 +94,22 @@ pub(super) fn to_bytes(
 }
 
 fn schema(specs: &[ColumnSpec]) -> Result<TypePtr, ParquetError> {
-    let field = |(spec, name): (&ColumnSpec, String)| {
+    let field = |spec: &ColumnSpec| {
         if holds_lists(spec) {
-            return list_of_numbers(&name).map(Arc::new);
+            return list_of_numbers(&spec.name).map(Arc::new);
         }
         let (physical, logical) = match spec.kind {
             ValueKind::Integer => (Physical::INT64, None),
             ValueKind::Number => (Physical::DOUBLE, None),
             ValueKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        Type::primitive_type_builder(&name, physical)
+        Type::primitive_type_builder(&spec.name, physical)
             .with_repetition(Repetition::OPTIONAL)
             .with_logical_type(logical)
             .build()
             .map(Arc::new)
     };
-    let names = plain_names(specs.iter());
-    let fields = specs.iter().zip(names).map(field).collect::<Result<Vec<_>, _>>()?;
+    let fields = specs.iter().map(field).collect::<Result<Vec<_>, _>>()?;
     Ok(Arc::new(Type::group_type_builder("case").with_fields(fields).build()?))
 }
 

@@ -178,16 +178,14 @@ impl StudyTable {
         Ok(shard::to_bytes(self, &[])?)
     }
 
-    /// Describes every column, as CSV: its names in CSV and Parquet files, unit, role, kind, and meaning; a list of
-    /// numbers has semicolons between them in CSV files.
+    /// Describes every column, as CSV: its name, unit, role, kind, and meaning; CSV puts the unit behind the name, and a
+    /// list of numbers has semicolons between them there.
     pub fn dictionary(&self) -> String {
-        let mut text = "csv,parquet,unit,role,kind,meaning\n".to_owned();
-        let names = shard::plain_names(self.specs());
-        for (spec, name) in self.specs().zip(names) {
+        let mut text = "name,unit,role,kind,meaning\n".to_owned();
+        for spec in self.specs() {
             let word = |of: serde_json::Value| of.as_str().unwrap_or_default().to_owned();
             let cells = [
-                spec.heading(),
-                name,
+                spec.name.clone(),
                 spec.unit.clone(),
                 serde_json::to_value(spec.role).map_or_else(|_| String::new(), word),
                 if shard::holds_lists(spec) {

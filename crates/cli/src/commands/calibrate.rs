@@ -56,7 +56,7 @@ enum Test {
     /// Stiffness, damping and friction together from the recorded response of a shaken stack.
     ///
     /// The file has a column `time (s)` from the start of the scenario's motion, and columns named as
-    /// in histories.csv, such as `B1.1 displacement x (mm)`.
+    /// in histories.csv, such as `B1.1_displacement_x (mm)`.
     /// Simulations are fitted to it from the values of the scenario on, to the minimum next to them.
     ///
     /// Impacts, slips and falls make responses chaotic within seconds: take a short window of mild

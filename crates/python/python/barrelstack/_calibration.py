@@ -180,7 +180,7 @@ class Calibration(Page):
             The scenario of the test; fits start from its values.
         measured
             A column ``time`` from the start of the motion, and columns named as histories,
-            ``"B1.1 displacement x (mm)"``.
+            ``"B1.1_displacement_x (mm)"``.
         fit
             Among ``"k"`` and ``"c"`` of barrel-rack, ``"mu-br"`` and ``"mu-rg"``.
         until

@@ -95,7 +95,7 @@ class Histories(Columns, Mapping[str, "NDArray[np.float64]"]):
 
     Examples
     --------
-    >>> run.histories["B4.1 displacement x"]  # m, relative to the ground and the place at rest
+    >>> run.histories["B4.1_displacement_x"]  # m, relative to the ground and the place at rest
     """
 
     def __init__(self, native: _native.Run) -> None:
@@ -432,7 +432,7 @@ class Run:
         barrels = [body for body in bodies if body["kind"] == "barrel"]
         top = max((body["level"] for body in barrels), default=None)
         chosen = [body["name"] for body in (barrels or bodies) if body["level"] == top]
-        return [f"{name} displacement x" for name in chosen]
+        return [f"{name}_displacement_x" for name in chosen]
 
     def __copy__(self) -> Run:
         return self

@@ -185,7 +185,7 @@ columns! {
     end_time "s": Run Number |case| case.end_time;
     /// accepted time steps
     steps "": Run Integer |case| case.steps.and_then(|steps| usize::try_from(steps).ok());
-    /// energy missing from the books over the energy that went through
+    /// error of the energy balance over the energy that went through
     energy_residual_ratio "": Run Number |case| case.energy_residual_ratio;
     /// number of warnings
     warnings "": Run Integer |case| Some(case.warnings.len());

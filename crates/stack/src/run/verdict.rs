@@ -51,7 +51,7 @@ impl Verdict {
             Ok(Ended { energy, steps }) => {
                 let broken = energy.residual_ratio() > BOOKS_BROKEN;
                 let outcome = if broken {
-                    Outcome::Invalid { reason: broken_books(&energy) }
+                    Outcome::Invalid { reason: broken_balance(&energy) }
                 } else if ending == Ending::Interrupted {
                     Outcome::Interrupted
                 } else {
@@ -80,9 +80,9 @@ impl Ended {
 }
 
 /// Returns the reason why a run whose energy balance does not close has no outcome.
-fn broken_books(energy: &EnergySummary) -> String {
+fn broken_balance(energy: &EnergySummary) -> String {
     format!(
-        "the energy books miss {:.2e} times the energy that went through, so the steps follow no \
+        "the energy balance is off by {:.2e} times the energy that went through, so the steps follow no \
          motion of these bodies: leave out run.step, or try a tenth of it",
         energy.residual_ratio()
     )
@@ -92,7 +92,7 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     let ratio = energy.residual_ratio();
     (ratio > BOOKS_OPEN).then(|| {
         format!(
-            "the energy books miss {:.2} % of the energy that went through: try half the step \
+            "the energy balance is off by {:.2} % of the energy that went through: try half the step \
              (run.step)",
             100.0 * ratio
         )

@@ -3,6 +3,8 @@
 use barrelstack_dynamics::forces::{contact_force, tributary_length};
 use barrelstack_dynamics::{EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
 
+use barrelstack_report::column::column_name;
+
 use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::watch::joints::{Joint, Joints};
@@ -10,7 +12,7 @@ use crate::watch::joints::{Joint, Joints};
 /// A quantity over the sample times of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Name, such as "B1.1 displacement x".
+    /// Name, such as "`B1.1_displacement_x`".
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
@@ -98,19 +100,20 @@ impl Recording {
             .iter()
             .flat_map(|axis| {
                 [
-                    (format!("ground acceleration {axis}"), "m/s2"),
-                    (format!("ground velocity {axis}"), "m/s"),
-                    (format!("ground displacement {axis}"), "m"),
+                    (format!("ground_acceleration_{axis}"), "m/s2"),
+                    (format!("ground_velocity_{axis}"), "m/s"),
+                    (format!("ground_displacement_{axis}"), "m"),
                 ]
             })
             .collect();
         for part in assembly.parts.iter().filter(|p| p.kind != PartKind::Ground) {
-            names.push((format!("{} displacement x", part.name), "m"));
-            names.push((format!("{} displacement z", part.name), "m"));
-            names.push((format!("{} rotation", part.name), "rad"));
+            let name = column_name(&part.name);
+            names.push((format!("{name}_displacement_x"), "m"));
+            names.push((format!("{name}_displacement_z"), "m"));
+            names.push((format!("{name}_rotation"), "rad"));
         }
         for energy in ENERGIES {
-            names.push((format!("energy {energy}"), "J"));
+            names.push((column_name(&format!("energy {energy}")), "J"));
         }
         let channels = names
             .into_iter()
@@ -140,8 +143,9 @@ impl Recording {
             + 2 * Joints::new(assembly).joints.len()
     }
 
-    /// Returns the channel of a name.
+    /// Returns the channel of a name, which may have blanks for `_`: `B4.1 displacement x`.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
+        let name = column_name(name);
         self.channels.iter().find(|channel| channel.name == name)
     }
 
@@ -247,17 +251,17 @@ impl Recording {
                 values.extend([moved.x, moved.z, state.poses[i].orientation]);
             }
         }
-        let books = energy.summary(0);
+        let balance = energy.summary(0);
         values.extend([
-            books.kinetic,
-            books.potential,
-            books.elastic,
-            books.stick,
-            books.damped,
-            books.friction,
-            books.viscous,
-            books.ground_work,
-            books.residual,
+            balance.kinetic,
+            balance.potential,
+            balance.elastic,
+            balance.stick,
+            balance.damped,
+            balance.friction,
+            balance.viscous,
+            balance.ground_work,
+            balance.residual,
         ]);
         for (channel, value) in self.channels.iter_mut().zip(values) {
             channel.values.push(value);

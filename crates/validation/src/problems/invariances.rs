@@ -11,7 +11,7 @@ use crate::tumble::{self, rough};
 use crate::{Effort, Failure, Outcome, Problem};
 
 const SOURCE: &str = "symmetry of mechanics";
-const BOOKS: &str = "balance of energy";
+const BALANCE: &str = "balance of energy";
 
 /// Returns the number of heaps of a problem.
 fn seeds(effort: Effort) -> u64 {
@@ -58,7 +58,7 @@ pub(super) fn problems() -> Vec<Problem> {
         invariance("order", "heap with bodies and nodes in reverse order", 1e-10, order),
         invariance("time-shift", "heap at rest ground, clock started at 64 s", 1e-9, time_shift),
         invariance("repeat", "the same heap run twice", 0.0, repeat),
-        books(),
+        balance(),
         elastic_row(),
     ]
 }
@@ -230,9 +230,9 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
     Ok(apart(&run()?.state, [1.0; 6], &run()?.state))
 }
 
-fn books() -> Problem {
-    setting("invariances/energy-books", "heap on shaking ground, one second", BOOKS)
-        .asks("what the books miss over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
+fn balance() -> Problem {
+    setting("invariances/energy-balance", "heap on shaking ground, one second", BALANCE)
+        .asks("error of the balance over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
         .by(|effort| {
             let worst = |step: f64| -> Result<f64, Failure> {
                 let mut worst = 0.0_f64;
@@ -263,7 +263,7 @@ fn elastic_row() -> Problem {
     setting(
         "invariances/elastic-row",
         "disc that strikes a row of four, elastic contacts, no gravity",
-        BOOKS,
+        BALANCE,
     )
     .asks("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4))
     .by(|effort| {

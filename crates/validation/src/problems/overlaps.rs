@@ -36,12 +36,12 @@ pub(super) fn problem() -> Problem {
             }
             let note = format!(
                 "{fallen} of {count} stacks fell, {unstable} do not stand; {} records beside the bundled; at seats {:.1} mm, at the end {:.1} mm and at seats \
-                 {:.1} mm; books open by {:.1e} at most",
+                 {:.1} mm; the energy balance is off by {:.1e} at most",
                 records.len(),
                 1e3 * worst.seat,
                 1e3 * worst.end,
                 1e3 * worst.seat_end,
-                worst.books
+                worst.balance
             );
             Ok(Outcome::of(worst.loose).noted(note))
         })
@@ -58,7 +58,7 @@ struct Survey {
     end: f64,
     seat_end: f64,
     /// Largest residual of the energy balance.
-    books: f64,
+    balance: f64,
 }
 
 impl Survey {
@@ -86,7 +86,7 @@ impl Survey {
             }
         }
         if let Some(energy) = &run.energy {
-            self.books = self.books.max(energy.residual_ratio());
+            self.balance = self.balance.max(energy.residual_ratio());
         }
     }
 }

@@ -217,9 +217,9 @@ fn in_a_stack(filled: f64) -> Problem {
     .by(move |_| {
         let run: Run = scenario(filled)?.run()?;
         let recording = &run.recording;
-        let name = "wine in B1.1 displacement x";
+        let name = "wine_in_B1.1_displacement_x";
         let wine = recording.channel(name).ok_or_else(|| Failure::Absent(name.into()))?;
-        let held = recording.channel("B1.1 displacement x");
+        let held = recording.channel("B1.1_displacement_x");
         let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
         let ways = wine.values.iter().zip(&held.values).map(|(wine, barrel)| wine - barrel);
         let ways: Vec<(f64, f64)> = recording.times.iter().copied().zip(ways).collect();

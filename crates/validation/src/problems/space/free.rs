@@ -153,8 +153,8 @@ fn energy() -> Problem {
     .by(|_| {
         let mut scene = body(Method::VelocityVerlet)?;
         let mut worst = 0.0_f64;
-        scene.watch(&Still, 1e-3, 100.0, |_, _, books| {
-            worst = worst.max((books.summary(0).kinetic / 22.57 - 1.0).abs());
+        scene.watch(&Still, 1e-3, 100.0, |_, _, balance| {
+            worst = worst.max((balance.summary(0).kinetic / 22.57 - 1.0).abs());
             ControlFlow::Continue(())
         })?;
         Ok(worst)
