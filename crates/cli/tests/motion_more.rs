@@ -269,6 +269,18 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
     {
         assert!(written.contains(wanted), "{wanted}");
     }
+    // Both horizontals together, by their response over all directions.
+    let both = folder.path().join("both.html");
+    let out = folder.path().join("both.txt");
+    let to = ["match", "napa-college-2014", "--to=asce7:sds=0.6,sd1=0.4", "--tolerance=10 %"];
+    let over = ["--of=rotd100", "-o", text(&out), "--figure", text(&both)];
+    told(&[&to[..], &over].concat());
+    let written = fs::read_to_string(&both).unwrap();
+    for wanted in
+        ["(rotd100) follows asce7:sds=0.6,sd1=0.4 within 10", "RotD100", "matched together"]
+    {
+        assert!(written.contains(wanted), "{wanted}");
+    }
     let page = folder.path().join("process.html");
     let out = folder.path().join("processed.txt");
     let arguments = ["--high-pass", "0.1 Hz", "-o", text(&out), "--figure", text(&page)];

@@ -3,8 +3,10 @@
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
 use crate::history::History;
-use crate::matched::Matched;
-use crate::matching::Matching;
+use crate::horizontals::Horizontals;
+use crate::matched::{Matched, MatchedPair, missed_in_words};
+use crate::matching::{Matching, Work, mean_ratio, not_converged, subdivided};
+use crate::matching_pair::{match_pair, spectrum};
 use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
@@ -139,6 +141,85 @@ impl Record {
         if !matched.missed.is_empty() {
             let words = matched.missed_in_words();
             after.notes.push(format!("{}: the target is missed {words}", channel.name));
+        }
+        Ok((after, matched))
+    }
+
+    /// Matches the response of both horizontal components over all directions, `RotD50` or `RotD100`, to a target, which
+    /// the notes call `named`; all other components take the first scaling only.
+    ///
+    /// Amplitudes of both are changed by one gain, which keeps their polarization, then wavelets are added along the
+    /// directions in which the measure is attained; `settings.method` is not used. `nearly` accepts the best motion where
+    /// the tolerance is not reached.
+    ///
+    /// # Errors
+    /// As [`Record::horizontal_pair`]; if a setting is out of range, the measure is no measure over directions, the motion
+    /// does not move, or the tolerance is not reached.
+    pub fn matched_pair(
+        &self,
+        measure: Horizontals,
+        target: &TargetSpectrum,
+        named: &str,
+        settings: &Matching,
+        nearly: bool,
+    ) -> Result<(Self, MatchedPair), MotionError> {
+        if measure == Horizontals::GeometricMean {
+            let what =
+                "two components are matched over all directions, not by their geometric mean";
+            return Err(MotionError::mismatch(what.to_owned(), "choose rotd50 or rotd100"));
+        }
+        let (first, second) = self.horizontal_pair()?;
+        let names = [first.name.clone(), second.name.clone()];
+        let (first, second) = self.horizontals(&Processing::none())?;
+        let work = Work::new(target, settings, first.time_step())?;
+        let given = [&first, &second].map(|one| subdivided(one, settings.shortest).1);
+        let (periods, goals) = work.judged();
+        let now = spectrum(&work, measure, periods, &given);
+        let factor = mean_ratio(goals, &now);
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(MotionError::Zero {
+                measure: "the response spectrum".to_owned(),
+                motion: self.file.clone(),
+                target: "the target spectrum".to_owned(),
+            });
+        }
+        let scaled =
+            |one: &Vec<f64>| work.steady(&one.iter().map(|a| a * factor).collect::<Vec<f64>>());
+        let start = [scaled(&given[0])?, scaled(&given[1])?];
+        let (pair, matched) = match_pair(&work, start, measure, settings)?;
+        if !(nearly || matched.missed.is_empty()) {
+            let missed = missed_in_words(&matched.missed);
+            return Err(not_converged(matched.misfit, &missed, matched.rounds, settings));
+        }
+        let mut after = self.clone();
+        for channel in &mut after.channels {
+            channel.peaks.clear();
+            if let Some(side) = names.iter().position(|name| *name == channel.name) {
+                channel.acceleration.clone_from(&pair[side]);
+                channel.initial_velocity = 0.0;
+            } else {
+                let scaled = History::Sampled(channel.sampled()?.scaled(factor));
+                channel.acceleration = scaled.sampled(work.time_step)?.acceleration().to_vec();
+                channel.initial_velocity *= factor;
+            }
+            channel.time_step = work.time_step;
+        }
+        after.stage = Stage::Corrected;
+        after.notes.push(format!(
+            "{} and {}: scaled by {factor:.4} and matched together, {measure} to {named} from {} to {} s: misfit at most \
+             {:.2} % after {} rounds, ends closed",
+            names[0],
+            names[1],
+            settings.shortest,
+            settings.longest,
+            100.0 * matched.misfit,
+            matched.rounds
+        ));
+        if after.channels.len() > 2 {
+            after.notes.push(format!("all other components scaled by {factor:.4}"));
+        }
+        if !matched.missed.is_empty() {
+            after.notes.push(format!("the target is missed {}", missed_in_words(&matched.missed)));
         }
         Ok((after, matched))
     }

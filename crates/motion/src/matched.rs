@@ -36,24 +36,21 @@ pub struct Matched {
     pub first: MatchMethod,
 }
 
+/// How well two components, matched together, follow their target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MatchedPair {
+    /// As [`Matched::misfit`].
+    pub misfit: f64,
+    /// As [`Matched::missed`].
+    pub missed: Vec<Missed>,
+    /// Number of rounds.
+    pub rounds: usize,
+}
+
 impl Matched {
     /// Describes the missed ranges: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
     pub fn missed_in_words(&self) -> String {
-        let words = |missed: &Missed| {
-            let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
-            let periods = if from == to { from } else { format!("{from} to {to}") };
-            format!("by {:+.1} % at {periods} s", 100.0 * missed.misfit)
-        };
-        let mut sizes: Vec<f64> = self.missed.iter().map(|missed| missed.misfit.abs()).collect();
-        sizes.sort_by(|a, b| b.total_cmp(a));
-        let least = sizes.get(MOST_TOLD - 1).copied().unwrap_or(0.0);
-        let worst = self.missed.iter().filter(|missed| missed.misfit.abs() >= least);
-        let mut told: Vec<String> = worst.map(words).collect();
-        match self.missed.len() - told.len() {
-            0 => {}
-            rest => told.push(format!("by less at {rest} other ranges")),
-        }
-        told.join(", ")
+        missed_in_words(&self.missed)
     }
 
     /// Describes the domain of the match: "matched in …".
@@ -66,4 +63,23 @@ impl Matched {
             }
         }
     }
+}
+
+/// Describes missed ranges: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
+pub fn missed_in_words(all: &[Missed]) -> String {
+    let words = |missed: &Missed| {
+        let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));
+        let periods = if from == to { from } else { format!("{from} to {to}") };
+        format!("by {:+.1} % at {periods} s", 100.0 * missed.misfit)
+    };
+    let mut sizes: Vec<f64> = all.iter().map(|missed| missed.misfit.abs()).collect();
+    sizes.sort_by(|a, b| b.total_cmp(a));
+    let least = sizes.get(MOST_TOLD - 1).copied().unwrap_or(0.0);
+    let worst = all.iter().filter(|missed| missed.misfit.abs() >= least);
+    let mut told: Vec<String> = worst.map(words).collect();
+    match all.len() - told.len() {
+        0 => {}
+        rest => told.push(format!("by less at {rest} other ranges")),
+    }
+    told.join(", ")
 }

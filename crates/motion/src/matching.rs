@@ -109,19 +109,7 @@ impl GroundMotion {
         if matched.missed.is_empty() {
             return Ok(matched);
         }
-        Err(MotionError::NotConverged {
-            what: "spectral matching".to_owned(),
-            reached: format!(
-                "a misfit of {:.1} % ({})",
-                100.0 * matched.misfit,
-                matched.missed_in_words()
-            ),
-            rounds: matched.rounds,
-            wanted: format!("{:.1} %", 100.0 * settings.tolerance),
-            remedy: "start from a motion closer to the target, accept a larger tolerance, or take \
-                     the best motion as it is"
-                .to_owned(),
-        })
+        Err(not_converged(matched.misfit, &matched.missed_in_words(), matched.rounds, settings))
     }
 
     /// Matches as [`GroundMotion::match_spectrum`], but returns the best motion if the tolerance is not reached, with
@@ -134,25 +122,9 @@ impl GroundMotion {
         target: &TargetSpectrum,
         settings: &Matching,
     ) -> Result<Matched, MotionError> {
-        target.check()?;
         let sampled = self.horizontal.sampled(self.horizontal.natural_step())?;
-        check(settings, sampled.time_step())?;
+        let work = Work::new(target, settings, sampled.time_step())?;
         let (time_step, given) = subdivided(&sampled, settings.shortest);
-        let goals = |periods: &[f64]| periods.iter().map(|&t| target.acceleration(t)).collect();
-        let judged = judged_periods(settings, JUDGED);
-        let judged_goal: Vec<f64> = goals(&judged);
-        let checked = judged_periods(settings, CHECKED * JUDGED);
-        let checked_goal = goals(&checked);
-        let damping = target.damping();
-        // Remove drift below the longest matched period.
-        let chain = Processing {
-            high_pass: Some(0.25 / settings.longest),
-            pads: Pads::Removed,
-            close: true,
-            ..Processing::none()
-        };
-        let work =
-            Work { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain };
         let now = work.spectrum(&work.judged, &given);
         let factor = mean_ratio(&work.judged_goal, &now);
         if !(factor.is_finite() && factor > 0.0) {
@@ -188,6 +160,23 @@ impl GroundMotion {
     }
 }
 
+/// Refuses a motion that misses its target.
+pub(crate) fn not_converged(
+    misfit: f64,
+    missed: &str,
+    rounds: usize,
+    settings: &Matching,
+) -> MotionError {
+    MotionError::NotConverged {
+        what: "spectral matching".to_owned(),
+        reached: format!("a misfit of {:.1} % ({missed})", 100.0 * misfit),
+        rounds,
+        wanted: format!("{:.1} %", 100.0 * settings.tolerance),
+        remedy: "start from a motion closer to the target, accept a larger tolerance, or take the best motion as it is"
+            .to_owned(),
+    }
+}
+
 fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     let Matching { shortest, longest, tolerance, rounds, .. } = *settings;
     let least = 4.0 * time_step;
@@ -204,8 +193,8 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
 
 /// Returns the same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps per shortest period, so that
 /// wavelets and peaks are resolved.
-fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
-    let parts = (STEPS_A_PERIOD * motion.time_step() / shortest * (1.0 - 1e-9)).ceil().max(1.0);
+pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
+    let parts = parts(motion.time_step(), shortest);
     let a = motion.acceleration();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 5")]
     let count = parts as usize;
@@ -217,6 +206,11 @@ fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     }
     fine.extend(a.last());
     (motion.time_step() / parts, fine)
+}
+
+/// Returns the number of parts of a step (s) that make [`STEPS_A_PERIOD`].
+fn parts(time_step: f64, shortest: f64) -> f64 {
+    (STEPS_A_PERIOD * time_step / shortest * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
 /// Returns the number of intervals of [`PER_DECADE`] between the shortest and the longest period.
@@ -249,12 +243,12 @@ pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
 }
 
 /// Returns the geometric mean of target over spectrum.
-fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
+pub(crate) fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
     let sum: f64 = goal.iter().zip(now).map(|(g, n)| math::ln(g / n)).sum();
     math::exp(sum / goal.len() as f64)
 }
 
-fn misfit_of(goal: &[f64], now: &[f64]) -> f64 {
+pub(crate) fn misfit_of(goal: &[f64], now: &[f64]) -> f64 {
     goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
 }
 
@@ -270,7 +264,32 @@ pub(crate) struct Work<'a> {
     chain: Processing,
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    /// Returns the data of a match of a motion with this step (s), which [`subdivided`] divides.
+    pub(crate) fn new(
+        target: &'a TargetSpectrum,
+        settings: &Matching,
+        time_step: f64,
+    ) -> Result<Self, MotionError> {
+        target.check()?;
+        check(settings, time_step)?;
+        let goals = |periods: &[f64]| periods.iter().map(|&t| target.acceleration(t)).collect();
+        let judged = judged_periods(settings, JUDGED);
+        let judged_goal: Vec<f64> = goals(&judged);
+        let checked = judged_periods(settings, CHECKED * JUDGED);
+        let checked_goal = goals(&checked);
+        // Remove drift below the longest matched period.
+        let chain = Processing {
+            high_pass: Some(0.25 / settings.longest),
+            pads: Pads::Removed,
+            close: true,
+            ..Processing::none()
+        };
+        let time_step = time_step / parts(time_step, settings.shortest);
+        let damping = target.damping();
+        Ok(Self { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain })
+    }
+
     /// Returns pseudo-accelerations at some periods.
     fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
@@ -297,12 +316,26 @@ impl Work<'_> {
         misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
     }
 
+    /// Returns the judged periods (s) and their goals (m/s²).
+    pub(crate) fn judged(&self) -> (&[f64], &[f64]) {
+        (&self.judged, &self.judged_goal)
+    }
+
+    /// Returns the checked periods (s) and their goals (m/s²).
+    pub(crate) fn checked(&self) -> (&[f64], &[f64]) {
+        (&self.checked, &self.checked_goal)
+    }
+
     /// Returns the ranges where the spectrum lies outside the tolerance.
     fn missed(&self, acceleration: &[f64], tolerance: f64) -> Vec<Missed> {
-        let now = self.spectrum(&self.checked, acceleration);
+        self.missed_at(&self.spectrum(&self.checked, acceleration), tolerance)
+    }
+
+    /// Returns the ranges where a spectrum at the checked periods lies outside the tolerance.
+    pub(crate) fn missed_at(&self, now: &[f64], tolerance: f64) -> Vec<Missed> {
         let mut ranges: Vec<Missed> = Vec::new();
         let mut open = false;
-        for ((&period, n), g) in self.checked.iter().zip(&now).zip(&self.checked_goal) {
+        for ((&period, n), g) in self.checked.iter().zip(now).zip(&self.checked_goal) {
             let misfit = n / g - 1.0;
             if misfit.abs() <= tolerance {
                 open = false;
@@ -352,7 +385,7 @@ impl Work<'_> {
     }
 
     /// Removes drift and closes the ends.
-    fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
+    pub(crate) fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 

@@ -19,6 +19,8 @@ pub struct RotatedPeak {
     pub smallest: f64,
     /// Direction of the largest, degrees from the first component towards the second, 0 to 179.
     pub angle: f64,
+    /// Directions of the two middle responses, whose mean is the median, as `angle`.
+    pub median_angles: [f64; 2],
 }
 
 impl RotatedPeak {
@@ -55,12 +57,15 @@ pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     }
     let angle = (0..DIRECTIONS).fold(0, |best, k| if peaks[k] > peaks[best] { k } else { best });
     let largest = peaks[angle];
-    peaks.sort_by(f64::total_cmp);
+    let mut order: Vec<usize> = (0..DIRECTIONS).collect();
+    order.sort_by(|a, b| peaks[*a].total_cmp(&peaks[*b]));
+    let middle = [order[DIRECTIONS / 2 - 1], order[DIRECTIONS / 2]];
     RotatedPeak {
-        median: 0.5 * (peaks[DIRECTIONS / 2 - 1] + peaks[DIRECTIONS / 2]),
+        median: 0.5 * (peaks[middle[0]] + peaks[middle[1]]),
         largest,
-        smallest: peaks[0],
+        smallest: peaks[order[0]],
         angle: angle as f64,
+        median_angles: middle.map(|degree| degree as f64),
     }
 }
 

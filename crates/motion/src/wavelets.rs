@@ -27,7 +27,7 @@ const BAND: f64 = 0.6;
 /// Minimum number of lines per period of a wavelet in the response of oscillators.
 const WAVELET_LINES: f64 = 40.0;
 /// Logarithm of the decay after which a free vibration is neglected.
-const FORGOTTEN: f64 = 7.0;
+pub(crate) const FORGOTTEN: f64 = 7.0;
 /// Ratio below which two periods are too close for separate wavelets.
 const NEIGHBOR: f64 = 1.006;
 
@@ -376,9 +376,9 @@ fn extrema(
 }
 
 /// A tapered cosine whose oscillator has a response peak at a given sample.
-struct Wavelet {
-    first: usize,
-    values: Vec<f64>,
+pub(crate) struct Wavelet {
+    pub(crate) first: usize,
+    pub(crate) values: Vec<f64>,
     /// Number of samples that a line may span in the response of oscillators.
     stride: usize,
 }
@@ -386,7 +386,7 @@ struct Wavelet {
 impl Wavelet {
     /// Creates `cos(w' (t - t_j + Δt)) exp(-((t - t_j + Δt)/γ)²)` with `w' = w √(1-ξ²)`,
     /// `Δt = atan(√(1-ξ²)/ξ)/w'` and `γ = 1.178 f^-0.93` (Al Atik and Abrahamson 2010).
-    fn new(period: f64, work: &Work<'_>, peak: usize, n: usize) -> Self {
+    pub(crate) fn new(period: f64, work: &Work<'_>, peak: usize, n: usize) -> Self {
         let Work { damping, time_step, .. } = *work;
         let q = (1.0 - damping * damping).sqrt();
         let w = TAU / period * q;

@@ -6,7 +6,8 @@ use barrelstack::scenario::{Dimension, Quantity};
 use barrelstack_motion::{
     AccelerationUnit, Channel, Component, FORMATS, GroundMotion, Horizontals, IntensityMeasure,
     MatchMethod, Matching, MeanRemoval, MotionError, Pads, Processing, ReadOptions,
-    ResponseSpectrum, Stage, TargetSpectrum, Utc, bundled, read, rotated_spectrum, write,
+    ResponseSpectrum, Stage, TargetSpectrum, Utc, bundled, missed_in_words, read, rotated_spectrum,
+    write,
 };
 use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -248,7 +249,7 @@ impl Record {
         Ok(record.into())
     }
 
-    /// Returns the record with one component matched to a target, the misfit, and a description of the remaining
+    /// Returns the record with one component, or both horizontals over all directions, matched to a target, the misfit, and a description of the remaining
     /// misfits.
     #[expect(
         clippy::too_many_arguments,
@@ -277,10 +278,16 @@ impl Record {
         let method = if frequency { MatchMethod::Frequency } else { MatchMethod::Time };
         let (shortest, longest) = periods;
         let settings = Matching { method, shortest, longest, tolerance, ..Matching::default() };
-        let place = self.find(of)?;
-        let found = py.detach(|| self.inner.matched(place, &target, &named, &settings, nearly));
-        let (record, found) = found.map_err(errors::motion)?;
-        Ok((record.into(), found.misfit, found.missed_in_words()))
+        let found = if let Ok(measure) = of.parse::<Horizontals>() {
+            py.detach(|| self.inner.matched_pair(measure, &target, &named, &settings, nearly))
+                .map(|(record, found)| (record, found.misfit, found.missed))
+        } else {
+            let place = self.find(of)?;
+            py.detach(|| self.inner.matched(place, &target, &named, &settings, nearly))
+                .map(|(record, found)| (record, found.misfit, found.missed))
+        };
+        let (record, misfit, missed) = found.map_err(errors::motion)?;
+        Ok((record.into(), misfit, missed_in_words(&missed)))
     }
 
     /// Returns a measure of every component (SI), with its unit; NaN where the component is too short for it.

@@ -105,6 +105,8 @@ def test_a_match_follows_its_target(napa: Record) -> None:
     assert "a table (2 periods" in " ".join(own.notes)
     with pytest.raises(RecordError, match="ec8: site"):
         napa.match("ec8:ag=0.3")
+    both = napa.match("asce7:sds=0.6,sd1=0.4", of="rotd100", periods=(0.2, 2.0), tolerance=0.1)
+    assert "matched together, rotd100" in " ".join(both.notes)
 
 
 def test_files_of_agencies_are_read(strong_motion: Path) -> None:

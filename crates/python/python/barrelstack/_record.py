@@ -504,7 +504,7 @@ class Record:
         tolerance: float = 0.05,
         nearly: bool = False,
     ) -> Record:
-        """Matches one component to a target spectrum; all others are multiplied by its first scaling.
+        """Matches one component, or both horizontals, to a target spectrum; all others take the first scaling.
 
         Parameters
         ----------
@@ -513,11 +513,12 @@ class Record:
             ``"nch2745:zone=2,soil=II"``, ``"nzs1170:z=0.3,site=C"``, ``"ac156:sds=1"`` (accelerations in g); or
             periods (s, ascending) and pseudo-accelerations (m/s²).
         of
-            The component that is matched.
+            The component that is matched; ``"rotd50"`` and ``"rotd100"`` match both horizontals together, by their response
+            over all directions.
         damping
             Damping ratio of a numerical target.
         method
-            ``"time"``: wavelets at the peak responses; ``"frequency"``: Fourier amplitudes, phases kept.
+            Of one component: ``"time"``, wavelets at the peak responses; ``"frequency"``, Fourier amplitudes, phases kept.
         periods
             Shortest and longest period (s) that are matched.
         tolerance

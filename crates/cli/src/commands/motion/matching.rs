@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use anyhow::{anyhow, bail};
 use barrelstack::scenario::Dimension;
 use barrelstack_motion::{
-    Channel, MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum, response,
+    Horizontals, MatchMethod, Matching, MotionError, Record, STANDARD_GRAVITY, TargetSpectrum,
+    missed_in_words, response, rotated_spectrum,
 };
 
 use super::input::{self, Chain, Choice, Input, quantity};
@@ -31,11 +32,12 @@ pub(super) struct MatchArgs {
     /// The target spectrum, at 5 % damping unless it says another; the list is below.
     #[arg(long, value_name = "TARGET")]
     to: String,
-    /// The component that is matched; the first horizontal if none is named. All other components
-    /// take its first scaling only.
+    /// The component that is matched; the first horizontal if none is named. `rotd50` and `rotd100` match
+    /// both horizontals together, by their response over all directions. All other components take the first
+    /// scaling only.
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// How the motion is changed.
+    /// How one component is changed; both together take amplitudes first, then wavelets.
     #[arg(long, value_enum, default_value_t = Method::Time)]
     method: Method,
     /// Shortest period matched.
@@ -85,19 +87,17 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     };
     let read = args.input.read()?;
     let before = args.choice.take(&read, Chain::Default)?;
-    let place = place(args, &before)?;
-    let (after, missed) = matched(args, &before, place, &spectrum, &settings)?;
+    let part = Part::of(args, &before)?;
+    let (after, missed) = matched(args, &before, &part, &spectrum, &settings)?;
     let measured = measures::before_after(&before, &after)?;
-    let compared =
-        comparison([&before, &after].map(|record| &record.channels[place]), &spectrum, &settings)?;
+    let compared = comparison(&part, [&before, &after], &spectrum, &settings)?;
     let mut lines = measured.lines();
     lines.push(String::new());
     lines.extend(compared.lines());
     super::change::finish(&target, &read, &after, lines)?;
     if let Some(figure) = &args.figure {
-        let one = |record| panels::only(record, place);
-        let drawn = panels::compared(&one(&before)?, &one(&after)?, Some(&spectrum))?;
-        let name = &before.channels[place].name;
+        let drawn = panels::compared(&part.alone(&before)?, &part.alone(&after)?, Some(&spectrum))?;
+        let name = part.name(&before)?;
         let headline = match &missed {
             None => format!(
                 "The spectrum of {name} follows {} within {}.",
@@ -123,15 +123,71 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Returns the index of the channel to match.
-fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
-    let Some(name) = &args.of else {
-        return Ok(record.channels.iter().position(|c| !c.is_vertical()).unwrap_or(0));
-    };
-    let channel = record.component(&input::component(record, name)?)?;
-    match record.channels.iter().position(|other| other.name == channel.name) {
-        Some(place) => Ok(place),
-        None => bail!("--of {name}: choose it with --component {name} first"),
+/// What of a record is matched.
+enum Part {
+    /// The channel with this index.
+    One(usize),
+    /// Both horizontals, over all directions.
+    Pair(Horizontals),
+}
+
+impl Part {
+    fn of(args: &MatchArgs, record: &Record) -> anyhow::Result<Self> {
+        let Some(name) = &args.of else {
+            let first = record.channels.iter().position(|c| !c.is_vertical());
+            return Ok(Self::One(first.unwrap_or(0)));
+        };
+        if let Ok(measure) = name.parse() {
+            record.horizontal_pair().map_err(|error| anyhow!("--of {name}: {error}"))?;
+            return Ok(Self::Pair(measure));
+        }
+        let channel = record.component(&input::component(record, name)?)?;
+        match record.channels.iter().position(|other| other.name == channel.name) {
+            Some(place) => Ok(Self::One(place)),
+            None => bail!("--of {name}: choose it with --component {name} first"),
+        }
+    }
+
+    /// Names it in a sentence.
+    fn name(&self, record: &Record) -> anyhow::Result<String> {
+        Ok(match self {
+            Self::One(place) => record.channels[*place].name.clone(),
+            Self::Pair(measure) => {
+                let (first, second) = record.horizontal_pair()?;
+                format!("{} and {} ({measure})", first.name, second.name)
+            }
+        })
+    }
+
+    /// Returns the record without all other components.
+    fn alone(&self, record: &Record) -> anyhow::Result<Record> {
+        match self {
+            Self::One(place) => panels::only(record, *place),
+            Self::Pair(_) => {
+                let (first, second) = record.horizontal_pair()?;
+                Ok(Record { channels: vec![first.clone(), second.clone()], ..record.clone() })
+            }
+        }
+    }
+
+    /// Returns the pseudo-acceleration (m/s²) at a period (s).
+    fn response(&self, record: &Record, period: f64, damping: f64) -> anyhow::Result<f64> {
+        match self {
+            Self::One(place) => {
+                let channel = &record.channels[*place];
+                let peaks = response(channel.time_step, &channel.acceleration, period, damping)?;
+                Ok(peaks.pseudo_acceleration)
+            }
+            Self::Pair(measure) => {
+                let (one, two) = record.horizontal_pair()?;
+                let (a, b) = (&one.acceleration, &two.acceleration);
+                let peaks = rotated_spectrum(one.time_step, a, b, &[period], damping)?;
+                let all_directions = |large: bool| {
+                    peaks.iter().map(|peak| if large { peak.largest } else { peak.median }).sum()
+                };
+                Ok(all_directions(*measure == Horizontals::RotD100))
+            }
+        }
     }
 }
 
@@ -139,12 +195,20 @@ fn place(args: &MatchArgs, record: &Record) -> anyhow::Result<usize> {
 fn matched(
     args: &MatchArgs,
     before: &Record,
-    place: usize,
+    part: &Part,
     spectrum: &TargetSpectrum,
     settings: &Matching,
 ) -> anyhow::Result<(Record, Option<String>)> {
-    let done = before.matched(place, spectrum, &args.to, settings, args.accept_misfit);
-    let (after, matched) = done.map_err(|error| match error {
+    let nearly = args.accept_misfit;
+    let done = match part {
+        Part::One(place) => before
+            .matched(*place, spectrum, &args.to, settings, nearly)
+            .map(|(after, matched)| (after, matched.missed)),
+        Part::Pair(measure) => before
+            .matched_pair(*measure, spectrum, &args.to, settings, nearly)
+            .map(|(after, matched)| (after, matched.missed)),
+    };
+    let (after, missed) = done.map_err(|error| match error {
         MotionError::NotConverged { .. } => anyhow!("{error}: add --accept-misfit"),
         other @ (MotionError::Parameter { .. }
         | MotionError::NotScalable { .. }
@@ -152,13 +216,13 @@ fn matched(
         | MotionError::NoChannel { .. }
         | MotionError::Mismatch { .. }) => other.into(),
     })?;
-    let missed = (!matched.missed.is_empty()).then(|| matched.missed_in_words());
-    Ok((after, missed))
+    Ok((after, (!missed.is_empty()).then(|| missed_in_words(&missed))))
 }
 
 /// Tabulates spectra before, after and required at some periods.
 fn comparison(
-    [before, after]: [&Channel; 2],
+    part: &Part,
+    [before, after]: [&Record; 2],
     spectrum: &TargetSpectrum,
     settings: &Matching,
 ) -> anyhow::Result<Table> {
@@ -167,10 +231,7 @@ fn comparison(
         Table::new(0, ["period (s)", "target Sa (g)", "before (g)", "after (g)", "misfit"]);
     let within = |period: &&f64| (settings.shortest..=settings.longest).contains(*period);
     for period in [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0].iter().filter(within) {
-        let at = |channel: &Channel| {
-            response(channel.time_step, &channel.acceleration, *period, damping)
-                .map(|peaks| peaks.pseudo_acceleration)
-        };
+        let at = |record| part.response(record, *period, damping);
         let (goal, old, new) = (spectrum.acceleration(*period), at(before)?, at(after)?);
         table.row([
             format!("{period}"),

@@ -104,7 +104,8 @@ pub(super) fn compared(
         channels.push((format!("{} before", old.name), old));
         channels.push((format!("{} after", new.name), new));
     }
-    rows.push(vec![response(&channels, None, target)?, fourier(&channels, &[])]);
+    let pair = target.filter(|_| after.channels.len() > 1).map(|_| after);
+    rows.push(vec![response(&channels, pair, target)?, fourier(&channels, &[])]);
     Ok(figure(after, "before-after", "before and after", rows))
 }
 
