@@ -35,7 +35,7 @@ fn misfit(record: &Record, measure: Horizontals, target: &TargetSpectrum) -> f64
             .unwrap();
     let of = |peak: &barrelstack_motion::RotatedPeak| match measure {
         Horizontals::RotD100 => peak.largest,
-        _ => peak.median,
+        Horizontals::RotD50 | Horizontals::GeometricMean => peak.median,
     };
     let each = spectrum.iter().zip(&periods);
     each.map(|(peak, period)| (of(peak) / target.acceleration(*period) - 1.0).abs())
