@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::bundle::Bundle;
 use crate::steps::cargo;
 use crate::{browser, python, web};
 
@@ -46,12 +47,18 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
                  CHANGELOG.md",
         pages: None,
     };
-    let own = std::env::current_exe().map(Command::new);
+    let own = || std::env::current_exe().map(Command::new).map_err(|error| error.to_string());
+    let bundle = Extra {
+        name: "cargo xtask bundle check",
+        command: Bundle::find(root)
+            .and_then(|_| own())
+            .map(|command| with(command, &["bundle", "check"])),
+        remedy: "run `cargo xtask bundle` and commit what it writes",
+        pages: None,
+    };
     let web = Extra {
         name: "cargo xtask web",
-        command: web::Build::find(root)
-            .and_then(|_| own.map_err(|error| error.to_string()))
-            .map(|command| with(command, &["web"])),
+        command: web::Build::find(root).and_then(|_| own()).map(|command| with(command, &["web"])),
         remedy: "see the error above",
         pages: None,
     };
@@ -78,7 +85,12 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
                  OpenQuake, Dask and Slurm",
         pages: None,
     };
-    [licenses, oldest, web].into_iter().chain([package]).chain(engine).chain(reports).collect()
+    [licenses, oldest, bundle, web]
+        .into_iter()
+        .chain([package])
+        .chain(engine)
+        .chain(reports)
+        .collect()
 }
 
 fn with(mut command: Command, words: &[&str]) -> Command {

@@ -6,6 +6,7 @@
 )]
 
 mod browser;
+mod bundle;
 mod extra;
 mod lines;
 mod python;
@@ -24,6 +25,7 @@ tasks:
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
   web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
+  bundle     packs what pages use of three.js, with esbuild; `check` compares it with the one that is kept
   python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
              `heavy` also those that need ObsPy, OpenQuake, Dask and Slurm; `site` the site alone
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
@@ -38,6 +40,8 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["test"] => status(steps::test().map(done)),
         ["golden"] => status(steps::golden()),
+        ["bundle"] => status(steps::bundle(bundle::Bundle::write).map(done)),
+        ["bundle", "check"] => status(steps::bundle(bundle::Bundle::check).map(done)),
         ["web"] => status(steps::web().map(done)),
         ["lines"] => status(lines::list(&steps::root()).map(done)),
         ["python", rest @ ..] if matches!(rest, [] | ["heavy" | "site"]) => {

@@ -9,6 +9,7 @@ use std::time::Instant;
 use anyhow::{Context as _, bail};
 
 use crate::browser;
+use crate::bundle::Bundle;
 use crate::extra;
 use crate::tally::Tally;
 use crate::web;
@@ -112,6 +113,11 @@ pub(crate) fn test() -> anyhow::Result<()> {
 pub(crate) fn web() -> anyhow::Result<()> {
     let build = web::Build::find(&root()).map_err(anyhow::Error::msg)?;
     build.run()
+}
+
+/// Packs the bundle of three.js, or compares it.
+pub(crate) fn bundle(use_it: fn(&Bundle) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    use_it(&Bundle::find(&root()).map_err(anyhow::Error::msg)?)
 }
 
 /// Keeps how all report pages look now.

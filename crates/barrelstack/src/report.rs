@@ -1,5 +1,6 @@
 //! The report of a run: its sections, their order and their wording.
 
+mod depth;
 mod drawing;
 mod glossary;
 mod inputs;

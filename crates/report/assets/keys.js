@@ -10,7 +10,10 @@ const KEYS = [
   ["N P F", "names, paths, forces"],
   ["T G", "tint by stress, other runs over this one"],
   ["+ − 0", "closer, farther, the whole picture"],
-  ["W A S D", "moves the picture; so does dragging it"],
+  ["W A S D", "moves the picture, or turns it in three dimensions; so does dragging it"],
+  ["V", "three dimensions or the flat picture, where there are both"],
+  ["1 2 3 4", "in three dimensions, from the corner, across the barrels, along them, from above"],
+  ["Shift W A S D", "in three dimensions, moves what the other keys turn"],
   ["Shift F", "full screen and back"],
   ["?", "these keys"],
 ];
@@ -22,7 +25,7 @@ function makePanel(dialog) {
     const caps = keys.split(" ").flatMap((key) => [make("kbd", {}, key), " "]);
     list.append(make("dt", {}, ...caps), make("dd", {}, words));
   }
-  const hint = make("p", {}, "Ctrl and the wheel, or two fingers, zoom; a double click shows the whole picture again. Over an arrow the pointer shows its force.");
+  const hint = make("p", {}, "Ctrl and the wheel, or two fingers, zoom; a double click shows the whole picture again. In three dimensions one finger turns, and a tap names a body. Over an arrow the pointer shows its force.");
   dialog.querySelector("form").before(list, hint);
   return () => (dialog.open ? dialog.close() : dialog.showModal());
 }

@@ -39,19 +39,23 @@ function makeLens(screen, stages, changed) {
       const [a, b] = [...held.values()];
       return { wide: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1, at: [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])] };
     };
-    canvas.addEventListener("wheel", (event) => {
+    // In three dimensions the canvas has an eye of its own.
+    const on = (name, action) => canvas.addEventListener(name, (event) => {
+      if (!screen.classList.contains("deep")) action(event);
+    }, { passive: false });
+    on("wheel", (event) => {
       // Alone the wheel scrolls the page; with Ctrl, as pads send a pinch, it zooms.
       if (!(event.ctrlKey || event.metaKey || document.fullscreenElement)) return;
       event.preventDefault();
       zoom(stage, Math.exp(-event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002)), ...place(event));
-    }, { passive: false });
-    canvas.addEventListener("pointerdown", (event) => {
+    });
+    on("pointerdown", (event) => {
       held.set(event.pointerId, place(event));
       stage.hover = place(event);
       changed();
       if (event.pointerType !== "touch" || screen.classList.contains("zoomed")) canvas.setPointerCapture(event.pointerId);
     });
-    canvas.addEventListener("pointermove", (event) => {
+    on("pointermove", (event) => {
       const was = held.get(event.pointerId), now = place(event);
       stage.hover = now;
       if (!was) return changed();
@@ -66,12 +70,12 @@ function makeLens(screen, stages, changed) {
         pan(stage, now[0] - was[0], now[1] - was[1]);
       }
     });
-    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => held.delete(event.pointerId));
-    canvas.addEventListener("pointerleave", () => {
+    for (const name of ["pointerup", "pointercancel"]) on(name, (event) => held.delete(event.pointerId));
+    on("pointerleave", () => {
       stage.hover = null;
       changed();
     });
-    canvas.addEventListener("dblclick", reset);
+    on("dblclick", reset);
   }
 
   return {

@@ -31,6 +31,7 @@ if (board.player) {
 }
 
 listenEverywhere(players);
+const deep = Promise.all(players.map((player) => player.views.start()));
 if (board.player) {
   const linked = linkedTime();
   if (linked !== null) board.player.seek(linked);
@@ -145,6 +146,6 @@ for (const table of document.querySelectorAll(".table > table")) {
   })));
 }
 
-window.barrelstack = { player: board.player, players, plots: board.plots, opened: null };
+window.barrelstack = { player: board.player, players, plots: board.plots, opened: null, deep };
 // Time (ms) from the start of loading to the first picture on the screen.
 requestAnimationFrame(() => setTimeout(() => { window.barrelstack.opened = performance.now(); }));

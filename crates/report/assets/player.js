@@ -6,7 +6,8 @@ function readPane(raw, dashes) {
   const times = unpack(raw.times)[0];
   const tint = raw.tint && { ...raw.tint, values: unpack(raw.tint.v) };
   const ghosts = raw.ghosts && { ...raw.ghosts, ways: unpack(raw.ghosts.ways), ends: unpack(raw.ghosts.ends) };
-  return { ...raw, dashes, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
+  const depth = raw.depth && { ...raw.depth, poses: raw.depth.poses && unpack(raw.depth.poses) };
+  return { ...raw, dashes, depth, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }
 
 // `earlier` holds the panes of an earlier run, to be drawn over these under the name of `raw.overlay`. Nothing is drawn
@@ -169,7 +170,17 @@ function makePlayer(raw, figure, dashes, earlier) {
   act("fullscreen").hidden = !document.fullscreenEnabled;
   screen.addEventListener("fullscreenchange", () => refresh());
   const lens = makeLens(screen, panes.map(({ stage }) => stage), () => show(frame));
-  buttons.whole = lens.reset;
+  const views = makeViews(screen, panes, act, () => show(frame), () => refresh());
+  const step = 40; // px
+  // The keys that move the picture move the eye in three dimensions.
+  const whole = () => (views.isDeep() ? views.eye.go("corner") : lens.reset());
+  const zoom = (by) => (views.isDeep() ? views.eye.zoom(by) : lens.zoom(by));
+  const pan = (dx, dy) => (shift) => {
+    if (!views.isDeep()) lens.pan(dx, dy);
+    else if (shift) views.eye.pan(dx, dy);
+    else views.eye.turn((-TURN * dx) / step, (TURN * dy) / step);
+  };
+  buttons.whole = whole;
   for (const [name, action] of Object.entries(buttons)) act(name).addEventListener("click", action);
   const onStages = (change) => {
     for (const pane of panes) change(pane.stage);
@@ -204,7 +215,6 @@ function makePlayer(raw, figure, dashes, earlier) {
     select.dispatchEvent(new Event("change"));
   }
   const click = (name) => () => { if (!act(name).closest("[hidden]")) act(name).click(); };
-  const step = 40; // px
   listen(screen, {
     " ": toggle,
     ArrowLeft: (shift) => stepTo(frame - (shift ? 10 : 1)),
@@ -219,8 +229,10 @@ function makePlayer(raw, figure, dashes, earlier) {
     },
     m: click("moment"), f: click("forces"), n: click("names"), p: click("traces"), t: click("tint"), g: click("ghosts"),
     F: click("fullscreen"), "?": click("keys"),
-    "+": () => lens.zoom(1.25), "=": () => lens.zoom(1.25), "-": () => lens.zoom(0.8), 0: lens.reset,
-    w: () => lens.pan(0, step), s: () => lens.pan(0, -step), a: () => lens.pan(step, 0), d: () => lens.pan(-step, 0),
+    "+": () => zoom(1.25), "=": () => zoom(1.25), "-": () => zoom(0.8), 0: whole, v: views.toggle,
+    w: pan(0, step), s: pan(0, -step), a: pan(step, 0), d: pan(-step, 0),
+    W: pan(0, step), S: pan(0, -step), A: pan(step, 0), D: pan(-step, 0),
+    ...Object.fromEntries(Object.keys(PRESETS).map((name, at) => [at + 1, () => { if (views.isDeep()) views.eye.go(name); }])),
   });
   let dragging = false;
   const toPointer = (event) => {
@@ -261,7 +273,7 @@ function makePlayer(raw, figure, dashes, earlier) {
     times: () => Array.from(times),
     poses: () => (lead ? lead.poses() : []),
     forces: () => (lead ? lead.forces() : []),
-    panes, isPlaying: () => playing,
+    panes, views, isPlaying: () => playing,
     rate: () => rate.fps,
     id: raw.id,
   };
@@ -275,18 +287,20 @@ function makePane(data, box) {
   const end = data.count > 0 ? data.times[data.count - 1] : 0;
   let shown = 0, said = null;
   return {
-    data, stage,
+    data, stage, deep: null, section: box.closest(".pane") ?? box,
     // While the player opens, the moment has its callout and nothing is announced.
     show(k, time, opens) {
+      const drawn = stage.deep && this.deep ? this.deep : stage, told = drawn === stage ? data : { ...data, ...data.depth };
       shown = Math.min(Math.max(k, 0), Math.max(0, data.count - 1));
       const own = data.count > 0 ? data.times[shown] : 0;
-      stage.callout = data.moment && time >= data.moment.t - (opens ? BEFORE : 1e-6) && time < data.moment.t + 0.8;
-      stage.draw(shown, own);
+      const { moment } = told;
+      stage.callout = moment && time >= moment.t - (opens ? BEFORE : 1e-6) && time < moment.t + 0.8;
+      drawn.draw(shown, own);
       // A run that ended holds its last frame and says so.
       const ended = time > end + 0.02;
       clock.textContent = ended ? `ended at ${end.toFixed(2)}\u00a0s` : `${own.toFixed(2)}\u00a0s`;
       clock.classList.toggle("ended", ended);
-      const current = currentEvents(data, time);
+      const current = currentEvents(told, time);
       const event = current.length > 0 && !opens ? current[current.length - 1] : null;
       if (event !== said) {
         said = event;
@@ -300,9 +314,13 @@ function makePane(data, box) {
 }
 
 // Sizes all stages of a player alike.
-function fitStages(panes, figure) {
+function fitStages(all, figure) {
   const screen = figure.querySelector(".screen");
-  for (const { stage } of panes) stage.retheme();
+  const panes = all.filter(({ section }) => !section.hidden);
+  for (const { stage, deep } of panes) {
+    stage.retheme();
+    deep?.retheme();
+  }
   const [first] = panes;
   if (!first) return;
   // A player that opens the page fills the first screen, controls included; others take less.

@@ -38,6 +38,10 @@ function makeStage(data, canvas) {
     // The largest scale (px/m) that may be drawn to: panes side by side are drawn to one.
     most: Infinity,
     canvas, draw, resize, retheme, viewAt, scale,
+    paint: () => paint,
+    measures: () => ({ width, height, dpr }),
+    // Whether it is drawn in three dimensions, which need more room than a slender picture.
+    deep: false,
     // The point of the canvas (px) about which the view is, and the size of the view (m).
     origin: () => [0.5 * width, height - FOOT],
     size: () => [right - left, top - bottom],
@@ -55,7 +59,8 @@ function makeStage(data, canvas) {
   // `most` is the height (px) that there is room for, all of which is taken on the `full` screen.
   function resize(most, full) {
     width = Math.max(120, Math.floor(canvas.parentElement.getBoundingClientRect().width));
-    const wanted = (width * (top - bottom)) / (right - left) + FOOT + stage.head;
+    const own = (width * (top - bottom)) / (right - left) + FOOT + stage.head;
+    const wanted = stage.deep ? Math.max(own, 0.8 * width) : own;
     height = Math.round(full ? most : Math.min(most, 640, Math.max(wanted, 220)));
     dpr = Math.min(window.devicePixelRatio || 1, 3);
     canvas.width = Math.round(width * dpr);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    Frames, Scene, Tint,
+    Depth, DepthPoses, Frames, Scene, Tint,
     drawing::{Anchor, Drawing},
     number, raster,
     strip::{View, define_bodies, picture},
@@ -87,7 +87,11 @@ impl Scene {
             values: kept.iter().filter_map(|at| tint.values.get(*at).cloned()).collect(),
             ..tint.clone()
         });
-        Self { frames, tint, ..self.clone() }
+        let mut depth = self.depth.clone();
+        if let Some(Depth { poses: DepthPoses::Free(poses), .. }) = &mut depth {
+            *poses = kept.iter().filter_map(|at| poses.get(*at).cloned()).collect();
+        }
+        Self { frames, tint, depth, ..self.clone() }
     }
 }
 

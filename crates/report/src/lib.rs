@@ -37,6 +37,7 @@
 
 mod animation;
 pub mod column;
+mod depth;
 pub mod described;
 mod diagram;
 mod document;
@@ -76,6 +77,7 @@ mod trial;
 mod vtk;
 
 pub use animation::Animation;
+pub use depth::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Pose3, Volume};
 pub use diagram::{Arrow, Diagram};
 pub use document::{Block, Document, Tone, Verdict, Word};
 pub use envelope::{BoundarySample, Envelope};

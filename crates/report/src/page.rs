@@ -17,8 +17,13 @@ const UPLOT_CSS: &str = include_str!("../assets/vendor/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
 const UPLOT_LICENSE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
+/// three.js, of which `cargo xtask bundle` packs what the stage in three dimensions uses.
+const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
+const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
+
 /// The player's scripts, in order of dependency.
-const PLAYER: [&str; 12] = [
+const PLAYER: [&str; 17] = [
+    include_str!("../assets/held.js"),
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
     include_str!("../assets/tint.js"),
@@ -29,6 +34,10 @@ const PLAYER: [&str; 12] = [
     include_str!("../assets/lens.js"),
     include_str!("../assets/moment.js"),
     include_str!("../assets/keys.js"),
+    include_str!("../assets/solids.js"),
+    include_str!("../assets/orbit.js"),
+    include_str!("../assets/deep.js"),
+    include_str!("../assets/views.js"),
     include_str!("../assets/link.js"),
     include_str!("../assets/player.js"),
 ];
@@ -40,9 +49,6 @@ const REPORT: [&str; 2] = [include_str!("../assets/plots.js"), include_str!("../
 /// no further request.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; \
                       img-src data: blob:";
-
-/// The script that unpacks embedded data.
-const HELD: &str = include_str!("../assets/held.js");
 
 /// The policy of a page with an embedded program: it may run it, also in workers.
 const PROGRAM_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
@@ -116,6 +122,13 @@ impl Payload {
         self.columns.len() - 1
     }
 
+    /// Returns `true` if a pane of a player is known in three dimensions.
+    fn has_depth(&self) -> bool {
+        let mut panes =
+            self.players.iter().filter_map(|player| player["panes"].as_array()).flatten();
+        panes.any(|pane| pane["depth"].is_object())
+    }
+
     /// Writes the data as JSON.
     pub(crate) fn into_json(self) -> String {
         json!({
@@ -149,6 +162,7 @@ pub(crate) fn assemble(
     trial: Option<&Trial<'_>>,
 ) -> String {
     let live = !payload.plots.is_empty();
+    let deep = payload.has_depth();
     // Static tables and figures need the scripts, too, which save and copy them.
     let scripted = live
         || trial.is_some()
@@ -171,12 +185,16 @@ pub(crate) fn assemble(
         let license = UPLOT_LICENSE.replace("*/", "* /");
         let _ = writeln!(out, "<script>\n/*\n{}\n*/\n{UPLOT_JS}\n</script>", license.trim());
     }
+    if deep {
+        let script = format!("/*\n{}\n*/\n{THREE_JS}", THREE_LICENSE.trim());
+        hold(&mut out, "text/plain", "three", &pack::gzip_letters(script.as_bytes()));
+    }
     if let Some(Trial { page, start }) = trial {
         hold(&mut out, "text/plain", "trial-page", &pack::gzip_letters(page.as_bytes()));
         hold(&mut out, "application/json", "trial-start", &json_in_script(start));
     }
     if scripted {
-        let tried = trial.map(|_| [HELD, trial::SCRIPT]).into_iter().flatten();
+        let tried = trial.map(|_| trial::SCRIPT);
         let scripts: String = PLAYER.into_iter().chain(REPORT).chain(tried).collect();
         out += &strict(&scripts);
     }
@@ -230,7 +248,7 @@ impl Shell<'_> {
             hold(&mut out, "text/plain", id, &pack::gzip_letters(bytes));
         }
         hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
-        let player: String = PLAYER.into_iter().chain([HELD]).map(lean).collect();
+        let player: String = PLAYER.into_iter().map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
         // In a block of its own, so that constants may have the names of the player's.
         out += &strict(&format!("{player}{{\n{own}}}\n"));

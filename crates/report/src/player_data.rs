@@ -5,8 +5,8 @@ use std::cmp::Ordering;
 use serde_json::{Value, json};
 
 use crate::{
-    ContactForce, Ghosts, History, Moment, Player, Players, Point, Polyline, Pose2, Scene, Tint,
-    Trace,
+    ContactForce, Event, Ghosts, History, Moment, Player, Players, Point, Polyline, Pose2, Scene,
+    Tint, Trace,
     pack::{self, POSE_QUANTUM, TIME_QUANTUM},
     scene::{Extent, window},
     simplify::simplify,
@@ -118,19 +118,6 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         }
     }
     let times = vec![scene.frames.times[..count].to_vec()];
-    let events: Vec<Value> = scene
-        .events
-        .iter()
-        .filter(|event| event.time.is_finite())
-        .map(|event| {
-            json!({
-                "t": event.time,
-                "body": event.body.filter(|b| *b < scene.bodies.len()),
-                "kind": event.kind.class(),
-                "text": event.text,
-            })
-        })
-        .collect();
     let traces: Vec<Value> = traces
         .iter()
         .filter(|t| t.body < scene.bodies.len() && t.point.iter().all(|v| v.is_finite()))
@@ -155,13 +142,27 @@ fn pane(mark: &str, scene: &Scene, traces: &[Trace], view: &Extent) -> Value {
         "times": pack::channels(&times, count, TIME_QUANTUM),
         "poses": pack::channels(&channels, count, POSE_QUANTUM),
         "forces": forces(&scene.frames.forces, count),
-        "events": events,
+        "events": events(&scene.events, scene.bodies.len()),
         "traces": traces,
         "moment": moment,
         "ghosts": scene.ghosts.as_ref().map(|ghosts| self::ghosts(ghosts, scene.bodies.len())),
         "tint": scene.tint.as_ref().map(|tint| self::tint(tint, scene.bodies.len(), count)),
+        "depth": scene.depth.as_ref().map(|depth| depth.value(count)),
         "view": [view.lower[0], view.lower[1], view.upper[0], view.upper[1]],
     })
+}
+
+/// Returns events for the page, of a number of bodies.
+pub(crate) fn events(events: &[Event], bodies: usize) -> Vec<Value> {
+    let event = |event: &Event| {
+        json!({
+            "t": event.time,
+            "body": event.body.filter(|body| *body < bodies),
+            "kind": event.kind.class(),
+            "text": event.text,
+        })
+    };
+    events.iter().filter(|event| event.time.is_finite()).map(event).collect()
 }
 
 fn polyline(line: &Polyline) -> Value {

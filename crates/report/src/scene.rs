@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::Depth;
+
 /// A point or vector `[x, z]` (m): x to the right, z up.
 pub type Point = [f64; 2];
 
@@ -290,6 +292,8 @@ pub struct Scene {
     pub tint: Option<Tint>,
     /// Other runs, shown on request.
     pub ghosts: Option<Ghosts>,
+    /// The scene in three dimensions; `None` where only its plane is known.
+    pub depth: Option<Depth>,
 }
 
 impl Scene {

@@ -4,6 +4,7 @@
 //! direction in the body frame, so a body becomes one drawing for every direction that occurs, in steps of a few
 //! degrees, and each frame shows one of them.
 
+mod deep;
 mod seen;
 
 use std::collections::BTreeMap;
@@ -135,6 +136,8 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         ties: ties.iter().map(|tie| tie.drawn).collect(),
         events: events(run, &first, sight),
         moment: moment(run, &first).filter(|_| run.heading.is_some_and(|way| sight.shows(way))),
+        // All views are of one run, which is turned in the place of the first.
+        depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
     })
 }

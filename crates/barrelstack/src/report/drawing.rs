@@ -9,6 +9,7 @@ use barrelstack_report::{
     SceneBody, Tie, Tint, significant,
 };
 
+use super::depth::depth;
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::device::FREE;
 use crate::motion;
@@ -25,17 +26,21 @@ pub fn scene(run: &Run) -> Arc<Scene> {
 /// Returns the scene of a run, with the results of its variants.
 pub(super) fn scene_among(run: &Run, variants: Option<&Variants>) -> Arc<Scene> {
     let frames = &run.recording.frames;
+    let ties = ties(&run.assembly, |element| run.elements.get(element)?.broken_at);
+    let (events, moment) = (events(run), moment(run));
+    let depth = depth(&run.scenario, &run.assembly, &ties, (&events, moment.as_ref()));
     Arc::new(Scene {
         bodies: (0..run.assembly.parts.len()).map(|i| body(&run.assembly, i)).collect(),
-        ties: ties(&run.assembly, |element| run.elements.get(element)?.broken_at),
+        ties,
         frames: Frames {
             times: frames.times.clone(),
             poses: frames.poses.clone(),
             forces: frames.forces.iter().map(|list| list.iter().map(pushed).collect()).collect(),
         },
-        events: events(run),
+        events,
         ground: ground_histories(run),
-        moment: moment(run),
+        moment,
+        depth,
         tint: run.assembly.of_kind(PartKind::Barrel).next().map(|_| tint(run)),
         ghosts: variants.and_then(ghosts),
     })

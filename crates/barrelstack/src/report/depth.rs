@@ -1,0 +1,281 @@
+//! A stack in three dimensions, of which a plane models a section: barrels and racks by the dimensions of the scenario.
+
+use barrelstack_dynamics::{Vec2, math};
+use barrelstack_report::{
+    Depth, DepthBody, DepthPoses, DepthTie, Event, Moment, Point3, Role, Tie, Volume,
+};
+
+use crate::assemble::{Assembly, BAR_RADIUS, Part, PartKind};
+use crate::scenario::{Barrel, Cradle, Rack, RackKind, Scenario, Scene, StackSpec, View};
+
+/// Half the thickness (m) of plates of devices, which planes draw as lines: an assumption.
+const PLATE: f64 = 0.012;
+
+/// Number of parts of a profile or a trough.
+const PARTS: u32 = 12;
+
+/// Returns the bodies of a plane in three dimensions, with its events; `None` for a free scene, whose depth is unknown.
+pub(super) fn depth(
+    scenario: &Scenario,
+    assembly: &Assembly,
+    ties: &[Tie],
+    (events, moment): (&[Event], Option<&Moment>),
+) -> Option<Depth> {
+    let Scene::Stack { stack, .. } = &scenario.scene else { return None };
+    let section = Section { spec: stack, length: scenario.run.similitude };
+    let bodies = assembly.parts.iter().enumerate();
+    Some(Depth {
+        bodies: bodies.map(|(body, part)| section.body(assembly, body, part)).collect(),
+        poses: match stack.view {
+            View::Transverse => DepthPoses::Across,
+            View::Longitudinal => DepthPoses::Along,
+        },
+        ties: ties.iter().flat_map(|tie| section.bands(tie)).collect(),
+        events: events.to_vec(),
+        moment: moment.cloned(),
+    })
+}
+
+/// A plane section of a stack.
+struct Section<'a> {
+    spec: &'a StackSpec,
+    /// Length scale.
+    length: f64,
+}
+
+impl Section<'_> {
+    /// Returns a body and its equals in other sections.
+    fn body(&self, assembly: &Assembly, index: usize, part: &Part) -> DepthBody {
+        let (role, volumes, rows) = match part.kind {
+            PartKind::Barrel => (Role::Barrel, vec![self.barrel()], self.rows()),
+            PartKind::Rack => (Role::Rack, self.rack(assembly, index, part), Vec::new()),
+            PartKind::Ground => (Role::Ground, self.plates(part.outlines.get(1..)), Vec::new()),
+            PartKind::Device => (Role::Device, self.plates(Some(&part.outlines)), Vec::new()),
+            // It swings inside of its barrel.
+            PartKind::Wine => (Role::Device, Vec::new(), Vec::new()),
+            PartKind::Body => (Role::Block, Vec::new(), Vec::new()),
+        };
+        let rows = if rows.is_empty() { vec![[0.0; 3]] } else { rows };
+        DepthBody { name: part.name.clone(), role, volumes, rows }
+    }
+
+    /// Returns a point from its coordinates in the plane and the distance from it (m).
+    fn at(&self, [along, up]: [f64; 2], away: f64) -> Point3 {
+        match self.spec.view {
+            View::Transverse => [along, away, up],
+            View::Longitudinal => [away, along, up],
+        }
+    }
+
+    /// Returns the distances (m) from the plane of the rails across it, or of the barrels along it.
+    fn away(&self) -> Vec<f64> {
+        let rack = &self.spec.rack;
+        match self.spec.view {
+            View::Transverse => rails(rack, self.pitch_along()),
+            View::Longitudinal => spread(rack.barrels, rack.pitch),
+        }
+    }
+
+    /// Returns the distance (m) of barrels of a rack one behind the other.
+    fn pitch_along(&self) -> f64 {
+        self.spec.barrel.length + self.spec.gap
+    }
+
+    /// Returns the places of the barrels that one body of the plane represents.
+    fn rows(&self) -> Vec<Point3> {
+        let rack = &self.spec.rack;
+        let places = match self.spec.view {
+            View::Transverse => spread(rack.barrels_deep, self.pitch_along()),
+            View::Longitudinal => spread(rack.barrels, rack.pitch),
+        };
+        places.into_iter().map(|place| self.at([0.0; 2], place * self.length)).collect()
+    }
+
+    fn barrel(&self) -> Volume {
+        let barrel: &Barrel = &self.spec.barrel;
+        let half = 0.5 * barrel.length;
+        let point = |at: u32| {
+            let along = half * (2.0 * f64::from(at) / f64::from(PARTS) - 1.0);
+            [along, 0.5 * barrel.diameter_at(along)].map(|v| v * self.length)
+        };
+        Volume::Turned {
+            at: [0.0; 3],
+            axis: [0.0, 1.0, 0.0],
+            profile: (0..=PARTS).map(point).collect(),
+        }
+    }
+
+    /// Returns a rack, with plates of devices on it.
+    fn rack(&self, assembly: &Assembly, index: usize, part: &Part) -> Vec<Volume> {
+        let spec = self.spec;
+        let surfaces = &assembly.model.bodies()[index].surfaces;
+        // Along the barrels rails may rise with an inclined barrel: the lower end of the rail that is nearest.
+        let rise = |y: f64| match spec.view {
+            View::Longitudinal if spec.rack.posts.is_none() => {
+                let rails = surfaces.iter().zip(&part.outlines);
+                let apart = |x: f64| (x / self.length - y).abs();
+                let nearest =
+                    rails.min_by(|(a, _), (b, _)| apart(a.offset.x).total_cmp(&apart(b.offset.x)));
+                let points = nearest.map_or(&[][..], |(_, outline)| &outline.points);
+                let bottom = points.iter().map(|point| point.z).reduce(f64::min);
+                (bottom.unwrap_or(-part.foot) + part.foot) / self.length
+            }
+            View::Longitudinal | View::Transverse => 0.0,
+        };
+        let level = part.level.unwrap_or(1);
+        let chocks = spec.devices.chock.at(level, spec.levels).then_some(&spec.devices.chock);
+        let mut volumes = frame(spec, self.pitch_along(), rise, chocks.map(|c| (c.angle, c.gap)));
+        for volume in &mut volumes {
+            self.scale(volume, -part.foot);
+        }
+        volumes.extend(self.plates(part.outlines.get(surfaces.len()..)));
+        volumes
+    }
+
+    /// Scales a solid of a rack, and places it at a height (m).
+    fn scale(&self, volume: &mut Volume, height: f64) {
+        let scaled = |point: &mut Point3| point.iter_mut().for_each(|v| *v *= self.length);
+        let placed = |point: &mut Point3| {
+            scaled(point);
+            point[2] += height;
+        };
+        match volume {
+            Volume::Tube { ends, radius } => {
+                ends.iter_mut().for_each(placed);
+                *radius *= self.length;
+            }
+            Volume::Block { at, sides } => {
+                placed(at);
+                sides.iter_mut().for_each(scaled);
+            }
+            Volume::Ball { at, radius } => {
+                placed(at);
+                *radius *= self.length;
+            }
+            Volume::Turned { at, profile, .. } => {
+                placed(at);
+                profile.as_flattened_mut().iter_mut().for_each(|v| *v *= self.length);
+            }
+        }
+    }
+
+    /// Returns lines of the plane as bars, once for each rail or barrel.
+    fn plates(&self, outlines: Option<&[crate::assemble::Outline]>) -> Vec<Volume> {
+        let mut bars = Vec::new();
+        for outline in outlines.unwrap_or(&[]) {
+            let closing = outline.closed.then(|| [outline.points.last(), outline.points.first()]);
+            let pairs = outline.points.windows(2).map(|pair| [Some(&pair[0]), Some(&pair[1])]);
+            for pair in pairs.chain(closing) {
+                let [Some(from), Some(to)] = pair else { continue };
+                let point = |p: &Vec2, away: f64| self.at([p.x, p.z], away * self.length);
+                bars.extend(self.away().into_iter().map(|away| Volume::Tube {
+                    ends: [point(from, away), point(to, away)],
+                    radius: PLATE * self.length,
+                }));
+            }
+        }
+        bars
+    }
+
+    /// Returns a band of the plane, once for each rail or barrel.
+    fn bands(&self, tie: &Tie) -> Vec<DepthTie> {
+        let band = |away: f64| DepthTie {
+            bodies: tie.bodies,
+            points: tie.points.map(|point| self.at(point, away * self.length)),
+            torn_at: tie.torn_at,
+        };
+        self.away().into_iter().map(band).collect()
+    }
+}
+
+/// Returns places (m) at equal distances about the middle.
+fn spread(count: u32, pitch: f64) -> Vec<f64> {
+    (0..count).map(|at| (f64::from(at) - 0.5 * f64::from(count - 1)) * pitch).collect()
+}
+
+/// Returns the places (m) of the rails of a rack along its barrels.
+fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
+    let rail = |place: f64| [-1.0, 1.0].map(|side| place + side * rack.rail_half_spacing);
+    spread(rack.barrels_deep, pitch).into_iter().flat_map(rail).collect()
+}
+
+/// Returns the solids of a rack, full-scale, from the middle of its underside.
+///
+/// They are those of the plane across the barrels at every rail, which is as wide as the plane along them shows it. Two
+/// tubes that join the beams at their ends are an assumption, as in space. `rise` is the height (m) of the rail at a place,
+/// `chocks` are an angle (rad) and a gap (m).
+fn frame(
+    spec: &StackSpec,
+    pitch: f64,
+    rise: impl Fn(f64) -> f64,
+    chocks: Option<(f64, f64)>,
+) -> Vec<Volume> {
+    let rack = &spec.rack;
+    let radius = 0.5 * spec.barrel.section_diameter;
+    let posts = rack.posts.filter(|_| rack.kind == RackKind::OnRacks);
+    let lift = if posts.is_none() { rack.foot_height } else { 0.0 };
+    let top = lift + rack.beam_height;
+    let half_rail = 0.5 * rack.rail_width;
+    let places = spread(rack.barrels, rack.pitch);
+    let rails = rails(rack, pitch);
+    let mut volumes = Vec::new();
+    for y in rails.iter().copied() {
+        let up = rise(y);
+        let beam = [0.5 * rack.width, half_rail, 0.5 * rack.beam_height];
+        volumes.push(Volume::upright([0.0, y, up + lift + beam[2]], beam));
+        let bar = |[x, z]: [f64; 2], [u, w]: [f64; 2]| Volume::Tube {
+            ends: [[x, y, up + z], [u, y, up + w]],
+            radius: BAR_RADIUS,
+        };
+        for place in places.iter().copied() {
+            if lift > 0.0 {
+                let foot = [rack.foot_half_length, half_rail, 0.5 * lift];
+                volumes.push(Volume::upright([place, y, up + foot[2]], foot));
+            }
+            // A bar that stands on the beam and ends at an angle and a distance from the middle of the barrel.
+            let beside = |angle: f64, away: f64| {
+                let (sin, cos) = math::sin_cos(angle);
+                let end = [place + sin * away, rack.clearance + radius - cos.abs() * away];
+                bar([end[0], end[1].min(top)], end)
+            };
+            match rack.cradle {
+                Cradle::Supports { angle } => {
+                    volumes.extend([-angle, angle].map(|angle| beside(angle, radius + BAR_RADIUS)));
+                }
+                Cradle::Arc { radius: trough, half_angle } => {
+                    let on = |at: u32| {
+                        let angle = half_angle * (2.0 * f64::from(at) / f64::from(PARTS) - 1.0);
+                        let (sin, cos) = math::sin_cos(angle);
+                        let away = trough + BAR_RADIUS;
+                        [place + sin * away, rack.clearance + trough - cos * away]
+                    };
+                    volumes.extend((0..PARTS).map(|at| bar(on(at), on(at + 1))));
+                }
+            }
+            let horns = chocks.map(|(angle, gap)| {
+                [-angle, angle].map(|angle| beside(angle, radius + gap + BAR_RADIUS))
+            });
+            volumes.extend(horns.into_iter().flatten());
+        }
+    }
+    let outer = rails.iter().copied().fold(0.0, f64::max);
+    if let Some(posts) = posts {
+        let x = posts.half_spacing;
+        let y = outer - rack.rail_half_spacing + posts.half_spacing_along;
+        let tall = 0.5 * (posts.height - rack.beam_height);
+        for side in [-1.0, 1.0] {
+            let beam = [half_rail, y, 0.5 * rack.beam_height];
+            volumes.push(Volume::upright([side * x, 0.0, beam[2]], beam));
+            let post = |end: f64| {
+                let at = [side * x, end * y, rack.beam_height + tall];
+                Volume::upright(at, [half_rail, half_rail, tall])
+            };
+            volumes.extend([-1.0, 1.0].map(post));
+        }
+    } else {
+        let x = 0.5 * rack.width - BAR_RADIUS;
+        let ends = |x: f64| [-outer, outer].map(|y| [x, y, top - BAR_RADIUS]);
+        volumes.extend([-x, x].map(|x| Volume::Tube { ends: ends(x), radius: BAR_RADIUS }));
+    }
+    volumes
+}

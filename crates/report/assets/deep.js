@@ -1,0 +1,485 @@
+// The stage in three dimensions: barrels, racks and floor of one frame, drawn with WebGL into the canvas of the flat stage.
+
+const FLOOR = 60; // reach of the floor around what stands on it (m)
+const SAMPLES = 400; // frames by which the room that the bodies take is known
+const AHEAD = 0.7; // time (s) over which the picture widens for what flies out of it
+const SHARPEST = 2; // pixels of a picture for each of the page
+
+// The renderer of all stages, with their materials.
+function makeEngine(three, canvas, context) {
+  const renderer = new three.WebGLRenderer({ canvas, context, alpha: true, antialias: true });
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = three.PCFShadowMap;
+  renderer.setClearColor(0, 0);
+  const picture = (image) => {
+    const texture = new three.CanvasTexture(image);
+    texture.colorSpace = three.SRGBColorSpace;
+    texture.wrapS = texture.wrapT = three.RepeatWrapping;
+    texture.anisotropy = 4;
+    return texture;
+  };
+  const standard = (roughness, metalness, map) => new three.MeshStandardMaterial({ roughness, metalness, map: map ?? null });
+  const materials = {
+    wood: standard(0.72, 0, picture(woodPicture(24, false, 1024, 256))),
+    head: standard(0.78, 0, picture(woodPicture(7, true, 512, 512))),
+    steel: standard(0.5, 0.35), rack: standard(0.48, 0.3), device: standard(0.6, 0), block: standard(0.7, 0), ground: standard(0.8, 0),
+    band: standard(0.7, 0),
+    floor: new three.MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
+    grid: new three.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
+    shadow: new three.ShadowMaterial({ depthWrite: false }),
+  };
+  const names = new Map();
+  // The name of a barrel as it is painted on its heads.
+  function nameOf(text, ink) {
+    const key = `${ink} ${text}`;
+    if (!names.has(key)) {
+      const image = make("canvas", { width: 256, height: 128 });
+      const pen = image.getContext("2d");
+      pen.font = `700 ${text.length > 5 ? 64 : 84}px system-ui, sans-serif`;
+      pen.textAlign = "center";
+      pen.textBaseline = "middle";
+      pen.fillStyle = ink;
+      pen.fillText(text, 128, 68, 244);
+      names.set(key, new three.MeshBasicMaterial({ map: picture(image), transparent: true, opacity: 0.82, depthWrite: false }));
+    }
+    return names.get(key);
+  }
+  function retheme(paint) {
+    for (const name of ["rack", "device", "block", "ground"]) materials[name].color.set(paint[name]);
+    materials.band.color.set(paint.device);
+    materials.wood.color.set(paint.barrel);
+    materials.head.color.set(paint.barrel);
+    materials.steel.color.set(paint.rack).multiplyScalar(0.4);
+    materials.floor.color.set(paint.ground);
+    materials.grid.color.set(paint.soft);
+    materials.shadow.opacity = isDark(paint) ? 0.5 : 0.28;
+  }
+  const onLost = (listener) => canvas.addEventListener("webglcontextlost", listener);
+  return { three, renderer, materials, nameOf, retheme, onLost };
+}
+
+const isDark = (paint) => parseInt(paint.paper.slice(1, 3), 16) < 128;
+
+// `flat` is the stage whose canvas and options it shares, `eye` that of all `stages`.
+function makeDeepStage(data, flat, engine, eye, stages) {
+  const { three, renderer, materials } = engine, { depth } = data, { canvas } = flat;
+  const scene = new three.Scene(), camera = new three.PerspectiveCamera();
+  const moving = depth.bodies.map((_, body) => body).filter((body) => depth.bodies[body].role !== "ground");
+  const ground = depth.bodies.findIndex(({ role }) => role === "ground");
+  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, known: null };
+  const place = {}, now = depth.bodies.map(() => new three.Matrix4());
+  const unseen = new three.Matrix4().makeScale(0, 0, 0);
+  const [matrix, quaternion, vector, one] = [new three.Matrix4(), new three.Quaternion(), new three.Vector3(), new three.Vector3(1, 1, 1)];
+  let paint = {}, width = 0, height = 0, target = [0, 0, 0], away = 1, back = [0, -1, 0];
+
+  // The pose of a body as place and quaternion; null where it is not known.
+  function poseOf(body, frame) {
+    if (!depth.plane) {
+      const [x, y, z, w, a, b, c] = [0, 1, 2, 3, 4, 5, 6].map((k) => depth.poses[7 * body + k][frame]);
+      return isFinite(x + y + z + w + a + b + c) ? [x, y, z, a, b, c, w] : null;
+    }
+    const [u, z, angle] = [0, 1, 2].map((k) => data.poses[3 * body + k][frame]);
+    if (!isFinite(u + z + angle)) return null;
+    const [sin, cos] = [Math.sin(0.5 * angle), Math.cos(0.5 * angle)];
+    return depth.plane === "across" ? [u, 0, z, 0, -sin, 0, cos] : [0, u, z, sin, 0, 0, cos];
+  }
+  function pose(body, frame, into) {
+    const known = poseOf(body, frame);
+    if (!known) return false;
+    into.compose(vector.set(...known.slice(0, 3)), quaternion.set(...known.slice(3)).normalize(), one);
+    return true;
+  }
+
+  // Bodies of one shape and material are drawn at once.
+  const geometries = depth.shapes.map(() => new Map());
+  const groups = [], labels = [], corners = [];
+  function geometryOf({ places, normals, maps, faces }) {
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.Float32BufferAttribute(places, 3));
+    geometry.setAttribute("normal", new three.Float32BufferAttribute(normals, 3));
+    geometry.setAttribute("uv", new three.Float32BufferAttribute(maps, 2));
+    geometry.setIndex(faces);
+    return geometry;
+  }
+  depth.bodies.forEach(({ shape, role }, body) => {
+    const known = geometries[shape];
+    if (!known.has(role)) {
+      const meshes = meshesOf(depth.shapes[shape], role);
+      const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+      for (const { places } of Object.values(meshes)) {
+        places.forEach((value, k) => {
+          box[0][k % 3] = Math.min(box[0][k % 3], value);
+          box[1][k % 3] = Math.max(box[1][k % 3], value);
+        });
+      }
+      const parts = Object.entries(meshes).filter(([name]) => name !== "label")
+        .map(([name, mesh]) => ({ name, geometry: geometryOf(mesh), bodies: [] }));
+      known.set(role, { parts, box, label: meshes.label && geometryOf(meshes.label) });
+    }
+    const { parts, box } = known.get(role);
+    for (const { bodies } of parts) bodies.push(body);
+    corners[body] = parts.length > 0
+      ? Array.from({ length: 8 }, (_, k) => [0, 1, 2].map((axis) => box[(k >> axis) & 1][axis])) : [];
+  });
+  for (const kinds of geometries) {
+    for (const { parts, label } of kinds.values()) {
+      for (const { name, geometry, bodies } of parts) {
+        const places = bodies.flatMap((body) => depth.bodies[body].rows.map((row) => ({ body, row })));
+        const mesh = new three.InstancedMesh(geometry, materials[name], places.length);
+        mesh.frustumCulled = false;
+        mesh.castShadow = mesh.receiveShadow = true;
+        const white = new three.Color(1, 1, 1);
+        if (name === "wood" || name === "head") places.forEach((_, k) => mesh.setColorAt(k, white));
+        groups.push({ mesh, name, places });
+        scene.add(mesh);
+        if (name !== "head" || !label || places.length > 120) continue;
+        for (const at of places) {
+          const mark = new three.Mesh(label, materials.head);
+          mark.matrixAutoUpdate = false;
+          labels.push({ mark, ...at });
+          scene.add(mark);
+        }
+      }
+    }
+  }
+  const bands = new three.InstancedMesh(new three.BufferGeometry(), materials.band, Math.max(1, depth.ties.length));
+  {
+    const mesh = makeMesh();
+    addBlock(mesh, [0.5, 0, 0], [[0.5, 0, 0], [0, 0.02, 0], [0, 0, 0.008]]);
+    bands.geometry = geometryOf(mesh);
+    bands.frustumCulled = false;
+    bands.castShadow = true;
+    scene.add(bands);
+  }
+
+  const sky = new three.HemisphereLight(0xffffff, 0xb0a79c, 1.5), sun = new three.DirectionalLight(0xfff4e2, 2.1);
+  sun.castShadow = true;
+  sun.shadow.mapSize.set(2048, 2048);
+  sun.shadow.bias = -4e-4;
+  sun.shadow.normalBias = 0.02;
+  sun.shadow.radius = 5;
+  scene.add(sky, sun, sun.target);
+
+  // The floor fades into the paper; its grid of a meter moves with the ground.
+  const floor = new three.Group(), field = new three.Group();
+  {
+    const rings = [0, 0.08, 0.2, 0.45, 1], sides = 64, places = [], colors = [], faces = [];
+    rings.forEach((share, ring) => {
+      for (let side = 0; side < sides; side++) {
+        const angle = (2 * Math.PI * side) / sides;
+        places.push(share * FLOOR * Math.cos(angle), share * FLOOR * Math.sin(angle), 0);
+        colors.push(1, 1, 1, 0.5 * (1 - share) ** 3);
+        if (ring === 0) continue;
+        const [a, b] = [(ring - 1) * sides + side, (ring - 1) * sides + ((side + 1) % sides)];
+        faces.push(a, a + sides, b, b, a + sides, b + sides);
+      }
+    });
+    const disc = new three.BufferGeometry();
+    disc.setAttribute("position", new three.Float32BufferAttribute(places, 3));
+    disc.setAttribute("normal", new three.Float32BufferAttribute(places.map((_, k) => (k % 3 === 2 ? 1 : 0)), 3));
+    disc.setAttribute("color", new three.Float32BufferAttribute(colors, 4));
+    disc.setIndex(faces);
+    const plane = new three.Mesh(disc, materials.floor), shade = new three.Mesh(disc, materials.shadow);
+    shade.receiveShadow = true;
+    const [lines, tones] = [[], []], half = 24;
+    for (let k = -half; k <= half; k++) {
+      for (let step = -half; step < half; step++) {
+        for (const [x, y] of [[k, step], [k, step + 1], [step, k], [step + 1, k]]) {
+          lines.push(x, y, 0);
+          tones.push(1, 1, 1, 0.55 * Math.max(0, 1 - Math.hypot(x, y) / half) ** 2);
+        }
+      }
+    }
+    const grid = new three.BufferGeometry();
+    grid.setAttribute("position", new three.Float32BufferAttribute(lines, 3));
+    grid.setAttribute("color", new three.Float32BufferAttribute(tones, 4));
+    const net = new three.LineSegments(grid, materials.grid);
+    [plane.renderOrder, shade.renderOrder, net.renderOrder] = [-3, -2, -1];
+    for (const one of [plane, shade, net]) one.position.z = -0.004;
+    field.add(plane, shade, net);
+    floor.add(field);
+    floor.matrixAutoUpdate = false;
+    scene.add(floor);
+  }
+
+  // By how much the camera rides with the ground or the stack (m).
+  function shiftAt(frame) {
+    const shift = (body) => {
+      const [was, is] = [poseOf(body, 0), poseOf(body, frame)];
+      return was && is ? [0, 1, 2].map((axis) => is[axis] - was[axis]) : [0, 0, 0];
+    };
+    if (flat.camera === "ground" && ground >= 0) return shift(ground);
+    if (flat.camera !== "stack" || moving.length === 0) return [0, 0, 0];
+    const all = moving.map(shift);
+    const middle = (axis) => all.map((one) => one[axis]).sort((a, b) => a - b)[all.length >> 1];
+    return [middle(0), middle(1), moving.length === 1 ? all[0][2] : 0];
+  }
+
+  // The room that the bodies take until a time, seen by the camera: it grows, and begins to before they reach its edge.
+  const rooms = {};
+  function known() {
+    const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], boxes = [];
+    let box = [Infinity, Infinity, 0, -Infinity, -Infinity, -Infinity];
+    for (let frame = 0; frame < data.count; frame += stride) {
+      const shift = shiftAt(frame);
+      box = box.slice();
+      for (const body of moving) {
+        if (corners[body].length === 0 || !pose(body, frame, matrix)) continue;
+        for (const corner of corners[body]) {
+          vector.set(...corner).applyMatrix4(matrix);
+          for (const row of depth.bodies[body].rows) {
+            [vector.x, vector.y, vector.z].forEach((value, axis) => {
+              const at = value + row[axis] - shift[axis];
+              if (axis < 2 || flat.camera === "stack") box[axis] = Math.min(box[axis], at);
+              box[3 + axis] = Math.max(box[3 + axis], at);
+            });
+          }
+        }
+      }
+      times.push(data.times[frame]);
+      boxes.push(box);
+    }
+    return { times, boxes };
+  }
+  function room(time) {
+    const { times, boxes } = (rooms[flat.camera] ??= known());
+    if (!(boxes.length > 0) || !isFinite(boxes[0][0])) return [-1, -1, 0, 1, 1, 1];
+    const sum = [0, 0, 0, 0, 0, 0], steps = 14;
+    for (let k = 0; k < steps; k++) {
+      const at = Math.min(Math.max(time + AHEAD * ((2 * k) / (steps - 1) - 0.5), times[0]), times.at(-1));
+      const next = Math.min(Math.max(times.findIndex((t) => t >= at), 1), times.length - 1);
+      if (times.length === 1) return boxes[0];
+      const share = Math.min(Math.max((at - times[next - 1]) / (times[next] - times[next - 1] || 1), 0), 1);
+      sum.forEach((_, c) => { sum[c] += (boxes[next - 1][c] + share * (boxes[next][c] - boxes[next - 1][c])) / steps; });
+    }
+    return sum;
+  }
+
+  // Puts the camera where it sees the rooms of all stages.
+  function aim(time, shift) {
+    const all = stages().map((one) => one.room(time));
+    const low = [0, 1, 2].map((axis) => Math.min(...all.map((box) => box[axis])));
+    const high = [0, 1, 2].map((axis) => Math.max(...all.map((box) => box[axis + 3])));
+    const middle = low.map((value, axis) => 0.5 * (value + high[axis]));
+    const axes = eye.axes(), tan = Math.tan(0.5 * LENS), aspect = width / height;
+    const [tanX, tanY] = [(tan * aspect * (width - 28)) / width, (tan * (height - 76)) / height];
+    away = 0;
+    for (let k = 0; k < 8; k++) {
+      const corner = [0, 1, 2].map((axis) => (((k >> axis) & 1) === 0 ? low : high)[axis] - middle[axis]);
+      const toward = dot(corner, axes.back);
+      away = Math.max(away, Math.abs(dot(corner, axes.right)) / tanX + toward, Math.abs(dot(corner, axes.up)) / tanY + toward);
+    }
+    away = Math.max(away, 0.2) / eye.factor;
+    target = plus(plus(middle, shift), eye.aside);
+    back = axes.back;
+    const [r, u, b] = [axes.right, axes.up, axes.back], p = plus(target, b, away);
+    camera.fov = (LENS * 180) / Math.PI;
+    camera.aspect = aspect;
+    camera.near = 0.02 * away;
+    camera.far = away + 3 * FLOOR;
+    camera.updateProjectionMatrix();
+    camera.matrixAutoUpdate = false;
+    camera.matrix.set(r[0], u[0], b[0], p[0], r[1], u[1], b[1], p[1], r[2], u[2], b[2], p[2], 0, 0, 0, 1);
+    camera.matrixWorldNeedsUpdate = true;
+    camera.updateMatrixWorld(true);
+    stage.perPixel = () => (2 * away * tan) / height;
+    // The sun stands to the left of the eye, so that what is seen is lit from any side.
+    const size = 0.5 * Math.hypot(...high.map((value, axis) => value - low[axis])) + 0.3;
+    const around = eye.around - 0.9, from = [0.75 * Math.sin(around), -0.75 * Math.cos(around), 1.15];
+    const center = plus(middle, shift);
+    sun.position.set(...plus(center, from, 2 * size));
+    sun.target.position.set(...center);
+    Object.assign(sun.shadow.camera, { left: -size, right: size, bottom: -size, top: size, near: 0.1, far: 5 * size });
+    sun.shadow.camera.updateProjectionMatrix();
+  }
+
+  // A point (m) on the page: its place (px) and how many pixels a meter has there.
+  function project(point) {
+    const offset = plus(plus(point, target, -1), back, -away), { right, up } = eye.axes();
+    const far = -dot(offset, back), scale = height / (2 * Math.tan(0.5 * LENS) * far);
+    return far > 0 ? [0.5 * width + scale * dot(offset, right), 0.5 * height - scale * dot(offset, up), scale] : [NaN, NaN, 0];
+  }
+
+  function update(frame, time) {
+    const seen = depth.bodies.map((_, body) => pose(body, frame, now[body]));
+    const base = new three.Color(), tinted = flat.tint && data.tint && depth.plane;
+    for (const { mesh, name, places } of groups) {
+      places.forEach(({ body, row }, k) => {
+        if (!seen[body]) return mesh.setMatrixAt(k, unseen);
+        matrix.makeTranslation(...row).multiply(now[body]);
+        mesh.setMatrixAt(k, matrix);
+        if (!mesh.instanceColor) return;
+        const tone = tinted && tintOf(data, body, frame, flat.full, paint);
+        // Over the color of the material, by which it is multiplied.
+        if (tone) base.setRGB(...tone.match(/[\d.]+/g).map((part) => part / 255), three.SRGBColorSpace);
+        const own = mesh.material.color;
+        mesh.setColorAt(k, tone ? base.setRGB(base.r / own.r, base.g / own.g, base.b / own.b) : base.setRGB(1, 1, 1));
+      });
+      mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+      mesh.boundingSphere = null;
+    }
+    for (const { mark, body, row } of labels) {
+      mark.visible = flat.names && seen[body];
+      if (!mark.visible) continue;
+      mark.matrix.makeTranslation(...row).multiply(now[body]);
+      mark.matrixWorldNeedsUpdate = true;
+      mark.material = engine.nameOf(depth.bodies[body].name, paint.line);
+    }
+    depth.ties.forEach(({ bodies, points, torn }, k) => {
+      const [a, b] = bodies.map((body, end) => new three.Vector3(...points[end]).applyMatrix4(now[body]));
+      const gone = (torn !== null && time >= torn) || !bodies.every((body) => seen[body]);
+      const along = b.sub(a), length = along.length();
+      quaternion.setFromUnitVectors(vector.set(1, 0, 0), along.clone().normalize());
+      bands.setMatrixAt(k, gone ? unseen : matrix.compose(a, quaternion, vector.set(length, 1, 1)));
+    });
+    if (depth.ties.length === 0) bands.setMatrixAt(0, unseen);
+    bands.instanceMatrix.needsUpdate = true;
+    if (ground >= 0 && seen[ground]) floor.matrix.copy(now[ground]);
+    floor.matrixWorldNeedsUpdate = true;
+    const at = ground >= 0 ? [now[ground].elements[12], now[ground].elements[13]] : [0, 0];
+    field.position.set(Math.round(target[0] - at[0]), Math.round(target[1] - at[1]), 0);
+  }
+
+  function retheme() {
+    paint = flat.paint();
+    engine.retheme(paint);
+    sky.groundColor.set(isDark(paint) ? 0x4a4540 : 0xb0a79c);
+    sky.intensity = isDark(paint) ? 1.15 : 1.75;
+    sun.intensity = isDark(paint) ? 2.3 : 2.1;
+  }
+
+  function draw(frame, time) {
+    let dpr;
+    ({ width, height, dpr } = flat.measures());
+    const context = canvas.getContext("2d");
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.fillStyle = paint.paper;
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    if (!(data.count > 0)) return;
+    aim(time, shiftAt(frame));
+    update(frame, time);
+    const share = Math.min(1, SHARPEST / dpr), picture = renderer.domElement;
+    const [wide, high] = [canvas.width, canvas.height].map((side) => Math.round(share * side));
+    if (picture.width !== wide || picture.height !== high) renderer.setSize(wide, high, false);
+    renderer.render(scene, camera);
+    context.drawImage(picture, 0, 0, canvas.width, canvas.height);
+    context.setTransform(dpr, 0, 0, dpr, 0, 0);
+    const view = { scale: [eye.around, eye.above, eye.factor, ...eye.aside].map((v) => v.toFixed(2)).join() };
+    drawOver({ context, width, height, paint, frame, time, view });
+  }
+
+  // The place of a body (px) and the radius of what is seen of it.
+  function circle(body) {
+    const { elements } = now[body], rows = depth.bodies[body].rows;
+    const nearest = rows.reduce((best, row) => (dot(row, back) > dot(best, back) ? row : best), rows[0]);
+    const [x, y, scale] = project(plus([elements[12], elements[13], elements[14]], nearest));
+    const reach = Math.max(0, ...corners[body].map((corner) => Math.hypot(...corner)));
+    return [x, y, 0.72 * reach * scale];
+  }
+
+  // What is written and drawn over the picture.
+  function drawOver(pen) {
+    const { context } = pen;
+    if (flat.traces && depth.plane) drawPaths(pen);
+    const arrows = flat.forces && depth.plane ? drawPushes(pen) : [];
+    for (const { body } of currentEvents(stage.said ?? depth, pen.time)) {
+      if (body !== null && depth.bodies[body].role !== "ground") ring(pen, circle(body));
+    }
+    if (flat.tint && data.tint && depth.plane) drawTintScale(pen, data.tint, flat.full);
+    if (flat.callout && depth.moment) {
+      const at = circle(depth.moment.body);
+      if (isFinite(at[0])) {
+        ring(pen, at);
+        drawCallout(pen, depth.moment.text, at, moving.filter((body) => corners[body].length > 0).map(circle), place);
+      }
+    }
+    context.font = "12px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    context.fillStyle = paint.soft;
+    context.textAlign = "left";
+    halo(pen, "grid of 1\u00a0m", 14, height - 14);
+    if (!eye.turned) {
+      context.textAlign = "right";
+      halo(pen, width < 420 ? "drag to turn" : "drag to turn, two fingers or Ctrl and wheel to zoom", width - 14, height - 14);
+    }
+    flat.valued = flat.hover ? drawForceValue(pen, arrows, flat.hover, []) : null;
+    if (flat.hover && !flat.valued) drawLabel(pen, flat.hover);
+  }
+
+  function ring({ context }, [x, y, radius]) {
+    context.strokeStyle = paint.accent;
+    context.lineWidth = 3;
+    context.beginPath();
+    context.arc(x, y, radius, 0, 7);
+    context.stroke();
+  }
+
+  const inPlane = (u, z) => (depth.plane === "across" ? [u, 0, z] : [0, u, z]);
+
+  function drawPaths({ context, frame }) {
+    data.traces.forEach((trace, at) => {
+      const [px, pz] = trace.point, [xs, zs, angles] = [0, 1, 2].map((c) => data.poses[3 * trace.body + c]);
+      context.beginPath();
+      let open = false;
+      for (let k = 0; k <= frame; k++) {
+        const [cos, sin] = [Math.cos(angles[k]), Math.sin(angles[k])];
+        const [x, y] = project(inPlane(xs[k] + cos * px - sin * pz, zs[k] + sin * px + cos * pz));
+        if (isFinite(x + y)) context[open ? "lineTo" : "moveTo"](x, y);
+        open = isFinite(x + y);
+      }
+      context.strokeStyle = paint["s" + (at % 6)];
+      context.setLineDash(data.dashes[at % 6].split(" ").filter(Boolean).map(Number));
+      context.lineWidth = 1.6;
+      context.stroke();
+      context.setLineDash([]);
+    });
+  }
+
+  function drawPushes({ context, frame }) {
+    const perNewton = flat.strong > 0 ? (FORCE_SHARE * height * stage.perPixel()) / flat.strong : 0;
+    context.strokeStyle = context.fillStyle = paint.s1;
+    context.lineWidth = 2;
+    context.lineCap = "butt";
+    const arrows = forcesAt(data, frame).map((force) => {
+      const [x, y] = project(inPlane(force.x, force.z));
+      const [tipX, tipY] = project(inPlane(force.x + force.fx * perNewton, force.z + force.fz * perNewton));
+      return { x, y, tipX, tipY, size: Math.hypot(force.fx, force.fz) };
+    });
+    for (const one of arrows) arrow(context, one.x, one.y, one.tipX, one.tipY);
+    return arrows;
+  }
+
+  // The body at a place of the stage (px); null where there is none.
+  const rays = new three.Raycaster();
+  function bodyAt([x, y]) {
+    rays.setFromCamera({ x: (2 * x) / width - 1, y: 1 - (2 * y) / height }, camera);
+    const [hit] = rays.intersectObjects(groups.map(({ mesh }) => mesh), false);
+    return hit ? groups.find(({ mesh }) => mesh === hit.object).places[hit.instanceId].body : null;
+  }
+
+  function drawLabel(pen, at) {
+    const body = bodyAt(at);
+    if (body === null || !depth.bodies[body].name) return;
+    const { context } = pen, { name, role } = depth.bodies[body];
+    const text = role === "barrel" || role === "rack" ? `${role} ${name}` : name;
+    context.font = "600 13px system-ui, sans-serif";
+    const wide = context.measureText(text).width + 16;
+    const [x, y] = [Math.min(Math.max(at[0] - 0.5 * wide, 4), width - wide - 4), Math.max(at[1] - 36, 4)];
+    context.fillStyle = paint.paper;
+    context.strokeStyle = paint.soft;
+    context.lineWidth = 1;
+    context.beginPath();
+    context.roundRect(x, y, wide, 24, 5);
+    context.fill();
+    context.stroke();
+    context.fillStyle = paint.ink;
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    context.fillText(text, x + 8, y + 12);
+    stage.named = text;
+  }
+
+  retheme();
+  return stage;
+}

@@ -1,0 +1,72 @@
+// The switch between the stage in three dimensions and the flat one.
+
+// What draws in three dimensions, once for a page; null where the browser or the page has nothing for it.
+let engine = null;
+function loadEngine() {
+  engine ??= (async () => {
+    if (!document.getElementById("three")) return null;
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2", { alpha: true, antialias: true });
+    if (!context) return null;
+    const script = make("script", {}, new TextDecoder().decode(await held("three")));
+    document.head.append(script);
+    return makeEngine(window.barrelstackThree, canvas, context);
+  })().catch(() => null);
+  return engine;
+}
+
+// Whether the address asks for the flat stage: `?view=flat`.
+const asksFlat = () => new URLSearchParams(location.search).get("view") === "flat";
+
+// `changed` draws anew, `refit` measures first.
+function makeViews(screen, panes, act, changed, refit) {
+  const deep = panes.filter(({ data }) => data.depth);
+  const shown = () => deep.map((pane) => pane.deep).filter(Boolean);
+  const eye = makeEye(screen, deep.map(({ stage }) => ({ canvas: stage.canvas, stage })), shown, changed);
+  const group = act("deep").closest(".views"), presets = group.nextElementSibling;
+  let isDeep = false;
+
+  function set(on) {
+    isDeep = on;
+    screen.classList.toggle("deep", on);
+    screen.classList.remove("zoomed");
+    act("deep").setAttribute("aria-pressed", on);
+    act("flat").setAttribute("aria-pressed", !on);
+    presets.hidden = !on;
+    // Views of one run from several sides are one that is turned.
+    for (const pane of panes) pane.section.hidden = on && !pane.data.depth;
+    screen.classList.toggle("alone", on && deep.length === 1);
+    for (const { stage } of panes) Object.assign(stage, { deep: on, hover: null });
+    refit();
+  }
+
+  async function choose(on) {
+    if (on && !deep[0]?.deep) {
+      const made = await loadEngine();
+      if (!made) return;
+      for (const pane of deep) pane.deep = makeDeepStage(pane.data, pane.stage, made, eye, shown);
+      made.onLost(() => {
+        group.hidden = true;
+        set(false);
+      });
+    }
+    if (on !== isDeep) set(on);
+  }
+
+  // Shows the switch and three dimensions where they work.
+  async function start() {
+    if (deep.length === 0 || !(await loadEngine())) return;
+    group.hidden = false;
+    if (!deep.some(({ data }) => data.depth.bodies.some(({ role }) => role === "rack"))) {
+      act("across").textContent = "front";
+      act("along").textContent = "side";
+    }
+    if (!asksFlat()) await choose(true);
+  }
+
+  act("deep").addEventListener("click", () => choose(true));
+  act("flat").addEventListener("click", () => choose(false));
+  for (const name of Object.keys(PRESETS)) act(name).addEventListener("click", () => eye.go(name));
+  const toggle = () => { if (!group.hidden) choose(!isDeep); };
+  return { start, choose, toggle, eye, isDeep: () => isDeep };
+}

@@ -1,0 +1,199 @@
+//! A scene in three dimensions, which a reader turns on a page.
+
+use serde_json::{Value, json};
+
+use crate::{
+    Event, Moment, Role,
+    pack::{self, POSE_QUANTUM},
+    player_data::events,
+};
+
+/// A point or vector `[x, y, z]` (m): x across the barrels, y along them, z up; right-handed.
+pub type Point3 = [f64; 3];
+
+/// A pose `[x, y, z, w, a, b, c]` (m and a unit quaternion with the scalar `w` first) of a body's frame in the world.
+pub type Pose3 = [f64; 7];
+
+/// A solid in the frame of its body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Volume {
+    /// A surface of revolution.
+    Turned {
+        /// Origin of the profile (m).
+        at: Point3,
+        /// Direction of the axis, a unit vector.
+        axis: Point3,
+        /// Position along the axis and radius (m), from end to end; the ends are closed by flat heads.
+        profile: Vec<[f64; 2]>,
+    },
+    /// A round tube.
+    Tube {
+        /// The ends of its axis (m).
+        ends: [Point3; 2],
+        /// Radius (m).
+        radius: f64,
+    },
+    /// A cuboid.
+    Block {
+        /// Its middle (m).
+        at: Point3,
+        /// Half of each side, as a vector (m).
+        sides: [Point3; 3],
+    },
+    /// A ball.
+    Ball {
+        /// Its middle (m).
+        at: Point3,
+        /// Radius (m).
+        radius: f64,
+    },
+}
+
+impl Volume {
+    /// Returns a cuboid with sides along the axes of its body, from its middle and half of its sides (m).
+    pub fn upright(at: Point3, [x, y, z]: Point3) -> Self {
+        Self::Block { at, sides: [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]] }
+    }
+
+    fn value(&self) -> Value {
+        let short = |list: &[f64]| list.iter().copied().map(tenths).collect::<Vec<_>>();
+        match self {
+            Self::Turned { at, axis, profile } => json!({
+                "turned": short(profile.as_flattened()), "at": short(at), "axis": axis.map(|v| (v * 1e6).round() / 1e6),
+            }),
+            Self::Tube { ends, radius } => {
+                json!({ "tube": short(ends.as_flattened()), "radius": tenths(*radius) })
+            }
+            Self::Block { at, sides } => {
+                json!({ "block": short(at), "sides": short(sides.as_flattened()) })
+            }
+            Self::Ball { at, radius } => json!({ "ball": short(at), "radius": tenths(*radius) }),
+        }
+    }
+}
+
+/// Rounds a length (m) to a tenth of a millimeter, as outlines are.
+fn tenths(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}
+
+/// A body in three dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthBody {
+    /// Name.
+    pub name: String,
+    /// Role.
+    pub role: Role,
+    /// Its solids; none for a body that is not drawn.
+    pub volumes: Vec<Volume>,
+    /// Places (m) of its equals, which move as it does: the barrels one behind the other of which a plane models one.
+    pub rows: Vec<Point3>,
+}
+
+/// Poses of the bodies of a scene in three dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DepthPoses {
+    /// Those of the plane scene, whose bodies have the same indices, in the plane of x and z.
+    Across,
+    /// Those of the plane scene, in the plane of y and z.
+    Along,
+    /// For each frame of the plane scene, the pose of each body.
+    Free(Vec<Vec<Pose3>>),
+}
+
+/// A band between points of two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthTie {
+    /// The bodies, by their indices in [`Depth::bodies`].
+    pub bodies: [usize; 2],
+    /// The points, each in the frame of its body (m).
+    pub points: [Point3; 2],
+    /// Time at which it tears (s); it is not drawn after that.
+    pub torn_at: Option<f64>,
+}
+
+/// Bodies in three dimensions, for the times of the frames of a plane scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Depth {
+    /// The bodies.
+    pub bodies: Vec<DepthBody>,
+    /// Their poses.
+    pub poses: DepthPoses,
+    /// Bands between them.
+    pub ties: Vec<DepthTie>,
+    /// Events, in order of time.
+    pub events: Vec<Event>,
+    /// The instant on which the player opens.
+    pub moment: Option<Moment>,
+}
+
+impl Depth {
+    /// Returns the data for the page; `count` is the number of frames. Equal lists of solids are written once.
+    pub(crate) fn value(&self, count: usize) -> Value {
+        let mut shapes: Vec<Value> = Vec::new();
+        let mut shape = |body: &DepthBody| {
+            let own: Value = body.volumes.iter().map(Volume::value).collect();
+            shapes.iter().position(|known| *known == own).unwrap_or_else(|| {
+                shapes.push(own);
+                shapes.len() - 1
+            })
+        };
+        let bodies: Vec<Value> = self
+            .bodies
+            .iter()
+            .map(|body| {
+                let rows: Vec<Point3> = body.rows.iter().map(|row| row.map(tenths)).collect();
+                json!({ "name": body.name, "role": body.role.class(), "shape": shape(body), "rows": rows })
+            })
+            .collect();
+        let ties: Vec<Value> = self
+            .ties
+            .iter()
+            .map(|tie| json!({ "bodies": tie.bodies, "points": tie.points, "torn": tie.torn_at }))
+            .collect();
+        let moment = self
+            .moment
+            .as_ref()
+            .filter(|moment| moment.time.is_finite() && moment.body < self.bodies.len())
+            .map(|moment| json!({ "t": moment.time, "body": moment.body, "text": moment.text }));
+        let (plane, poses) = match &self.poses {
+            DepthPoses::Across => (json!("across"), Value::Null),
+            DepthPoses::Along => (json!("along"), Value::Null),
+            DepthPoses::Free(frames) => (Value::Null, self.packed(frames, count)),
+        };
+        json!({
+            "shapes": shapes,
+            "bodies": bodies,
+            "ties": ties,
+            "events": events(&self.events, self.bodies.len()),
+            "moment": moment,
+            "plane": plane,
+            "poses": poses,
+        })
+    }
+
+    /// Packs poses as seven channels for each body, with quaternions whose sign does not jump.
+    fn packed(&self, frames: &[Vec<Pose3>], count: usize) -> Value {
+        let mut channels = vec![Vec::with_capacity(count); 7 * self.bodies.len()];
+        for (body, own) in channels.chunks_mut(7).enumerate() {
+            let mut last = [1.0, 0.0, 0.0, 0.0];
+            for frame in 0..count {
+                let mut pose = frames
+                    .get(frame)
+                    .and_then(|list| list.get(body))
+                    .copied()
+                    .unwrap_or([f64::NAN; 7]);
+                let dot: f64 = pose[3..].iter().zip(last).map(|(a, b)| a * b).sum();
+                let sign = if dot < 0.0 { -1.0 } else { 1.0 };
+                for (value, last) in pose[3..].iter_mut().zip(&mut last) {
+                    *value *= sign;
+                    *last = if value.is_finite() { *value } else { *last };
+                }
+                for (channel, value) in own.iter_mut().zip(pose) {
+                    channel.push(value);
+                }
+            }
+        }
+        pack::channels(&channels, count, POSE_QUANTUM)
+    }
+}

@@ -1,0 +1,93 @@
+//! A run in three dimensions, which a reader turns on a page.
+
+use barrelstack::assemble::PartKind;
+use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
+use barrelstack_report::{Depth, DepthBody, DepthPoses, DepthTie, Point3, Role, Volume};
+
+use super::{Sight, events, moment};
+use crate::part::Part;
+use crate::run::Run;
+
+/// Half the thickness (m) of parts of devices that are drawn as lines: an assumption.
+const PLATE: f64 = 0.012;
+
+/// Number of parts of the profile of a barrel.
+const PARTS: u32 = 12;
+
+/// Returns the bodies at the frames of a picture, with the events of all views.
+pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
+    let bodies = run.stack.parts.iter().zip(run.stack.model.bodies());
+    let own: Vec<usize> = (0..run.stack.parts.len()).collect();
+    let mut all: Vec<_> = Sight::ALL.iter().flat_map(|sight| events(run, &own, *sight)).collect();
+    all.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let straps = run.devices().filter_map(|((element, _), fate)| match element {
+        Element::Strap(strap) => Some(DepthTie {
+            bodies: strap.link.bodies,
+            points: strap.link.points.map(point),
+            torn_at: fate.broken_at,
+        }),
+        Element::Rod(_) | Element::Guide(_) => None,
+    });
+    Depth {
+        bodies: bodies.map(|(part, body)| drawn(part, body)).collect(),
+        poses: DepthPoses::Free(
+            frames.iter().map(|frame| run.frames.poses[*frame].clone()).collect(),
+        ),
+        ties: straps.collect(),
+        events: all,
+        moment: moment(run, &own),
+    }
+}
+
+fn point(of: Vec3) -> Point3 {
+    [of.x, of.y, of.z]
+}
+
+/// Returns a body with its solids. Half-spaces are the floor of the picture, and dishes lie in it.
+fn drawn(part: &Part, body: &Body<Spatial>) -> DepthBody {
+    let mut volumes: Vec<Volume> = Vec::new();
+    let mut barrel = false;
+    for placed in &body.surfaces {
+        let place = |local: Vec3| point(placed.offset + placed.rotation.apply(local));
+        let turned = |x: f64, y: f64, z: f64| point(placed.rotation.apply(Vec3::new(x, y, z)));
+        let at = point(placed.offset);
+        volumes.extend(match &placed.surface {
+            Solid::HalfSpace | Solid::Dish(_) => None,
+            Solid::Ball(ball) => Some(Volume::Ball { at, radius: ball.radius }),
+            Solid::Capsule(tube) => Some(Volume::Tube {
+                ends: [-1.0, 1.0].map(|side| place(Vec3::new(side * tube.half_length, 0.0, 0.0))),
+                radius: tube.radius,
+            }),
+            Solid::Block(block) => {
+                let [x, y, z] = point(block.half).map(|half| half + block.rounding);
+                let sides = [turned(x, 0.0, 0.0), turned(0.0, y, 0.0), turned(0.0, 0.0, z)];
+                Some(Volume::Block { at, sides })
+            }
+            Solid::Barrel(shape) => {
+                barrel = true;
+                let half = shape.half_length + shape.rounding;
+                let arc = shape.stave_radius + shape.rounding;
+                let point = |at: u32| {
+                    let x = half * (2.0 * f64::from(at) / f64::from(PARTS) - 1.0);
+                    [x, (arc * arc - x * x).sqrt() - shape.stave_offset]
+                };
+                let profile = (0..=PARTS).map(point).collect();
+                Some(Volume::Turned { at, axis: turned(1.0, 0.0, 0.0), profile })
+            }
+        });
+    }
+    for line in &part.lines {
+        let bar =
+            |pair: &[Vec3]| Volume::Tube { ends: [pair[0], pair[1]].map(point), radius: PLATE };
+        volumes.extend(line.windows(2).map(bar));
+    }
+    let role = match part.kind {
+        PartKind::Barrel => Role::Barrel,
+        PartKind::Body if barrel => Role::Barrel,
+        PartKind::Ground => Role::Ground,
+        PartKind::Rack => Role::Rack,
+        PartKind::Device | PartKind::Wine => Role::Device,
+        PartKind::Body => Role::Block,
+    };
+    DepthBody { name: part.name.clone(), role, volumes, rows: vec![[0.0; 3]] }
+}
