@@ -1,9 +1,13 @@
 // The stage in three dimensions: barrels, racks and floor of one frame, drawn with WebGL into the canvas of the flat stage.
 
 const FLOOR = 60; // reach of the floor around what stands on it (m)
-const SAMPLES = 400; // frames by which the room that the bodies take is known
-const AHEAD = 0.7; // time (s) over which the picture widens for what flies out of it
+const SAMPLES = 240; // frames by which the room that the bodies take is known
+const AHEAD = 0.5; // time (s) over which the picture widens for what flies out of it
 const SHARPEST = 2; // pixels of a picture for each of the page
+const SLOW_FRAME = 45, PATIENCE = 12; // time of a picture that is too long (ms), and how many of them in a row are
+
+// All directions in space, in eighths of a turn.
+const SIDES = [-1, 0, 1].flatMap((x) => [-1, 0, 1].flatMap((y) => [-1, 0, 1].map((z) => [x, y, z]))).filter((side) => side.some(Boolean));
 
 // The renderer of all stages, with their materials.
 function makeEngine(three, canvas, context) {
@@ -22,7 +26,7 @@ function makeEngine(three, canvas, context) {
   const materials = {
     wood: standard(0.72, 0, picture(woodPicture(24, false, 1024, 256))),
     head: standard(0.78, 0, picture(woodPicture(7, true, 512, 512))),
-    steel: standard(0.5, 0.35), rack: standard(0.48, 0.3), device: standard(0.6, 0), block: standard(0.7, 0), ground: standard(0.8, 0),
+    steel: standard(0.5, 0.2), rack: standard(0.45, 0.1), device: standard(0.6, 0), block: standard(0.7, 0), ground: standard(0.8, 0),
     band: standard(0.7, 0),
     floor: new three.MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
     grid: new three.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
@@ -35,12 +39,12 @@ function makeEngine(three, canvas, context) {
     if (!names.has(key)) {
       const image = make("canvas", { width: 256, height: 128 });
       const pen = image.getContext("2d");
-      pen.font = `700 ${text.length > 5 ? 64 : 84}px system-ui, sans-serif`;
+      pen.font = `800 ${text.length > 5 ? 66 : 92}px system-ui, sans-serif`;
       pen.textAlign = "center";
       pen.textBaseline = "middle";
       pen.fillStyle = ink;
       pen.fillText(text, 128, 68, 244);
-      names.set(key, new three.MeshBasicMaterial({ map: picture(image), transparent: true, opacity: 0.82, depthWrite: false }));
+      names.set(key, new three.MeshBasicMaterial({ map: picture(image), transparent: true, opacity: 0.9, depthWrite: false }));
     }
     return names.get(key);
   }
@@ -48,14 +52,22 @@ function makeEngine(three, canvas, context) {
     for (const name of ["rack", "device", "block", "ground"]) materials[name].color.set(paint[name]);
     materials.band.color.set(paint.device);
     materials.wood.color.set(paint.barrel);
-    materials.head.color.set(paint.barrel);
-    materials.steel.color.set(paint.rack).multiplyScalar(0.4);
+    materials.head.color.set(paint.barrel).multiplyScalar(1.2);
+    materials.steel.color.set(paint.rack).multiplyScalar(0.45);
     materials.floor.color.set(paint.ground);
     materials.grid.color.set(paint.soft);
     materials.shadow.opacity = isDark(paint) ? 0.5 : 0.28;
   }
+  // Without a graphics card pictures take long: shadows go first, then sharpness.
+  const pace = { slow: 0, plainness: 0 };
+  function timed(duration) {
+    pace.slow = duration > SLOW_FRAME ? pace.slow + 1 : 0;
+    if (pace.slow < PATIENCE || pace.plainness === 2) return;
+    pace.plainness += 1;
+    pace.slow = 0;
+  }
   const onLost = (listener) => canvas.addEventListener("webglcontextlost", listener);
-  return { three, renderer, materials, nameOf, retheme, onLost };
+  return { three, renderer, materials, nameOf, retheme, pace, timed, onLost };
 }
 
 const isDark = (paint) => parseInt(paint.paper.slice(1, 3), 16) < 128;
@@ -66,7 +78,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   const scene = new three.Scene(), camera = new three.PerspectiveCamera();
   const moving = depth.bodies.map((_, body) => body).filter((body) => depth.bodies[body].role !== "ground");
   const ground = depth.bodies.findIndex(({ role }) => role === "ground");
-  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, known: null };
+  const stage = { draw, retheme, room, perPixel: () => 0, bodyAt, project, placeOf };
   const place = {}, now = depth.bodies.map(() => new three.Matrix4());
   const unseen = new three.Matrix4().makeScale(0, 0, 0);
   const [matrix, quaternion, vector, one] = [new three.Matrix4(), new three.Quaternion(), new three.Vector3(), new three.Vector3(1, 1, 1)];
@@ -186,7 +198,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
       for (let step = -half; step < half; step++) {
         for (const [x, y] of [[k, step], [k, step + 1], [step, k], [step + 1, k]]) {
           lines.push(x, y, 0);
-          tones.push(1, 1, 1, 0.55 * Math.max(0, 1 - Math.hypot(x, y) / half) ** 2);
+          tones.push(1, 1, 1, 0.38 * Math.max(0, 1 - Math.hypot(x, y) / half) ** 2);
         }
       }
     }
@@ -215,61 +227,68 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return [middle(0), middle(1), moving.length === 1 ? all[0][2] : 0];
   }
 
-  // The room that the bodies take until a time, seen by the camera: it grows, and begins to before they reach its edge.
+  // The farthest points of the bodies to all sides until a time, as the camera rides: they spread, and begin to before
+  // the bodies reach the edge of the picture.
   const rooms = {};
   function known() {
-    const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], boxes = [];
-    let box = [Infinity, Infinity, 0, -Infinity, -Infinity, -Infinity];
+    const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], lists = [];
+    let far = SIDES.map(() => -Infinity), points = SIDES.flatMap(() => [0, 0, 0]);
     for (let frame = 0; frame < data.count; frame += stride) {
       const shift = shiftAt(frame);
-      box = box.slice();
+      points = points.slice();
       for (const body of moving) {
         if (corners[body].length === 0 || !pose(body, frame, matrix)) continue;
         for (const corner of corners[body]) {
           vector.set(...corner).applyMatrix4(matrix);
           for (const row of depth.bodies[body].rows) {
-            [vector.x, vector.y, vector.z].forEach((value, axis) => {
-              const at = value + row[axis] - shift[axis];
-              if (axis < 2 || flat.camera === "stack") box[axis] = Math.min(box[axis], at);
-              box[3 + axis] = Math.max(box[3 + axis], at);
+            const [x, y, z] = [vector.x + row[0] - shift[0], vector.y + row[1] - shift[1], vector.z + row[2] - shift[2]];
+            SIDES.forEach(([a, b, c], k) => {
+              const along = a * x + b * y + c * z;
+              if (along > far[k]) [far[k], points[3 * k], points[3 * k + 1], points[3 * k + 2]] = [along, x, y, z];
             });
           }
         }
       }
       times.push(data.times[frame]);
-      boxes.push(box);
+      lists.push(points);
     }
-    return { times, boxes };
+    return isFinite(far[0]) ? { times, lists } : { times: [0], lists: [SIDES.flat()] };
   }
   function room(time) {
-    const { times, boxes } = (rooms[flat.camera] ??= known());
-    if (!(boxes.length > 0) || !isFinite(boxes[0][0])) return [-1, -1, 0, 1, 1, 1];
-    const sum = [0, 0, 0, 0, 0, 0], steps = 14;
+    const { times, lists } = (rooms[flat.camera] ??= known());
+    if (times.length === 1) return threes(lists[0]);
+    const sum = lists[0].map(() => 0), steps = 14;
     for (let k = 0; k < steps; k++) {
       const at = Math.min(Math.max(time + AHEAD * ((2 * k) / (steps - 1) - 0.5), times[0]), times.at(-1));
-      const next = Math.min(Math.max(times.findIndex((t) => t >= at), 1), times.length - 1);
-      if (times.length === 1) return boxes[0];
-      const share = Math.min(Math.max((at - times[next - 1]) / (times[next] - times[next - 1] || 1), 0), 1);
-      sum.forEach((_, c) => { sum[c] += (boxes[next - 1][c] + share * (boxes[next][c] - boxes[next - 1][c])) / steps; });
+      const next = Math.max(times.findIndex((t) => t >= at), 1);
+      const share = (at - times[next - 1]) / (times[next] - times[next - 1] || 1);
+      for (let c = 0; c < sum.length; c++) sum[c] += (lists[next - 1][c] + share * (lists[next][c] - lists[next - 1][c])) / steps;
     }
-    return sum;
+    return threes(sum);
   }
 
   // Puts the camera where it sees the rooms of all stages.
   function aim(time, shift) {
-    const all = stages().map((one) => one.room(time));
-    const low = [0, 1, 2].map((axis) => Math.min(...all.map((box) => box[axis])));
-    const high = [0, 1, 2].map((axis) => Math.max(...all.map((box) => box[axis + 3])));
-    const middle = low.map((value, axis) => 0.5 * (value + high[axis]));
-    const axes = eye.axes(), tan = Math.tan(0.5 * LENS), aspect = width / height;
-    const [tanX, tanY] = [(tan * aspect * (width - 28)) / width, (tan * (height - 76)) / height];
-    away = 0;
-    for (let k = 0; k < 8; k++) {
-      const corner = [0, 1, 2].map((axis) => (((k >> axis) & 1) === 0 ? low : high)[axis] - middle[axis]);
-      const toward = dot(corner, axes.back);
-      away = Math.max(away, Math.abs(dot(corner, axes.right)) / tanX + toward, Math.abs(dot(corner, axes.up)) / tanY + toward);
+    const list = stages().flatMap((one) => one.room(time));
+    const [low, high] = [Math.min, Math.max].map((end) => [0, 1, 2].map((axis) => end(...list.map((point) => point[axis]))));
+    let middle = low.map((value, axis) => 0.5 * (value + high[axis]));
+    const center = plus(middle, shift), axes = eye.axes(), tan = Math.tan(0.5 * LENS), aspect = width / height;
+    const [above, below] = [flat.head + 8, 34];
+    const [tanX, tanY] = [(tan * aspect * (width - 28)) / width, (tan * (height - above - below)) / height];
+    // What is nearer looks larger: the middle of the picture is found in a few rounds.
+    for (let round = 0; round < 4; round++) {
+      const seen = list.map((corner) => {
+        const offset = plus(corner, middle, -1);
+        return [dot(offset, axes.right), dot(offset, axes.up), dot(offset, axes.back)];
+      });
+      away = Math.max(0.2, ...seen.map(([x, y, toward]) => Math.max(Math.abs(x) / tanX, Math.abs(y) / tanY) + toward));
+      for (const [axis, way] of [axes.right, axes.up].entries()) {
+        const ends = seen.map((one) => one[axis] / (away - one[2]));
+        middle = plus(middle, way, 0.5 * away * (Math.min(...ends) + Math.max(...ends)));
+      }
     }
-    away = Math.max(away, 0.2) / eye.factor;
+    middle = plus(middle, axes.up, (away * tan * (above - below)) / height);
+    away /= eye.factor;
     target = plus(plus(middle, shift), eye.aside);
     back = axes.back;
     const [r, u, b] = [axes.right, axes.up, axes.back], p = plus(target, b, away);
@@ -285,8 +304,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     stage.perPixel = () => (2 * away * tan) / height;
     // The sun stands to the left of the eye, so that what is seen is lit from any side.
     const size = 0.5 * Math.hypot(...high.map((value, axis) => value - low[axis])) + 0.3;
-    const around = eye.around - 0.9, from = [0.75 * Math.sin(around), -0.75 * Math.cos(around), 1.15];
-    const center = plus(middle, shift);
+    const around = eye.around - 0.7, from = [0.75 * Math.sin(around), -0.75 * Math.cos(around), 1.15];
     sun.position.set(...plus(center, from, 2 * size));
     sun.target.position.set(...center);
     Object.assign(sun.shadow.camera, { left: -size, right: size, bottom: -size, top: size, near: 0.1, far: 5 * size });
@@ -345,8 +363,8 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     paint = flat.paint();
     engine.retheme(paint);
     sky.groundColor.set(isDark(paint) ? 0x4a4540 : 0xb0a79c);
-    sky.intensity = isDark(paint) ? 1.15 : 1.75;
-    sun.intensity = isDark(paint) ? 2.3 : 2.1;
+    sky.intensity = isDark(paint) ? 2.0 : 2.3;
+    sun.intensity = isDark(paint) ? 2.9 : 2.6;
   }
 
   function draw(frame, time) {
@@ -359,23 +377,30 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     if (!(data.count > 0)) return;
     aim(time, shiftAt(frame));
     update(frame, time);
-    const share = Math.min(1, SHARPEST / dpr), picture = renderer.domElement;
+    const since = performance.now(), { plainness } = engine.pace;
+    sun.castShadow = plainness === 0;
+    const share = Math.min(1, SHARPEST / dpr) * (plainness === 2 ? 0.6 : 1), picture = renderer.domElement;
     const [wide, high] = [canvas.width, canvas.height].map((side) => Math.round(share * side));
     if (picture.width !== wide || picture.height !== high) renderer.setSize(wide, high, false);
     renderer.render(scene, camera);
     context.drawImage(picture, 0, 0, canvas.width, canvas.height);
+    engine.timed(performance.now() - since);
     context.setTransform(dpr, 0, 0, dpr, 0, 0);
     const view = { scale: [eye.around, eye.above, eye.factor, ...eye.aside].map((v) => v.toFixed(2)).join() };
     drawOver({ context, width, height, paint, frame, time, view });
   }
 
   // The place of a body (px) and the radius of what is seen of it.
-  function circle(body) {
-    const { elements } = now[body], rows = depth.bodies[body].rows;
-    const nearest = rows.reduce((best, row) => (dot(row, back) > dot(best, back) ? row : best), rows[0]);
-    const [x, y, scale] = project(plus([elements[12], elements[13], elements[14]], nearest));
+  function circle(body, frame) {
+    const [x, y, scale] = project(placeOf(body, frame));
     const reach = Math.max(0, ...corners[body].map((corner) => Math.hypot(...corner)));
     return [x, y, 0.72 * reach * scale];
+  }
+
+  // The middle (m) of the equal of a body that is nearest to the eye.
+  function placeOf(body, frame) {
+    const rows = depth.bodies[body].rows, at = poseOf(body, frame) ?? [NaN, NaN, NaN];
+    return plus(at, rows.reduce((best, row) => (dot(row, back) > dot(best, back) ? row : best), rows[0]));
   }
 
   // What is written and drawn over the picture.
@@ -383,15 +408,15 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     const { context } = pen;
     if (flat.traces && depth.plane) drawPaths(pen);
     const arrows = flat.forces && depth.plane ? drawPushes(pen) : [];
-    for (const { body } of currentEvents(stage.said ?? depth, pen.time)) {
-      if (body !== null && depth.bodies[body].role !== "ground") ring(pen, circle(body));
+    for (const { body } of currentEvents(depth, pen.time)) {
+      if (body !== null && depth.bodies[body].role !== "ground") ring(pen, circle(body, pen.frame));
     }
     if (flat.tint && data.tint && depth.plane) drawTintScale(pen, data.tint, flat.full);
     if (flat.callout && depth.moment) {
-      const at = circle(depth.moment.body);
+      const at = circle(depth.moment.body, pen.frame);
       if (isFinite(at[0])) {
         ring(pen, at);
-        drawCallout(pen, depth.moment.text, at, moving.filter((body) => corners[body].length > 0).map(circle), place);
+        drawCallout(pen, depth.moment.text, at, moving.filter((body) => corners[body].length > 0).map((body) => circle(body, pen.frame)), place);
       }
     }
     context.font = "12px system-ui, sans-serif";
@@ -399,7 +424,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.fillStyle = paint.soft;
     context.textAlign = "left";
     halo(pen, "grid of 1\u00a0m", 14, height - 14);
-    if (!eye.turned) {
+    if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
       halo(pen, width < 420 ? "drag to turn" : "drag to turn, two fingers or Ctrl and wheel to zoom", width - 14, height - 14);
     }
@@ -477,7 +502,6 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.textAlign = "left";
     context.textBaseline = "middle";
     context.fillText(text, x + 8, y + 12);
-    stage.named = text;
   }
 
   retheme();

@@ -290,7 +290,7 @@ function makePane(data, box) {
     data, stage, deep: null, section: box.closest(".pane") ?? box,
     // While the player opens, the moment has its callout and nothing is announced.
     show(k, time, opens) {
-      const drawn = stage.deep && this.deep ? this.deep : stage, told = drawn === stage ? data : { ...data, ...data.depth };
+      const drawn = stage.deep && this.deep ? this.deep : stage, told = drawn === stage ? data : data.depth;
       shown = Math.min(Math.max(k, 0), Math.max(0, data.count - 1));
       const own = data.count > 0 ? data.times[shown] : 0;
       const { moment } = told;

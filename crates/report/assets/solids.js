@@ -115,7 +115,7 @@ function addBarrel({ wood, head, steel, label }, volume) {
   const bung = frameOf(volume.at, frame.v), bilge = radius(0);
   revolve(steel, bung, [[0.9 * bilge, 0.03 * size], [bilge + 0.012 * size, 0.03 * size], [bilge + 0.012 * size, 0]], AROUND_TUBE, false, flatMap);
   for (const side of [-1, 1]) {
-    const first = label.places.length / 3, [wide, high] = [0.78 * rim, 0.39 * rim];
+    const first = label.places.length / 3, [wide, high] = [0.9 * rim, 0.45 * rim];
     for (const [s, t] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
       const place = plus(frame.at, frame.axis, side * (inner + 0.003 * size));
       label.places.push(...plus(plus(place, frame.u, side * s * wide), frame.v, t * high));

@@ -13,7 +13,8 @@ import { existsSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { accessible, spoiled } from "./lib/access.mjs";
-import { launch, missing, open } from "./lib/browser.mjs";
+import { PHONE, launch, missing, open } from "./lib/browser.mjs";
+import { addressed, fingers, inDepth, pace, presets, shows, switches, turns, without } from "./lib/deep.mjs";
 import { overlay, variants } from "./lib/ghosts.mjs";
 import { Goldens, looks } from "./lib/golden.mjs";
 import { darkness, linkedZoom, opening, paper, phone } from "./lib/layout.mjs";
@@ -87,6 +88,26 @@ for (const [name, { several, plain }] of Object.entries(PAGES)) {
   }
   await suite.check(`${name}: writes no error and asks for nothing but itself`, () => demand(faults.length === 0, faults.join("\n")));
 }
+for (const name of ["demo", "eight", "along", "levels", "space"]) {
+  const checks = {
+    "shows wood where barrels are, in three dimensions": shows,
+    "turns and zooms by pointer, wheel and keys": turns,
+    "has the silhouettes of the flat picture": name === "space" ? null : presets,
+    "leads to the flat picture and back": switches,
+    "states its pace in three dimensions": pace,
+    "has no finding of axe in three dimensions": accessible,
+  };
+  for (const [text, check] of Object.entries(checks).filter(([, check]) => check)) {
+    await suite.check(`${name}: ${text}`, async () => {
+      let note;
+      await inDepth(browser, reportOf(pages, name), async (page) => { note = await check(page); });
+      return note;
+    });
+  }
+}
+await suite.check("demo: is turned by a finger", () => inDepth(browser, reportOf(pages, "demo"), fingers, { viewport: PHONE, touch: true }));
+await suite.check("demo: is flat where the address asks for it", () => addressed(browser, reportOf(pages, "demo")));
+await suite.check("demo: is flat without WebGL", () => without(reportOf(pages, "demo")));
 for (const name of ["demo", "eight", "half", "along", "levels"]) {
   await checkOn("opens on a still of what matters, where motion is unwanted", name, still);
 }

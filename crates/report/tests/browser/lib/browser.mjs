@@ -16,7 +16,7 @@ export function missing(text) {
 const require = createRequire(import.meta.url);
 
 /** The browser of $CHROMIUM, or the usual one. Text is drawn the same way on every machine. */
-export async function launch() {
+export async function launch(more = []) {
   const executablePath = process.env.CHROMIUM || "/usr/bin/chromium";
   if (!existsSync(executablePath)) missing(`${executablePath} is not there; set CHROMIUM to the browser`);
   let playwright;
@@ -25,7 +25,7 @@ export async function launch() {
   } catch {
     missing("playwright-core is not installed; run `npm ci` in crates/report/tests/browser");
   }
-  const args = ["--no-sandbox", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb"];
+  const args = ["--no-sandbox", "--font-render-hinting=none", "--disable-lcd-text", "--force-color-profile=srgb", ...more];
   return playwright.chromium.launch({ executablePath, args });
 }
 
@@ -45,13 +45,14 @@ function fontFace(part, weight) {
  * Opens a page and hands it to `use`; adds to `faults` whatever the page must not do: write an
  * error, throw one, ask for anything but its own file.
  *
- * With `pinned` the page uses one and the same font on every machine.
+ * With `pinned` the page uses one and the same font on every machine. Unless it is `deep` it opens on its flat picture,
+ * which is measured, as a reader can ask for in the address.
  */
-export async function open(browser, path, { viewport = DESKTOP, colorScheme = "light", pinned = false, strict = true }, use) {
+export async function open(browser, path, { viewport = DESKTOP, colorScheme = "light", pinned = false, strict = true, deep = false, touch = false }, use) {
   const faults = [];
-  const context = await browser.newContext({ viewport, colorScheme, bypassCSP: pinned, deviceScaleFactor: 1, reducedMotion: "reduce" });
+  const context = await browser.newContext({ viewport, colorScheme, bypassCSP: pinned, deviceScaleFactor: 1, reducedMotion: "reduce", hasTouch: touch });
   const page = await context.newPage();
-  const url = pathToFileURL(path).href;
+  const url = addressOf(path, deep);
   page.on("console", (message) => { if (message.type() === "error") faults.push(`console: ${message.text()}`); });
   page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
   page.on("request", (request) => {
@@ -69,6 +70,9 @@ export async function open(browser, path, { viewport = DESKTOP, colorScheme = "l
   if (strict && faults.length > 0) throw new Error(faults.join("\n"));
   return faults;
 }
+
+/** The address of a page, in three dimensions where it can be drawn so, or flat. */
+export const addressOf = (path, deep = false) => `${pathToFileURL(path).href}${deep ? "" : "?view=flat"}`;
 
 async function pin(page) {
   await page.addInitScript((families) => {

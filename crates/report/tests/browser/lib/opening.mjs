@@ -1,7 +1,6 @@
 // Checks of how a player opens: on the moment that matters, looped or still, until the reader takes over.
 
-import { pathToFileURL } from "node:url";
-import { DESKTOP } from "./browser.mjs";
+import { DESKTOP, addressOf } from "./browser.mjs";
 import { demand } from "./suite.mjs";
 
 const facts = (page) => page.evaluate(() => {
@@ -34,7 +33,7 @@ async function moving(browser, path, hash, use) {
   const context = await browser.newContext({ viewport: DESKTOP, reducedMotion: "no-preference" });
   try {
     const page = await context.newPage();
-    await page.goto(pathToFileURL(path).href + hash);
+    await page.goto(addressOf(path) + hash);
     return await use(page);
   } finally {
     await context.close();

@@ -41,6 +41,8 @@ export const PAGES = {
     args: ["compare", "demo-napa", "--set", `${FRICTION}=0.4`, "--against", `${FRICTION}=0.1`, "--variants=8", "--quiet"],
     looks: [],
   },
+  // A run in space, which is turned, or shown from three sides.
+  space: { plain: true, args: ["run", "demo-napa", "--set", "stack.view=spatial", "--variants=0", "--quiet"], looks: [] },
   // Pages without a player, or with others around it, for readers of screens.
   verify: { plain: true, args: ["run", "candia-8-barrels", "--verify", "--variants=8", "--quiet"], looks: [] },
   heights: { plain: true, file: "index.html", args: ["heights", "--synthetic=0", "--quiet"], looks: [] },
