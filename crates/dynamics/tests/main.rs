@@ -12,6 +12,7 @@ mod friction;
 mod integrators;
 mod invariants;
 mod masses;
+mod order;
 mod patches;
 mod racks;
 mod regimes;

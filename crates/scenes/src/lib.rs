@@ -1,6 +1,7 @@
 //! Scenes, ground motions and closed forms, shared by the tests of the dynamics and the validation.
 
 pub mod drive;
+pub mod order;
 pub mod scene;
 pub mod spatial;
 pub mod theory;

@@ -148,14 +148,16 @@ pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     }
 }
 
-/// Pairs every body with nodes with every other body's first surface; two discs, or two solids, form one pair.
+/// Pairs every body with nodes with every other body's first surface; two discs, or two solids, form one pair, and of a
+/// disc and a convex boundary only the disc is tested.
 pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     let round =
         |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. } | Nodes::Whole(_)));
     let mut pairs = vec![];
     for contactor in 0..bodies.len() {
         for target in 0..bodies.len() {
-            let meets_twice = round(contactor) && round(target) && contactor > target;
+            let convex = matches!(bodies[contactor].nodes.first(), Some(Nodes::Rounds(_)));
+            let meets_twice = round(target) && (convex || round(contactor) && contactor > target);
             if contactor != target
                 && !bodies[contactor].nodes.is_empty()
                 && !bodies[target].surfaces.is_empty()

@@ -46,8 +46,7 @@ pub enum FrictionLaw<R = f64> {
 /// Stick memory of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stick<S: Space> {
-    /// Elastic tangential displacement of the contactor relative to the target (m), in the frame of the
-    /// target's surface.
+    /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
     pub displacement: S::Tangent,
     /// The plane of the displacement when the last step was accepted: contacts travel over round targets.
     pub tangent_plane: S::TangentPlane,

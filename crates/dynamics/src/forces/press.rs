@@ -271,9 +271,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                 let center = self.frame.to_surface(*center);
                 let mut gap = surface.gap(center);
                 gap.distance -= *radius;
-                let node = center - gap.normal * *radius;
-                self.look_ahead(node, gap);
+                self.look_ahead(center - gap.normal * *radius, gap);
                 if gap.distance.lt(S::Real::zero()).any() {
+                    let node = midway(center, gap, *radius);
                     self.node(group.first, node, gap, one);
                 }
             }
@@ -351,12 +351,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let rate = contact.penetration_rate;
         let normal = self.law(shared.unwrap_or(contact.penetration), rate);
         let normal_force = normal.total * weight;
-        let tangent_plane = S::tangent_plane(contact.normal);
-        let stick = self.elements.sticks[element].carried(tangent_plane);
-        let friction =
-            (self.laws)().friction.force::<S>(stick, contact.slip_rate, normal_force, weight);
+        let (slip_rate, load) = (contact.slip_rate, (normal_force, weight));
+        let (friction_force, tangent_plane) =
+            self.friction(element, touching, contact.normal, slip_rate, load);
         self.totals.elastic += normal.energy * weight;
-        self.totals.stick += friction.energy;
 
         let damped = normal_force - normal.elastic * weight;
         let arm = contact.point - self.frame.contactor;
@@ -364,11 +362,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let sum = &mut self.sum;
         sum.normal += Wrench { force: contact.normal * normal_force, moment: lever * normal_force };
         sum.damped += Wrench { force: contact.normal * damped, moment: lever * damped };
-        let sliding = -S::along(friction.force, contact.normal);
+        let sliding = -S::along(friction_force, contact.normal);
         sum.friction += Wrench { force: sliding, moment: S::moment(arm, sliding) };
         self.resist_rolling(normal_force);
 
-        self.slip_rates[element] = contact.slip_rate;
         self.pressed.push(Pressed {
             element,
             pair: self.pair,
@@ -380,10 +377,45 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             weight: whole,
         });
         if let Some(contacts) = &mut self.contacts {
-            contacts.push(Contact { normal_force, friction_force: friction.force, ..contact });
+            contacts.push(Contact { normal_force, friction_force, ..contact });
         }
         S::Real::select(touching, normal.energy * self.elements.weights[element], S::Real::zero())
     }
+}
+
+impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
+    /// Returns the friction force (N) of an element under a normal force (N), with the weight of its law, and the
+    /// plane of its stick; adds its energy and the rate of its stick.
+    ///
+    /// Sticks are kept in the inertial frame, in which neither body differs from the other.
+    #[inline(always)]
+    fn friction(
+        &mut self,
+        element: usize,
+        touching: <S::Real as Real>::Mask,
+        normal: S::Vector,
+        slip_rate: S::Tangent,
+        (normal_force, weight): (S::Real, S::Real),
+    ) -> (S::Tangent, S::TangentPlane) {
+        let rotation = self.frame.rotation;
+        let tangent_plane = S::tangent_plane(S::rotate(rotation, normal));
+        let stick = self.elements.sticks[element].carried(tangent_plane);
+        let slip = S::rotate_tangent(rotation, slip_rate);
+        let friction = (self.laws)().friction.force::<S>(stick, slip, normal_force, weight);
+        self.totals.stick += friction.energy;
+        let about = self.meeting.mean_spin();
+        let rate =
+            S::stick_rate(slip, stick.displacement, S::rotate_spin(rotation, about), tangent_plane);
+        self.slip_rates[element] = S::choose(touching, rate, S::Tangent::default());
+        (S::unrotate_tangent(rotation, friction.force), tangent_plane)
+    }
+}
+
+/// Returns the node (m) of a round about `center` for which the force acts midway between the boundaries, so that
+/// exchanging the bodies changes nothing.
+#[inline(always)]
+fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
+    center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))
 }
 
 /// How the contacts of a pair resist the rolling that is under way.

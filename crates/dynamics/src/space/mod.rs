@@ -148,6 +148,18 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         from: Self::TangentPlane,
         to: Self::TangentPlane,
     ) -> Self::Tangent;
+    /// Rotates a tangent from a rotated frame to the inertial one.
+    fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
+    /// Rotates a tangent from the inertial frame to a rotated one.
+    fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
+    /// Returns the rate (m/s) of a stick from the slip rate, both in the inertial frame: about the normal it turns with
+    /// the mean spin (rad/s) of both bodies.
+    fn stick_rate(
+        slip_rate: Self::Tangent,
+        displacement: Self::Tangent,
+        spin: Self::Spin,
+        plane: Self::TangentPlane,
+    ) -> Self::Tangent;
     /// Limits the length of a tangent to `limit` (not negative).
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;
     /// Returns `yes` in lanes of the mask, `no` elsewhere.

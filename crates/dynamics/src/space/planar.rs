@@ -262,6 +262,18 @@ impl<R: Real> Space for Planar<R> {
         tangent
     }
     #[inline(always)]
+    fn rotate_tangent(_rotation: Rotation2<R>, tangent: R) -> R {
+        tangent
+    }
+    #[inline(always)]
+    fn unrotate_tangent(_rotation: Rotation2<R>, tangent: R) -> R {
+        tangent
+    }
+    #[inline(always)]
+    fn stick_rate(slip_rate: R, _displacement: R, _spin: R, (): ()) -> R {
+        slip_rate
+    }
+    #[inline(always)]
     fn shorten(tangent: R, limit: R) -> R {
         tangent.clamp_magnitude(limit)
     }

@@ -201,6 +201,23 @@ impl<R: Real> Space for Spatial<R> {
         tangent - (from + to) * (tangent.dot(to) / scale)
     }
     #[inline(always)]
+    fn rotate_tangent(rotation: Rotation3<R>, tangent: Vec3<R>) -> Vec3<R> {
+        rotation.apply(tangent)
+    }
+    #[inline(always)]
+    fn unrotate_tangent(rotation: Rotation3<R>, tangent: Vec3<R>) -> Vec3<R> {
+        rotation.unapply(tangent)
+    }
+    #[inline(always)]
+    fn stick_rate(
+        slip_rate: Vec3<R>,
+        displacement: Vec3<R>,
+        spin: Vec3<R>,
+        normal: Vec3<R>,
+    ) -> Vec3<R> {
+        slip_rate + normal.cross(displacement) * spin.dot(normal)
+    }
+    #[inline(always)]
     fn shorten(tangent: Vec3<R>, limit: R) -> Vec3<R> {
         let square = tangent.dot(tangent);
         let longer = (limit * limit).lt(square);

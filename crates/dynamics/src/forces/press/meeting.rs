@@ -27,6 +27,8 @@ struct Motion<S: Space> {
     linear: S::Vector,
     /// Spin (rad/s) of the contactor relative to the target.
     spin: S::Spin,
+    /// Spin (rad/s) of the target.
+    target_spin: S::Spin,
 }
 
 impl<S: Space> Seen<S> {
@@ -46,6 +48,7 @@ impl<S: Space> Seen<S> {
             linear: S::unrotate(frame.rotation, contactor.linear - target.linear)
                 - S::velocity_at(target_spin, apart),
             spin: S::unrotate_spin(frame.rotation, contactor.angular) - target_spin,
+            target_spin,
         };
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
@@ -88,6 +91,12 @@ impl<'a, S: Space> Meeting<'a, S> {
     #[inline(always)]
     pub(super) fn spin(&self) -> S::Spin {
         self.motion.spin
+    }
+
+    /// Returns the mean spin (rad/s) of both bodies.
+    #[inline(always)]
+    pub(super) fn mean_spin(&self) -> S::Spin {
+        self.motion.target_spin + self.motion.spin * S::Real::splat(0.5)
     }
 
     /// Returns the velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.

@@ -223,14 +223,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let counted = S::Real::select(at.touching, S::Real::splat(1.0), S::Real::zero());
         let slip_rate = S::tangential(meeting.velocity(point), at.normal) * counted;
         let (normal_force, weight) = (at.normal_force * share, at.stiffness * share);
-        let tangent_plane = S::tangent_plane(at.normal);
-        let stick = self.elements.sticks[element].carried(tangent_plane);
-        let friction = (self.laws)().friction.force::<S>(stick, slip_rate, normal_force, weight);
-        self.totals.stick += friction.energy;
-        let force = -S::along(friction.force, at.normal);
+        let load = (normal_force, weight);
+        let (friction_force, tangent_plane) =
+            self.friction(element, at.touching, at.normal, slip_rate, load);
+        let force = -S::along(friction_force, at.normal);
         let moment = S::moment(point - self.frame.contactor, force);
         self.sum.friction += Wrench { force, moment };
-        self.slip_rates[element] = slip_rate;
         let node = self.elements.nodes[element];
         self.pressed.push(Pressed {
             element,
@@ -254,7 +252,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                 penetration_rate: at.rate,
                 normal_force,
                 slip_rate,
-                friction_force: friction.force,
+                friction_force,
             });
         }
     }

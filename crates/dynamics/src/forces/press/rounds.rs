@@ -1,6 +1,6 @@
 //! The contacts of the round pieces of a convex boundary: corners, rounded or sharp, and arcs.
 
-use super::{Group, Laws, Press};
+use super::{Group, Laws, Press, midway};
 use crate::body::Round;
 use crate::forces::LOOKAHEAD_GAP;
 use crate::model::ContactPair;
@@ -82,9 +82,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             self.look_ahead(center - gap.normal * round.radius, gap);
             if gap.distance.lt(zero).any() {
                 let share = self.share(round, &nearest, slack);
-                // The force acts midway between the boundaries, whichever body is tested.
-                let inset = round.radius - gap.distance * S::Real::splat(0.5);
-                let energy = self.node(element, center - gap.normal * inset, gap, share.value);
+                let node = midway(center, gap, round.radius);
+                let energy = self.node(element, node, gap, share.value);
                 if zero.lt(share.slope).any() {
                     let force = nearest.toward_end * (energy * share.slope);
                     let arm = center - self.frame.contactor;

@@ -1,0 +1,194 @@
+//! Scenes whose bodies may be listed in any order: in the reverse one, every two free bodies exchange contactor and
+//! target.
+
+use std::ops::ControlFlow;
+
+use barrelstack_dynamics::shape::{BarrelProfile, Polygon};
+use barrelstack_dynamics::solid::{Barrel, Block, Capsule, Hull};
+use barrelstack_dynamics::space::Linear as _;
+use barrelstack_dynamics::{
+    Body, Interface, Model, Motion, Nodes, NormalLaw, Planar, Quaternion, RunError, Shape, Space,
+    Spatial, Still, Twist, Vec2, Vec3,
+};
+
+use crate::scene::{DOWN, Scene, all_pairs, centered, coulomb, disc, floor, interface, pose};
+use crate::tumble::Random;
+use crate::{GRAVITY, spatial};
+
+/// Bodies under gravity that touch by one law.
+pub struct Order<S: Space> {
+    /// Name of the scene.
+    pub name: String,
+    /// The bodies, of which prescribed ones come first.
+    pub bodies: Vec<Body<S>>,
+    laws: Interface<S>,
+    gravity: S::Vector,
+}
+
+impl<S: Space<Real = f64>> Order<S> {
+    /// Returns the largest difference in position (m) of any body up to a time (s), between the bodies in the given
+    /// order and in the reverse one.
+    ///
+    /// # Errors
+    /// If a run fails.
+    ///
+    /// # Panics
+    /// If the bodies make no valid model, which is a mistake in a scene.
+    pub fn reversal(&self, step: f64, end: f64) -> Result<f64, RunError> {
+        let fixed = self.bodies.iter().take_while(|body| body.motion == Motion::Prescribed).count();
+        let mut reversed = self.bodies.clone();
+        reversed[fixed..].reverse();
+        let (one, mut other) =
+            (self.path(self.bodies.clone(), step, end)?, self.path(reversed, step, end)?);
+        let mut worst = 0.0_f64;
+        for (here, there) in one.iter().zip(&mut other) {
+            there[fixed..].reverse();
+            for (a, b) in here.iter().zip(there) {
+                let apart = *a - *b;
+                worst = worst.max(apart.dot(apart).sqrt());
+            }
+        }
+        Ok(worst)
+    }
+
+    /// Returns the positions (m) of all bodies after every step.
+    fn path(
+        &self,
+        bodies: Vec<Body<S>>,
+        step: f64,
+        end: f64,
+    ) -> Result<Vec<Vec<S::Vector>>, RunError> {
+        let pairs = all_pairs(&bodies);
+        let model = Model::new(bodies, vec![self.laws.clone()], pairs, self.gravity)
+            .unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        let (mut scene, mut all) = (Scene::of(model), Vec::new());
+        scene.watch(&Still, step, end, |state, _, _| {
+            all.push(state.poses.iter().map(|pose| pose.position).collect());
+            ControlFlow::Continue(())
+        })?;
+        Ok(all)
+    }
+}
+
+/// Returns a law of 2 MN/m with friction of 0.35.
+fn laws<S: Space<Real = f64>>() -> Interface<S> {
+    let normal = NormalLaw::SpeedGap { stiffness: 2e6, damping: 2e3 };
+    interface(normal, coulomb(0.35, 2e6, 1e3))
+}
+
+/// Returns a body of the plane by its kind: a circle, a sharp box, one with round corners, a barrel seen from its side.
+fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body<Planar> {
+    let radius = 0.3;
+    let shape = match kind {
+        0 => return disc(name, radius, mass, 0.5 * radius * radius, Vec2::new(x, z)),
+        1 => Polygon::rectangle(0.5, 0.4, 0.0).ok().map(Shape::Polygon),
+        2 => Polygon::rectangle(0.5, 0.4, 0.08).ok().map(Shape::Polygon),
+        _ => BarrelProfile::new(0.7, 0.4, 0.5).map(Shape::BarrelProfile),
+    };
+    let shape = shape.unwrap_or_else(|| panic!("{name} has no valid shape"));
+    Body {
+        nodes: vec![Nodes::Rounds(shape.rounds(1.0))],
+        surfaces: vec![centered(shape)],
+        ..Body::free(name, mass, mass * 0.04, pose(x, z, turn))
+    }
+}
+
+/// Returns a solid by its kind: a ball, a tube, a barrel, a block.
+fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Spatial> {
+    let inertia = Vec3::new(0.03, 0.045, 0.045) * mass;
+    let hull = match kind {
+        0 => None,
+        1 => Some(Hull::Capsule(Capsule { half_length: 0.25, radius: 0.1 })),
+        2 => match Barrel::new(0.7, 0.2, 0.25, 0.01) {
+            Ok(barrel) => Some(Hull::Barrel(barrel)),
+            Err(error) => panic!("{name}: {error}"),
+        },
+        _ => Some(Hull::Block(Block { half: Vec3::new(0.25, 0.2, 0.15), rounding: 0.01 })),
+    };
+    let mut body = match hull {
+        Some(hull) => spatial::solid(name, hull, mass, inertia, place),
+        None => Body { name: name.into(), ..spatial::ball(0.3, mass, place) },
+    };
+    body.pose.orientation = Quaternion::turn(turn);
+    body
+}
+
+/// Names of the kinds of bodies, in the plane and in space.
+const KINDS: [[&str; 4]; 2] =
+    [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
+
+/// Returns every two kinds of bodies of the plane that collide aside of their middles, spinning, of 100 and 60 kg.
+pub fn planar_pairs() -> Vec<Order<Planar>> {
+    let pair = |i: usize| {
+        let (a, b) = (i / 4, i % 4);
+        let mut bodies = vec![
+            planar(a, "first", 100.0, -0.5, 0.0, 0.3),
+            planar(b, "second", 60.0, 0.5, 0.1, -0.4),
+        ];
+        bodies[0].twist = Twist { linear: Vec2::new(1.0, 0.0), angular: 1.0 };
+        bodies[1].twist = Twist { linear: Vec2::new(-1.5, 0.0), angular: 2.0 };
+        let name = format!("{} and {}", KINDS[0][a], KINDS[0][b]);
+        Order { name, bodies, laws: laws(), gravity: Vec2::default() }
+    };
+    (0..16).map(pair).collect()
+}
+
+/// Returns every two kinds of solids that collide aside of their middles, spinning, of 100 and 60 kg.
+pub fn spatial_pairs() -> Vec<Order<Spatial>> {
+    let pair = |i: usize| {
+        let (a, b) = (i / 4, i % 4);
+        let turns = [Vec3::new(0.3, -0.2, 0.5), Vec3::new(-0.4, 0.6, 0.2)];
+        let mut bodies = vec![
+            solid(a, "first", 100.0, Vec3::new(-0.5, 0.0, 0.0), turns[0]),
+            solid(b, "second", 60.0, Vec3::new(0.5, 0.06, 0.08), turns[1]),
+        ];
+        let linear = Vec3::new(1.0, 0.0, 0.0);
+        bodies[0].twist = Twist { linear, angular: Vec3::new(1.0, 0.5, -0.5) };
+        bodies[1].twist = Twist { linear: linear * -1.5, angular: Vec3::new(-0.5, 2.0, 1.0) };
+        let name = format!("{} and {}", KINDS[1][a], KINDS[1][b]);
+        Order { name, bodies, laws: laws(), gravity: Vec3::default() }
+    };
+    (0..16).map(pair).collect()
+}
+
+/// Returns four bodies of the plane that tumble onto a floor and each other.
+pub fn planar_heap(seed: u64) -> Order<Planar> {
+    let mut random = Random(seed);
+    let mut bodies = vec![floor()];
+    for i in 0..4_usize {
+        let x = [-0.35, 0.35][i % 2] + random.within(-0.05, 0.05);
+        let z = 0.45 + 0.7 * (i / 2) as f64;
+        let (mass, turn) = (random.within(40.0, 120.0), random.within(-1.0, 1.0));
+        let mut body = planar((i + seed as usize) % 4, &format!("body {i}"), mass, x, z, turn);
+        let linear = Vec2::new(random.within(-0.5, 0.5), random.within(-1.0, 0.0));
+        body.twist = Twist { linear, angular: random.within(-2.0, 2.0) };
+        bodies.push(body);
+    }
+    Order { name: format!("four on a floor, {seed}"), bodies, laws: laws(), gravity: DOWN }
+}
+
+/// Returns two solids that tumble onto a floor and each other.
+pub fn spatial_heap(seed: u64) -> Order<Spatial> {
+    let mut random = Random(seed);
+    let mut bodies = vec![spatial::floor()];
+    for (i, kind) in [seed as usize / 4, seed as usize].into_iter().enumerate() {
+        let mut near = |size: f64| {
+            let mut any = || random.within(-size, size);
+            Vec3::new(any(), any(), any())
+        };
+        let place = Vec3::new(0.0, 0.0, 0.4 + 0.65 * i as f64) + near(0.03);
+        let (turn, spin) = (near(0.5), near(1.0));
+        let linear = near(0.3);
+        let mass = random.within(40.0, 120.0);
+        let mut body = solid(kind % 4, &format!("body {i}"), mass, place, turn);
+        body.twist = Twist { linear, angular: spin };
+        bodies.push(body);
+    }
+    let gravity = Vec3::new(0.0, 0.0, -GRAVITY);
+    let name = format!(
+        "{} and {} on a floor",
+        KINDS[1][seed as usize / 4 % 4],
+        KINDS[1][seed as usize % 4]
+    );
+    Order { name, bodies, laws: laws(), gravity }
+}
