@@ -135,6 +135,7 @@ fn touch_by<S: Space>(
         step,
         frame,
         meeting,
+        leads: leads(model, pair),
         pair: group.pair,
         elements: &state.contact_elements,
         sum: PairWrench::default(),
@@ -143,7 +144,7 @@ fn touch_by<S: Space>(
         pressed: &mut scratch.pressed,
         contacts: scratch.keeps_contacts.then_some(&mut scratch.contacts),
     };
-    press.nodes(pair, model.pair_nodes(pair), group, surface, basis);
+    press.nodes(model.pair_nodes(pair), group, surface, basis);
     let Press { meeting, sum, totals, needs_substeps, is_hard, pressed, .. } = press;
     let touches = pressed.len() > others;
     scratch.needs_substeps = needs_substeps;
@@ -166,6 +167,13 @@ fn touch_by<S: Space>(
     let (contactor, target) = (pair.contactor, pair.target);
     let force = on_contactor.force;
     scratch.pair_forces.push(PairForce { pair: group.pair, contactor, target, force });
+}
+
+/// Returns the lanes in which the contactor of a pair [leads](Press::leads).
+#[inline(always)]
+fn leads<S: Space>(model: &Model<S>, pair: &ContactPair) -> <S::Real as Real>::Mask {
+    let [own, other] = [pair.contactor, pair.target].map(|id| model.inert[id].mass);
+    if pair.contactor < pair.target { other.le(own) } else { other.lt(own) }
 }
 
 /// Accumulator for the nodes of a pair that press into a surface.
@@ -195,6 +203,9 @@ struct Press<'a, S: Space, L> {
     frame: &'a PairFrame<S>,
     /// Kinematics of the pair: computed before the first node, to avoid a test at every node.
     meeting: Meeting<'a, S>,
+    /// Lanes in which a contact of two round pieces belongs to this pair: its contactor is the heavier body, or of equal
+    /// ones the first.
+    leads: <S::Real as Real>::Mask,
     pair: usize,
     elements: &'a ContactElements<S>,
     sum: PairWrench<S>,
@@ -211,14 +222,7 @@ const RESTING_SHARE: f64 = 0.01;
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// All contacts of a pair.
     #[inline(always)]
-    fn nodes(
-        &mut self,
-        pair: &ContactPair,
-        nodes: &Nodes<S>,
-        group: &Group,
-        surface: &S::Surface,
-        basis: Basis,
-    ) {
+    fn nodes(&mut self, nodes: &Nodes<S>, group: &Group, surface: &S::Surface, basis: Basis) {
         let one = S::Real::splat(1.0);
         match nodes {
             Nodes::Fixed(all) => {
@@ -266,7 +270,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
                     },
                 );
             }
-            Nodes::Rounds(rounds) => self.rounds(pair, rounds, group, surface),
+            Nodes::Rounds(rounds) => self.rounds(rounds, group, surface),
             Nodes::Rolling { center, radius, .. } => {
                 let center = self.frame.to_surface(*center);
                 let mut gap = surface.gap(center);

@@ -74,12 +74,13 @@ pub struct Patch<S: Space> {
 pub struct Points<S: Space> {
     /// The points.
     pub points: [Bearing<S>; MOST_POINTS],
-    /// Unit vectors along the face in which they lie, for their sticks.
-    pub axes: [S::Vector; 2],
+    /// Unit vectors along the faces of both bodies in which they lie, for their sticks.
+    pub axes: [S::Vector; 4],
 }
 
-/// Maximum number of bearing points: the corners of the polygon that two rectangles share, and the deepest.
-pub const MOST_POINTS: usize = 9;
+/// Maximum number of bearing points: the corners of the polygon that two rectangles share, as either body has it, and
+/// the deepest.
+pub const MOST_POINTS: usize = 17;
 
 /// A point of [`Points`].
 #[derive(Clone, Copy, Debug, PartialEq)]

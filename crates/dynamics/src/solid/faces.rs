@@ -11,7 +11,7 @@ use crate::shape::Gap;
 use crate::space::{Linear, Rotation3, Spatial, Vec2, Vec3};
 
 /// Maximum number of corners of the polygon that two rectangles share.
-pub(super) const MOST: usize = 8;
+const MOST: usize = 8;
 
 /// Distance (m) outside of a face within which a corner counts as inside: corners of flush blocks coincide.
 const FLUSH: f64 = 1e-9;
@@ -29,13 +29,13 @@ pub(super) struct Vertex {
 }
 
 /// The shared polygon of two blocks.
-pub(super) struct Shared {
-    pub(super) vertices: [Option<Vertex>; MOST],
+pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
+    pub(super) vertices: [Option<Vertex>; CORNERS],
     /// Share of the contact that the polygon bears: 1 where a face of either block meets the other, 0 where an edge
     /// crosses an edge.
     pub(super) flat: f64,
-    /// Unit vectors along the face of the target.
-    pub(super) axes: [Vec3; 2],
+    /// Unit vectors along the face of the target, or along those of both.
+    pub(super) axes: [Vec3; AXES],
 }
 
 /// A side of the polygon: one of the contactor's face, or of the target's.
@@ -135,6 +135,35 @@ impl Face {
     }
 }
 
+/// Returns the mean of the polygon as [`shared`] has it and as it has it with the blocks exchanged, so that neither
+/// differs from the other.
+pub(super) fn shared_by_both(
+    contactor: &Block,
+    target: &Block,
+    at: Vec3,
+    frame: Rotation3,
+    normal: Vec3,
+) -> Shared<{ 2 * MOST }, 4> {
+    let own = shared(contactor, target, at, frame, normal);
+    let back = shared(target, contactor, -frame.unapply(at), frame.back(), -frame.unapply(normal));
+    let exchanged = |vertex: Vertex| Vertex {
+        point: at + frame.apply(vertex.point - vertex.gap.normal * vertex.gap.distance),
+        gap: Gap { normal: -frame.apply(vertex.gap.normal), ..vertex.gap },
+        // Derived by the rotation of the other body.
+        turning: -frame.apply(vertex.turning),
+        ..vertex
+    };
+    let mut vertices = [None; 2 * MOST];
+    let both = own.vertices.into_iter().chain(back.vertices.map(|found| found.map(exchanged)));
+    for (vertex, found) in vertices.iter_mut().zip(both) {
+        let half = |of: Vertex| Vertex { share: 0.5 * of.share, turning: of.turning * 0.5, ..of };
+        *vertex = found.map(half);
+    }
+    let [a, b] = own.axes;
+    let [c, d] = back.axes.map(|axis| frame.apply(axis));
+    Shared { vertices, flat: own.flat, axes: [a, b, c, d] }
+}
+
 /// Returns the polygon that a block with its origin at `at` (m) shares with a target, in the frame of the target, to
 /// which `frame` transforms from that of the contactor; `normal` points out of the target where they are closest.
 ///
@@ -143,13 +172,13 @@ impl Face {
 /// like four: a corner of a block on the other's face is one, and where twisted blocks cross their edges two
 /// corners take the place of one. All of it is continuous in the pose, since the turn of a convex boundary
 /// is; what is flush need not be told from what is nearly so.
-pub(super) fn shared(
+fn shared(
     contactor: &Block,
     target: &Block,
     at: Vec3,
     frame: Rotation3,
     normal: Vec3,
-) -> Shared {
+) -> Shared<MOST, 2> {
     let bearing = Face::of(target, normal, Vec3::default(), Rotation3::identity(), None);
     let up = bearing.outward;
     let resting = Face::of(contactor, frame.unapply(-normal), at, frame, Some(up));

@@ -238,7 +238,7 @@ fn block_on_block<R: Real>(
         share: R::zero(),
         turning: Vec3::default(),
     };
-    let mut points = Points { points: [none; MOST_POINTS], axes: [Vec3::default(); 2] };
+    let mut points = Points { points: [none; MOST_POINTS], axes: [Vec3::default(); 4] };
     for lane in 0..R::LANES {
         let (contactor, target) = (block.lane(lane), surface.lane(lane));
         let (at, turned) = (origin.lane(lane), frame.lane(lane));
@@ -251,7 +251,7 @@ fn block_on_block<R: Real>(
         if found.distance >= 0.0 {
             continue;
         }
-        let shared = faces::shared(&contactor, &target, at, turned, found.normal);
+        let shared = faces::shared_by_both(&contactor, &target, at, turned, found.normal);
         let bears = shared.vertices.iter().flatten().any(|vertex| vertex.gap.distance < 0.0);
         let flat = if bears { shared.flat } else { 0.0 };
         deepest.share = deepest.share.with_lane(lane, 1.0 - flat);

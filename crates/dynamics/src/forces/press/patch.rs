@@ -196,7 +196,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             depth,
             rate,
         };
-        let part = S::Real::splat(0.25);
+        let part = S::Real::splat(0.5 / points.axes.len() as f64);
         for (index, axis) in points.axes.iter().enumerate() {
             let aside = *axis * radius;
             self.stick(first + 2 * index, &pressure, aside, part);

@@ -3,13 +3,12 @@
 use super::{Group, Laws, Press, midway};
 use crate::body::Round;
 use crate::forces::LOOKAHEAD_GAP;
-use crate::model::ContactPair;
 use crate::real::{Mask, Real};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
-/// Extra length (m) of a side for a corner of the first of two bodies, relative to one of the second: where two
-/// corners coincide, exactly one contact is counted.
+/// Extra length (m) of a side for a corner of the body that leads, relative to one of the other: where two corners
+/// coincide, exactly one contact is counted.
 const SLACK: f64 = 1e-9;
 
 /// Distance (m) from the end of a side beyond which a corner counts in full, whatever else is inside there.
@@ -30,18 +29,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     ///
     /// A round piece against a straight side is a contact of this pair wherever it is deepest or ends straight;
     /// against a round piece it is one if each lies in the limits of the other, and then it belongs to the pair whose
-    /// contactor is the first of the two bodies.
+    /// contactor [leads](Press::leads).
     #[inline(always)]
-    pub(super) fn rounds(
-        &mut self,
-        pair: &ContactPair,
-        rounds: &[Round<S>],
-        group: &Group,
-        surface: &S::Surface,
-    ) {
+    pub(super) fn rounds(&mut self, rounds: &[Round<S>], group: &Group, surface: &S::Surface) {
         let zero = S::Real::zero();
-        let first = pair.contactor < pair.target;
-        let slack = S::Real::splat(if first { SLACK } else { -SLACK });
+        let first = self.leads;
+        let slack = S::Real::select(first, S::Real::splat(SLACK), S::Real::splat(-SLACK));
         for element in group.first..group.end {
             let round = &rounds[self.elements.nodes[element] as usize];
             let center = self.frame.to_surface(round.center);
@@ -65,10 +58,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             let faces = toward.dot(a).le(most) & toward.dot(b).le(most);
             let endless = !nearest.to_end.lt(S::Real::splat(f64::INFINITY));
             let mut counts = !against_round & deepest & (faces | endless);
-            if first {
+            if first.any() {
                 let limit = S::Real::splat(LIMIT);
                 let within = toward.dot(a).le(limit) & toward.dot(b).le(limit);
-                counts = counts | (against_round & within);
+                counts = counts | (against_round & within & first);
             }
             let mut counts = counts & (-round.greatest_depth).lt(gap.distance);
             for (outward, distance) in round.sides.iter().flatten() {
@@ -123,7 +116,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// is the shallower of the two, has a share that decreases with its distance to that end, the other counts in
     /// full; so neither begins or ends with a jump, at any depth.
     /// Where two faces end together, one beyond the other by less than rounding, their corners coincide, and the one
-    /// further inside the other face is the contact; if neither is, the first body's.
+    /// further inside the other face is the contact; if neither is, that of the body that leads.
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
