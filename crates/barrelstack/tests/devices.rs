@@ -272,3 +272,29 @@ fn a_report_lists_the_inputs_of_a_device_where_it_is_on_the_stack_or_stated() {
     // An input stated for an absent device is listed, since its author expected the device.
     assert!(lists(&["stack.chock.gap=\"7 mm\""], "stack.chock.gap"));
 }
+
+/// The automatic step must hold once a device is reached, so an idle one may shorten it; that is all it does.
+#[test]
+fn an_idle_device_may_shorten_the_automatic_step_and_changes_no_bit_at_the_same_one() {
+    let mut shortened = Vec::new();
+    for words in DEVICES {
+        let idle = Setting { name: "idle", overrides: words.idle };
+        let law: Vec<&str> =
+            words.idle.iter().copied().filter(|setting| !setting.starts_with("stack.")).collect();
+        let quiet = ["run.duration=\"0.5 s\"", "motion.scale.factor=0.2"];
+        let of = |settings: &[&str]| run("demo-napa", &[&quiet[..], settings].concat());
+        let candidate = words.candidates[0];
+        let settings = idle.over(&candidate);
+        let with = of(&settings);
+        let step = format!("run.step=\"{} s\"", with.simulation.time_step);
+        let bare = of(&[&law[..], &[&step]].concat());
+        assert_eq!(bare.simulation.time_step, with.simulation.time_step, "{}", words.one);
+        assert!(bits(&bare) == bits(&with), "{settings:?}");
+        let (own, shorter) = (of(&law).simulation.time_step, with.simulation.time_step);
+        assert!(shorter <= own, "{}: {own} s to {shorter} s", words.one);
+        if shorter < own {
+            shortened.push(format!("{}: {own} s to {shorter} s", words.one));
+        }
+    }
+    println!("{shortened:?}");
+}

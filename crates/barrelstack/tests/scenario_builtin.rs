@@ -1,11 +1,15 @@
 //! The scenarios shipped with the program, and properties of every scenario.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
+
+use std::num::NonZero;
+use std::ops::ControlFlow;
 
 use barrelstack::Summary;
 use barrelstack::scenario::{
     Amplitude, Friction, MotionSource, NormalLaw, Scale, Scenario, Scene, builtin,
 };
+use barrelstack::watch::Pace;
 use barrelstack_motion::{AccelerationUnit, Record};
 
 fn load(name: &str) -> Scenario {
@@ -184,4 +188,78 @@ fn a_record_at_hand_shakes_as_the_one_that_is_read() {
     let (made, read) = (made.motion.unwrap(), read.ground().unwrap().motion.unwrap());
     // Measured: 1e-16 and less.
     assert!((made.pgv() / read.pgv() - 1.0).abs() < 1e-12, "{} and {}", made.pgv(), read.pgv());
+}
+
+/// Returns the restitution of every bounce of the built-in disc above a speed (m/s), and the number of steps.
+fn bounces(changes: &[&str], slowest: f64) -> (Vec<f64>, u64) {
+    let changes: Vec<String> = changes.iter().map(|change| (*change).to_owned()).collect();
+    let scenario = Scenario::builtin("bouncing-disc", &changes).unwrap();
+    let (mut last, mut met, mut all) = (0.0_f64, None, Vec::new());
+    let every = Pace::Steps(NonZero::new(1).unwrap());
+    let run = scenario
+        .run_before(scenario.ground().unwrap(), every, &mut |glance| {
+            let height = glance.state.poses[1].position.z - 0.35;
+            let speed = glance.state.twists[1].linear.z;
+            match (height < 0.0, met) {
+                (true, None) => met = Some(-last),
+                (false, Some(before)) => {
+                    if before > slowest {
+                        all.push(speed / before);
+                    }
+                    met = None;
+                }
+                (true, Some(_)) | (false, None) => {}
+            }
+            last = speed;
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    (all, run.work.steps)
+}
+
+/// Asserts that a free scene's disc gives back what it states, in at least some bounces; slower ones are worked on by
+/// gravity while they last, which a restitution does not know.
+fn gives_back(stated: f64, changes: &[&str], bounces_at_least: usize, most_steps: u64) {
+    let restitution = format!("interface.disc-ground.restitution={stated}");
+    let changes = [&[restitution.as_str()], changes].concat();
+    let (found, steps) = bounces(&changes, 2.0);
+    println!("{changes:?}: {found:.4?}, {steps} steps");
+    assert!(found.len() >= bounces_at_least, "{changes:?}: {found:?}");
+    let worst = found.iter().map(|e| (e - stated).abs()).fold(0.0, f64::max);
+    assert!(worst < 0.01, "{changes:?}: {found:?}");
+    assert!(steps <= most_steps, "{changes:?}: {steps} steps");
+}
+
+#[test]
+fn every_builtin_scenario_keeps_what_it_states() {
+    // Each bounce keeps the restitution times the speed of the impact.
+    gives_back(0.7, &[], 3, 10_000); // measured 0.6993, 0.6936, 0.6934 in 7,397 steps
+    // v²/(2 μ g) = 0.170 m, where it stops; less what the stick springs back.
+    let run = load("sliding-block").run().unwrap();
+    let way = run.fates.fate(1).residual_slip;
+    assert!((way - 1.0 / (2.0 * 0.3 * 9.80665)).abs() < 5e-4, "{way}");
+    // g sin α / (1 + I/(m r²)) on a slope of 10°.
+    let run = load("rolling-disc").run().unwrap();
+    let last = run.recording.frames.poses.last().unwrap()[1];
+    let first = run.recording.frames.poses[0][1];
+    let way = (last[0] - first[0]).hypot(last[1] - first[1]);
+    let exact = 0.5 * 2.0 / 3.0 * 9.80665 * 10_f64.to_radians().sin() * 9.0;
+    assert!((way / exact - 1.0).abs() < 1e-3, "{way} against {exact}");
+    // It rocks, and does not slide.
+    let run = load("rocking-block").run().unwrap();
+    let tilt = run.recording.frames.poses.iter().map(|poses| poses[1][2].abs());
+    assert!(tilt.fold(0.0, f64::max) > 0.05);
+    let slip = run.fates.fate(1).peak_slip;
+    println!("rocking block: slips by {slip} m");
+    assert!(slip.abs() < 0.02, "{slip}");
+}
+
+#[test]
+fn a_free_scene_keeps_the_restitution_that_it_states_at_any_step() {
+    for stated in [0.3, 0.5, 0.9] {
+        let law = "interface.disc-ground.law=kelvin-voigt";
+        for changes in [&[][..], &["run.step=3 ms"], &["run.accuracy=screening"], &[law]] {
+            gives_back(stated, changes, 1, 40_000);
+        }
+    }
 }

@@ -10,7 +10,7 @@
 //!    surface and the normal.
 //! 3. The normal law turns penetration and its rate into a compressive force.
 //! 4. The friction law turns slip rate and stick into a tangential force.
-//! 5. The force acts on both bodies at one point: the companion point on the target, or the middle of the overlap.
+//! 5. The force acts on both bodies at one point: the middle of the overlap, or the companion point of a fixed node.
 //! 6. The sum of contact, force elements, gravity and viscous damping gives the accelerations ([`evaluate`]).
 //! 7. The integrator repeats 1 to 6 as its method requires and advances poses, twists and sticks.
 //! 8. Once the step is accepted, every stick is limited to the friction capacity.

@@ -68,9 +68,16 @@ proptest! {
                 assert!(contact.friction_force.abs() <= limit * (1.0 + 1e-15));
                 let (force, point) = contact_force(&model, state, scratch, contact);
                 let pair = model.pair(contact.pair);
-                // The force acts on both bodies at the target's surface.
+                // The force acts on both bodies at the target's surface, or if the contact is exact, midway
+                // between that and the contactor's.
                 let surface = &model.bodies()[pair.target].surfaces[pair.surface].surface;
-                assert!(Surface::<Planar>::gap(surface, contact.point).distance.abs() < 1e-14);
+                let depth = match &model.bodies()[pair.contactor].nodes[pair.nodes] {
+                    Nodes::Fixed(_) => 0.0,
+                    Nodes::Rounds(_) | Nodes::Rolling { .. } => 0.5 * contact.penetration,
+                    Nodes::Whole(none) => match *none {},
+                };
+                let companion = contact.point + contact.normal * depth;
+                assert!(Surface::<Planar>::gap(surface, companion).distance.abs() < 1e-14);
                 for (body, force) in [(pair.contactor, force), (pair.target, -force)] {
                     sums[body].0 += force;
                     sums[body].1 += moment(point - state.poses[body].position, force);

@@ -152,14 +152,14 @@ pub fn spatial_pairs() -> Vec<Order<Spatial>> {
 }
 
 /// Returns four bodies of the plane that tumble onto a floor and each other.
-pub fn planar_heap(seed: u64) -> Order<Planar> {
-    let mut random = Random(seed);
+pub fn planar_heap(seed: usize) -> Order<Planar> {
+    let mut random = Random(seed as u64);
     let mut bodies = vec![floor()];
     for i in 0..4_usize {
         let x = [-0.35, 0.35][i % 2] + random.within(-0.05, 0.05);
         let z = 0.45 + 0.7 * (i / 2) as f64;
         let (mass, turn) = (random.within(40.0, 120.0), random.within(-1.0, 1.0));
-        let mut body = planar((i + seed as usize) % 4, &format!("body {i}"), mass, x, z, turn);
+        let mut body = planar((i + seed) % 4, &format!("body {i}"), mass, x, z, turn);
         let linear = Vec2::new(random.within(-0.5, 0.5), random.within(-1.0, 0.0));
         body.twist = Twist { linear, angular: random.within(-2.0, 2.0) };
         bodies.push(body);
@@ -168,10 +168,10 @@ pub fn planar_heap(seed: u64) -> Order<Planar> {
 }
 
 /// Returns two solids that tumble onto a floor and each other.
-pub fn spatial_heap(seed: u64) -> Order<Spatial> {
-    let mut random = Random(seed);
+pub fn spatial_heap(seed: usize) -> Order<Spatial> {
+    let mut random = Random(seed as u64);
     let mut bodies = vec![spatial::floor()];
-    for (i, kind) in [seed as usize / 4, seed as usize].into_iter().enumerate() {
+    for (i, kind) in [seed / 4, seed].into_iter().enumerate() {
         let mut near = |size: f64| {
             let mut any = || random.within(-size, size);
             Vec3::new(any(), any(), any())
@@ -185,10 +185,6 @@ pub fn spatial_heap(seed: u64) -> Order<Spatial> {
         bodies.push(body);
     }
     let gravity = Vec3::new(0.0, 0.0, -GRAVITY);
-    let name = format!(
-        "{} and {} on a floor",
-        KINDS[1][seed as usize / 4 % 4],
-        KINDS[1][seed as usize % 4]
-    );
+    let name = format!("{} and {} on a floor", KINDS[1][seed / 4 % 4], KINDS[1][seed % 4]);
     Order { name, bodies, laws: laws(), gravity }
 }

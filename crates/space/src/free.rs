@@ -9,7 +9,7 @@ use barrelstack_dynamics::{
 
 use crate::part::{Part, ground};
 use crate::stack::Stack;
-use crate::step::time_step;
+use crate::step::{keep_restitution, time_step};
 
 /// Builds a free scene, without settling it.
 pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stack, RunFailure> {
@@ -27,9 +27,11 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     parts.extend(scene.bodies.iter().map(|body| Part::alone(&body.name, PartKind::Body)));
     let pairs = pairs(scene, &bodies);
     let gravity = Vec3::new(0.0, 0.0, -scenario.run.gravity);
-    let model =
+    let mut model =
         Model::new(bodies, laws_of_free(scene), pairs, gravity).map_err(AssembleError::from)?;
     let step = time_step(scenario, &model)?;
+    let divided = keep_restitution(&model, &scene.interfaces, step);
+    model.set_substepping(divided);
     Ok(Stack {
         model,
         parts,

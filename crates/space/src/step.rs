@@ -1,10 +1,12 @@
 //! Time step of a free scene in space, from its contacts and its spins.
 
 use barrelstack::RunFailure;
-use barrelstack::scenario::{Method, Scenario};
-use barrelstack::step::round_down;
+use barrelstack::scenario::{FreeInterface, Method, Scenario};
+use barrelstack::step::{RESTITUTION_SHARE, round_down};
 use barrelstack_dynamics::solid::Hull;
-use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
+use barrelstack_dynamics::{
+    Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Substepping, Vec3,
+};
 
 /// Fraction of the critical time step, as in the plane.
 const SHARE: f64 = 0.3;
@@ -17,6 +19,9 @@ const REFERENCE: f64 = 0.01;
 
 /// Maximum step (s) if nothing requires a shorter one.
 const LONGEST: f64 = 1e-3;
+
+/// Penetration (m) to which a contact at rest is followed with whole steps, as in the plane.
+const RESTING: f64 = 5e-4;
 
 /// Maximum rotation (rad) per step of bodies with an initial spin: a tumbling block then keeps its energy to 3e-9.
 const TURN: f64 = 5e-3;
@@ -43,6 +48,26 @@ pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f
         Some(step) => Ok(step),
         None => Ok(own),
     }
+}
+
+/// Divides steps (s) while contacts that state a restitution are closed or about to close, as in the plane.
+pub(crate) fn keep_restitution(
+    model: &Model<Spatial>,
+    laws: &[FreeInterface],
+    step: f64,
+) -> Substepping<f64> {
+    let mut substepping = model.substepping().clone();
+    for (interface, _) in laws.iter().enumerate().filter(|(_, law)| law.law.states_restitution()) {
+        let rate = fastest(model, |pair| {
+            let law = &model.interfaces()[pair.interface].normal;
+            if pair.interface == interface { law.tangent_stiffness(REFERENCE) } else { 0.0 }
+        });
+        let shortest = RESTITUTION_SHARE * 2.0 / rate.sqrt();
+        substepping.substeps = substepping.substeps.max((step / shortest).ceil());
+        substepping.whole_step_depth[interface] = 0.0;
+        substepping.resting_allowance = RESTING;
+    }
+    substepping
 }
 
 fn adapts(method: Method) -> bool {

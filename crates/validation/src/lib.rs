@@ -34,4 +34,4 @@ pub use execute::{Row, execute};
 pub use problem::{Effort, Failure, Outcome, Problem, Tolerance};
 pub use problems::all;
 
-pub use barrelstack_scenes::{GRAVITY, drive, scene, spatial, theory, tumble};
+pub use barrelstack_scenes::{GRAVITY, drive, order, scene, spatial, theory, tumble};

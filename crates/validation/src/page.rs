@@ -82,6 +82,7 @@ fn heading(theory: &str) -> &str {
         "intensity" => "Measures of ground motions",
         "ode" => "Smooth motions by a library's integrator",
         "invariances" => "Invariances and energy",
+        "symmetry" => "Order of bodies",
         "statistics" => "Ensembles",
         "fragility" => "Fragility and hazard",
         "consensus" => "Consensus of independent codes",

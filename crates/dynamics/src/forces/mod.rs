@@ -25,7 +25,8 @@ pub struct Contact<S: Space> {
     pub node: u32,
     /// The lanes in which it touches; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
-    /// The companion point (m), in the frame of the target's surface: the force acts there on both bodies.
+    /// Where the force acts on both bodies (m), in the frame of the target's surface: the companion point of a fixed node,
+    /// or the middle of the overlap.
     pub point: S::Vector,
     /// Unit normal in the same frame, out of the target.
     pub normal: S::Vector,
@@ -107,7 +108,7 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Slip rate of every element (m/s); zero where it does not touch.
+    /// Rate of every stick (m/s): its slip rate, turned with the bodies; zero where it does not touch.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
@@ -142,7 +143,7 @@ pub struct Pressed<S: Space> {
     pub node: u32,
     /// The lanes in which it touches.
     pub touching: <S::Real as Real>::Mask,
-    /// The companion point (m), in the frame of the target's surface.
+    /// Where the force acts (m), in the frame of the target's surface.
     pub point: S::Vector,
     /// Tangent plane, stored by its stick with the displacement.
     tangent_plane: S::TangentPlane,
@@ -446,6 +447,18 @@ pub fn tributary_length<S: Space>(model: &Model<S>, pair: &ContactPair, node: us
     }
 }
 
+/// Returns the rotation from the frame of the target's surface of a contact to the inertial frame.
+#[inline(always)]
+pub(crate) fn frame_of<S: Space>(
+    model: &Model<S>,
+    scratch: &Scratch<S>,
+    contact: &Contact<S>,
+) -> S::Rotation {
+    let pair = model.pair(contact.pair);
+    let placed = &model.bounded(pair.target).surfaces[pair.surface];
+    S::compose(scratch.rotations[pair.target], placed.rotation)
+}
+
 /// Returns the force (N) of a contact on its contactor and its point of action (m), in the inertial frame.
 pub fn contact_force<S: Space>(
     model: &Model<S>,
@@ -456,7 +469,7 @@ pub fn contact_force<S: Space>(
     let pair = &model.pair(contact.pair);
     let placed = &model.bounded(pair.target).surfaces[pair.surface];
     let target = scratch.rotations[pair.target];
-    let rotation = S::compose(target, placed.rotation);
+    let rotation = frame_of(model, scratch, contact);
     let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
     let force =
         contact.normal * contact.normal_force - S::along(contact.friction_force, contact.normal);

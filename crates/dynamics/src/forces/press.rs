@@ -402,15 +402,13 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         (normal_force, weight): (S::Real, S::Real),
     ) -> (S::Tangent, S::TangentPlane) {
         let rotation = self.frame.rotation;
-        let tangent_plane = S::tangent_plane(S::rotate(rotation, normal));
+        let tangent_plane = S::tangent_plane(rotation, normal);
         let stick = self.elements.sticks[element].carried(tangent_plane);
         let slip = S::rotate_tangent(rotation, slip_rate);
         let friction = (self.laws)().friction.force::<S>(stick, slip, normal_force, weight);
         self.totals.stick += friction.energy;
-        let about = self.meeting.mean_spin();
-        let rate =
-            S::stick_rate(slip, stick.displacement, S::rotate_spin(rotation, about), tangent_plane);
-        self.slip_rates[element] = S::choose(touching, rate, S::Tangent::default());
+        let turn = S::stick_turn(stick.displacement, tangent_plane, rotation, self.meeting.spins());
+        self.slip_rates[element] = S::add_turn(touching, slip, turn);
         (S::unrotate_tangent(rotation, friction.force), tangent_plane)
     }
 }

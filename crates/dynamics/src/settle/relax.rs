@@ -160,7 +160,7 @@ impl<S: Space> Relaxation<S> {
             let interface = &model.interfaces[pair.interface];
             let placed = &model.bodies[pair.target].surfaces[pair.surface];
             let target = scratch.rotations[pair.target];
-            let rotation = S::compose(target, placed.rotation);
+            let rotation = forces::frame_of(model, scratch, contact);
             let origin = state.poses[pair.target].position + S::rotate(target, placed.offset);
             let point = origin + S::rotate(rotation, contact.point);
             let bodies = [pair.contactor, pair.target];
@@ -238,7 +238,7 @@ impl<S: Space> Relaxation<S> {
         evaluate(model, state, scratch);
         S::Real::scope(
             #[inline(always)]
-            || self.slide_fresh(&mut state.contact_elements.sticks, scratch),
+            || self.slide_fresh(model, &mut state.contact_elements.sticks, scratch),
         );
         let kept = self
             .resting
@@ -324,14 +324,21 @@ impl<S: Space> Relaxation<S> {
                 way.linear + S::velocity_at(way.angular, touch.arms[of])
             };
             let slip = S::unrotate(touch.rotation, way(0) - way(1));
+            let slip = S::rotate_tangent(touch.rotation, S::tangential(slip, touch.normal));
+            let spin =
+                |of: usize| S::unrotate_spin(touch.rotation, self.ways[touch.bodies[of]].angular);
+            let spins = [spin(1), spin(0) - spin(1)];
+            let stick = &mut sticks[touch.element];
+            let (displacement, plane) = (stick.displacement, stick.tangent_plane);
+            let turn = S::stick_turn(displacement, plane, touch.rotation, spins);
             let counted = S::Real::select(touch.touching, S::Real::splat(1.0), S::Real::zero());
-            sticks[touch.element].displacement += S::tangential(slip, touch.normal) * counted;
+            stick.displacement += S::add_turn(touch.touching, slip * counted, turn);
         }
     }
 
     /// Moves the sticks of new contacts by the share of the step for which they touched.
     #[inline(always)]
-    fn slide_fresh(&self, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
+    fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);
         for contact in &scratch.contacts {
             let fresh = contact.touching & !self.touched[contact.element];
@@ -342,7 +349,9 @@ impl<S: Space> Relaxation<S> {
                 let share = depth / S::Real::select(partly, approach, one);
                 let share =
                     S::Real::select(partly, share, S::Real::select(fresh, one, S::Real::zero()));
-                sticks[contact.element].displacement += contact.slip_rate * (steps * share);
+                let slip =
+                    S::rotate_tangent(forces::frame_of(model, scratch, contact), contact.slip_rate);
+                sticks[contact.element].displacement += slip * (steps * share);
             }
         }
     }

@@ -140,8 +140,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
     /// Returns a tangent as a vector.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
-    /// Returns the data stored with tangents of a surface with this unit normal.
-    fn tangent_plane(normal: Self::Vector) -> Self::TangentPlane;
+    /// Returns the data stored with tangents of a surface with this unit normal in a rotated frame.
+    fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
     /// Transports a tangent from one tangent plane into another.
     fn carry(
         tangent: Self::Tangent,
@@ -152,13 +152,19 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
     /// Rotates a tangent from the inertial frame to a rotated one.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate (m/s) of a stick from the slip rate, both in the inertial frame: about the normal it turns with
-    /// the mean spin (rad/s) of both bodies.
-    fn stick_rate(
-        slip_rate: Self::Tangent,
+    /// Returns the rate (m/s) at which a stick turns about its normal, in the inertial frame: with the mean spin of both
+    /// bodies, given as the spin (rad/s) of one and that of the other relative to it, in a rotated frame.
+    fn stick_turn(
         displacement: Self::Tangent,
-        spin: Self::Spin,
         plane: Self::TangentPlane,
+        rotation: Self::Rotation,
+        spins: [Self::Spin; 2],
+    ) -> Self::Tangent;
+    /// Adds a turn to a tangent in lanes of the mask.
+    fn add_turn(
+        mask: <Self::Real as Real>::Mask,
+        tangent: Self::Tangent,
+        turn: Self::Tangent,
     ) -> Self::Tangent;
     /// Limits the length of a tangent to `limit` (not negative).
     fn shorten(tangent: Self::Tangent, limit: Self::Real) -> Self::Tangent;

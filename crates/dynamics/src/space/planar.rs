@@ -256,7 +256,7 @@ impl<R: Real> Space for Planar<R> {
         Vec2::new(normal.z * tangent, -(normal.x * tangent))
     }
     #[inline(always)]
-    fn tangent_plane(_normal: Vec2<R>) {}
+    fn tangent_plane(_rotation: Rotation2<R>, _normal: Vec2<R>) {}
     #[inline(always)]
     fn carry(tangent: R, (): (), (): ()) -> R {
         tangent
@@ -270,8 +270,12 @@ impl<R: Real> Space for Planar<R> {
         tangent
     }
     #[inline(always)]
-    fn stick_rate(slip_rate: R, _displacement: R, _spin: R, (): ()) -> R {
-        slip_rate
+    fn stick_turn(_displacement: R, (): (), _rotation: Rotation2<R>, _spins: [R; 2]) -> R {
+        R::zero()
+    }
+    #[inline(always)]
+    fn add_turn(_mask: R::Mask, tangent: R, _turn: R) -> R {
+        tangent
     }
     #[inline(always)]
     fn shorten(tangent: R, limit: R) -> R {

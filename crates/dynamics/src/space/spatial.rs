@@ -188,8 +188,8 @@ impl<R: Real> Space for Spatial<R> {
         tangent
     }
     #[inline(always)]
-    fn tangent_plane(normal: Vec3<R>) -> Vec3<R> {
-        normal
+    fn tangent_plane(rotation: Rotation3<R>, normal: Vec3<R>) -> Vec3<R> {
+        rotation.apply(normal)
     }
     /// By the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: a vector
     /// in the old plane keeps its length, and the result is always in the new plane.
@@ -209,13 +209,18 @@ impl<R: Real> Space for Spatial<R> {
         rotation.unapply(tangent)
     }
     #[inline(always)]
-    fn stick_rate(
-        slip_rate: Vec3<R>,
+    fn stick_turn(
         displacement: Vec3<R>,
-        spin: Vec3<R>,
         normal: Vec3<R>,
+        rotation: Rotation3<R>,
+        [one, other]: [Vec3<R>; 2],
     ) -> Vec3<R> {
-        slip_rate + normal.cross(displacement) * spin.dot(normal)
+        let mean = rotation.apply(one + other * R::splat(0.5));
+        normal.cross(displacement) * mean.dot(normal)
+    }
+    #[inline(always)]
+    fn add_turn(mask: R::Mask, tangent: Vec3<R>, turn: Vec3<R>) -> Vec3<R> {
+        tangent + Vec3::select(mask, turn, Vec3::default())
     }
     #[inline(always)]
     fn shorten(tangent: Vec3<R>, limit: R) -> Vec3<R> {

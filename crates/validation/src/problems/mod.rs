@@ -23,6 +23,7 @@ mod solids;
 mod space;
 mod stacks;
 mod statistics;
+mod symmetry;
 
 use crate::Problem;
 
@@ -47,6 +48,7 @@ pub fn all() -> Vec<Problem> {
         ode::problems(),
         space::problems(),
         invariances::problems(),
+        symmetry::problems(),
         intensity::problems(),
         statistics::problems(),
         fragility::problems(),

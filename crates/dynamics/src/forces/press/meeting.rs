@@ -93,10 +93,10 @@ impl<'a, S: Space> Meeting<'a, S> {
         self.motion.spin
     }
 
-    /// Returns the mean spin (rad/s) of both bodies.
+    /// Returns the spin (rad/s) of the target, and that of the contactor relative to it.
     #[inline(always)]
-    pub(super) fn mean_spin(&self) -> S::Spin {
-        self.motion.target_spin + self.motion.spin * S::Real::splat(0.5)
+    pub(super) fn spins(&self) -> [S::Spin; 2] {
+        [self.motion.target_spin, self.motion.spin]
     }
 
     /// Returns the velocity (m/s) of the contactor relative to the target at a point (m), in the surface's frame.
@@ -107,7 +107,7 @@ impl<'a, S: Space> Meeting<'a, S> {
 
     /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
     ///
-    /// The force acts on both bodies at the companion point, and both velocities are taken there, so the pair
+    /// The force acts on both bodies at the companion point of `node`, and both velocities are taken there, so the pair
     /// conserves momentum, and force times relative velocity is the power it loses.
     #[inline(always)]
     pub(super) fn contact(

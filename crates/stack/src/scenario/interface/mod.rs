@@ -123,6 +123,18 @@ type DampingRatio = fn(f64) -> Option<f64>;
 type Restitution = fn(f64) -> f64;
 
 impl Interface {
+    /// Returns `true` if its damping is stated by a restitution.
+    pub fn states_restitution(&self) -> bool {
+        match self.normal {
+            NormalLaw::SpeedGap { damping, .. }
+            | NormalLaw::KelvinVoigt { damping, .. }
+            | NormalLaw::HuntCrossley { damping, .. } => {
+                matches!(damping, Damping::Restitution { .. })
+            }
+            NormalLaw::Rebound { .. } | NormalLaw::Hertz { .. } => false,
+        }
+    }
+
     /// Multiplies the stiffness.
     pub fn stiffen(&mut self, factor: f64) {
         match &mut self.normal {

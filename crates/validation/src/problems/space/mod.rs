@@ -24,7 +24,7 @@ const STEP: f64 = 2e-5;
 /// Stiffness (N/m) of a contact, normal and tangential.
 const STIFFNESS: f64 = 1e8;
 
-/// The role of a body in a pair: sticks are stored on the target.
+/// The role of a body in a pair.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Contactor,
