@@ -283,8 +283,8 @@ fn an_idle_device_may_shorten_the_automatic_step_and_changes_no_bit_at_the_same_
             words.idle.iter().copied().filter(|setting| !setting.starts_with("stack.")).collect();
         let quiet = ["run.duration=\"0.5 s\"", "motion.scale.factor=0.2"];
         let of = |settings: &[&str]| run("demo-napa", &[&quiet[..], settings].concat());
-        let candidate = words.candidates[0];
-        let settings = idle.over(&candidate);
+        let candidate = &words.candidates[0];
+        let settings = idle.over(candidate);
         let with = of(&settings);
         let step = format!("run.step=\"{} s\"", with.simulation.time_step);
         let bare = of(&[&law[..], &[&step]].concat());

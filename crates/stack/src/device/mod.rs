@@ -133,7 +133,8 @@ pub struct Words {
     /// Degraded states in use, to be put [over](Setting::over) a candidate.
     pub degraded: &'static [Setting],
     /// Settings to be put [over](Setting::over) a candidate, with which it has no effect: out of reach, as slack or
-    /// as weak as can be. Such a stack equals the one without it, to the last bit.
+    /// as weak as can be. Such a stack equals the one without it, to the last bit, at the same time step and division of it
+    /// in impacts.
     pub idle: &'static [&'static str],
     /// Cost of the device.
     pub cost: Cost,
