@@ -218,7 +218,15 @@ fn a_column_has_one_name_in_all_files() {
     let plain = |name: &String| {
         name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '_'))
     };
-    done(&["demo", "--variants=2", "--no-remedy", "--set=run.duration=0.5 s", "--out", "run"]);
+    done(&[
+        "run",
+        "demo-napa",
+        "--set=stack.view=transverse",
+        "--set=run.duration=0.5 s",
+        "--variants=2",
+        "--no-remedy",
+        "--out=run",
+    ]);
     let mut all = arrays(&fs::read(folder.path().join("run/histories.npz")).unwrap());
     let (histories, forces) = (heads(&read("run/histories.csv")), heads(&read("run/forces.csv")));
     assert!(histories.contains(&"B4.1_displacement_x".to_owned()), "{histories:?}");

@@ -44,7 +44,7 @@ fn problem<S: Space<Real = f64>>(
             let count = scenes.len();
             for scene in scenes {
                 let apart = scene.reversal(STEP, END)?;
-                if !(apart <= worst.0) {
+                if apart > worst.0 || apart.is_nan() {
                     worst = (apart, format!(": {}", scene.name));
                 }
             }
