@@ -424,6 +424,8 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     context.fillStyle = paint.soft;
     context.textAlign = "left";
     halo(pen, "grid of 1\u00a0m", 14, height - 14);
+    // Of barrels in a row a plane models one.
+    if (depth.bodies.some(({ rows }) => rows.length > 1)) halo(pen, "rows move as one", 14, height - 31);
     if (!eye.turned && stages()[0] === stage) {
       context.textAlign = "right";
       halo(pen, width < 420 ? "drag to turn" : "drag to turn, two fingers or Ctrl and wheel to zoom", width - 14, height - 14);

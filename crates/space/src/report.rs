@@ -34,8 +34,8 @@ pub fn document(answer: &Answer) -> Document {
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "One run from three sides, on one clock and to one scale. What is nearer covers what is behind it as they \
-             stood at rest.{}",
+            "One run, turned by hand, or flat from three sides on one clock and to one scale, where what is nearer \
+             covers what is behind it as they stood at rest.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),

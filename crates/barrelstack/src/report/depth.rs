@@ -5,7 +5,7 @@ use barrelstack_report::{
     Depth, DepthBody, DepthPoses, DepthTie, Event, Moment, Point3, Role, Tie, Volume,
 };
 
-use crate::assemble::{Assembly, BAR_RADIUS, Part, PartKind};
+use crate::assemble::{Assembly, BAR_RADIUS, Outline, Part, PartKind, cup};
 use crate::scenario::{Barrel, Cradle, Rack, RackKind, Scenario, Scene, StackSpec, View};
 
 /// Half the thickness (m) of plates of devices, which planes draw as lines: an assumption.
@@ -109,11 +109,17 @@ impl Section<'_> {
     fn rack(&self, assembly: &Assembly, index: usize, part: &Part) -> Vec<Volume> {
         let spec = self.spec;
         let surfaces = &assembly.model.bodies()[index].surfaces;
+        // Rails at two heights have their center of mass beside the middle.
+        let places = surfaces.iter().zip(&part.outlines).flat_map(|(_, outline)| &outline.points);
+        let [low, high] = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+            [low.min(point.x), high.max(point.x)]
+        });
+        let middle = if low < high { 0.5 * (low + high) } else { 0.0 };
         // Along the barrels rails may rise with an inclined barrel: the lower end of the rail that is nearest.
         let rise = |y: f64| match spec.view {
             View::Longitudinal if spec.rack.posts.is_none() => {
                 let rails = surfaces.iter().zip(&part.outlines);
-                let apart = |x: f64| (x / self.length - y).abs();
+                let apart = |x: f64| ((x - middle) / self.length - y).abs();
                 let nearest =
                     rails.min_by(|(a, _), (b, _)| apart(a.offset.x).total_cmp(&apart(b.offset.x)));
                 let points = nearest.map_or(&[][..], |(_, outline)| &outline.points);
@@ -124,20 +130,21 @@ impl Section<'_> {
         };
         let level = part.level.unwrap_or(1);
         let chocks = spec.devices.chock.at(level, spec.levels).then_some(&spec.devices.chock);
-        let mut volumes = frame(spec, self.pitch_along(), rise, chocks.map(|c| (c.angle, c.gap)));
+        let mut volumes =
+            frame(spec, (level, self.pitch_along()), rise, chocks.map(|c| (c.angle, c.gap)));
         for volume in &mut volumes {
-            self.scale(volume, -part.foot);
+            self.scale(volume, self.at([middle, -part.foot], 0.0));
         }
         volumes.extend(self.plates(part.outlines.get(surfaces.len()..)));
         volumes
     }
 
-    /// Scales a solid of a rack, and places it at a height (m).
-    fn scale(&self, volume: &mut Volume, height: f64) {
+    /// Scales a solid of a rack, and moves it (m).
+    fn scale(&self, volume: &mut Volume, way: Point3) {
         let scaled = |point: &mut Point3| point.iter_mut().for_each(|v| *v *= self.length);
         let placed = |point: &mut Point3| {
             scaled(point);
-            point[2] += height;
+            point.iter_mut().zip(way).for_each(|(v, by)| *v += by);
         };
         match volume {
             Volume::Tube { ends, radius } => {
@@ -160,7 +167,7 @@ impl Section<'_> {
     }
 
     /// Returns lines of the plane as bars, once for each rail or barrel.
-    fn plates(&self, outlines: Option<&[crate::assemble::Outline]>) -> Vec<Volume> {
+    fn plates(&self, outlines: Option<&[Outline]>) -> Vec<Volume> {
         let mut bars = Vec::new();
         for outline in outlines.unwrap_or(&[]) {
             let closing = outline.closed.then(|| [outline.points.last(), outline.points.first()]);
@@ -206,7 +213,7 @@ fn rails(rack: &Rack, pitch: f64) -> Vec<f64> {
 /// `chocks` are an angle (rad) and a gap (m).
 fn frame(
     spec: &StackSpec,
-    pitch: f64,
+    (level, pitch): (u32, f64),
     rise: impl Fn(f64) -> f64,
     chocks: Option<(f64, f64)>,
 ) -> Vec<Volume> {
@@ -264,13 +271,19 @@ fn frame(
         let y = outer - rack.rail_half_spacing + posts.half_spacing_along;
         let tall = 0.5 * (posts.height - rack.beam_height);
         for side in [-1.0, 1.0] {
-            let beam = [half_rail, y, 0.5 * rack.beam_height];
+            let beam = [half_rail, y + cup(rack), 0.5 * rack.beam_height];
             volumes.push(Volume::upright([side * x, 0.0, beam[2]], beam));
             let post = |end: f64| {
                 let at = [side * x, end * y, rack.beam_height + tall];
                 Volume::upright(at, [half_rail, half_rail, tall])
             };
             volumes.extend([-1.0, 1.0].map(post));
+            // Cups hang over the posts below.
+            let hang = 0.5 * posts.spigot;
+            let over = |end: f64| {
+                Volume::upright([side * x, end * y, -hang], [cup(rack), cup(rack), hang])
+            };
+            volumes.extend([-1.0, 1.0].map(over).into_iter().filter(|_| level > 1 && hang > 0.0));
         }
     } else {
         let x = 0.5 * rack.width - BAR_RADIUS;
@@ -278,4 +291,98 @@ fn frame(
         volumes.extend([-x, x].map(|x| Volume::Tube { ends: ends(x), radius: BAR_RADIUS }));
     }
     volumes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assemble::assemble;
+    use crate::report::drawing::outlines;
+
+    /// Extents `[lower, upper]` of numbers.
+    fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    }
+
+    /// Extents of solids along an axis.
+    fn along(volumes: &[Volume], axis: usize) -> [f64; 2] {
+        extent(volumes.iter().flat_map(|volume| match volume {
+            Volume::Tube { ends: [a, b], radius } => {
+                // A round end reaches beyond its axis to the side alone.
+                let away: f64 = (0..3).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>().sqrt();
+                let part = if away > 0.0 { (b[axis] - a[axis]) / away } else { 0.0 };
+                let reach = radius * (1.0 - part * part).max(0.0).sqrt();
+                vec![a[axis] - reach, a[axis] + reach, b[axis] - reach, b[axis] + reach]
+            }
+            Volume::Block { at, sides } => {
+                let reach: f64 = sides.iter().map(|side| side[axis].abs()).sum();
+                vec![at[axis] - reach, at[axis] + reach]
+            }
+            Volume::Ball { at, radius } => vec![at[axis] - radius, at[axis] + radius],
+            Volume::Turned { at, axis: way, profile } => {
+                let side = (1.0 - way[axis] * way[axis]).max(0.0).sqrt();
+                let ends = profile.iter().flat_map(|[x, r]| {
+                    [at[axis] + way[axis] * x - side * r, at[axis] + way[axis] * x + side * r]
+                });
+                ends.collect()
+            }
+        }))
+    }
+
+    /// What is turned has the sides of what is computed: across the barrels those of all bodies, along them those of
+    /// the barrels, and of the racks their length and their underside.
+    #[test]
+    fn bodies_have_the_extents_of_their_plane() {
+        let cases: [(&str, &[&str]); 10] = [
+            ("candia-8-barrels", &[]),
+            ("candia-8-barrels-half-scale", &[]),
+            ("candia-8-barrels-longitudinal", &[]),
+            ("demo-napa", &["stack.view=transverse"]),
+            ("demo-napa", &["stack.view=longitudinal"]),
+            ("demo-napa", &["stack.view=transverse", "stack.rack=four-barrel", "stack.columns=4"]),
+            ("demo-napa", &["stack.view=transverse", "stack.rack=two-barrel-feet"]),
+            ("demo-napa", &["stack.view=transverse", "stack.rack=rack-on-rack"]),
+            ("demo-napa", &["stack.view=longitudinal", "stack.rack=rack-on-rack"]),
+            ("demo-napa", &["stack.view=longitudinal", "stack.rack.incline=3 deg"]),
+        ];
+        for (name, set) in cases {
+            let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
+            let scenario = Scenario::builtin(name, &set).unwrap();
+            let assembly = assemble(&scenario).unwrap();
+            let depth = depth(&scenario, &assembly, &[], (&[], None)).unwrap();
+            let across = depth.poses == DepthPoses::Across;
+            let Scene::Stack { stack, .. } = &scenario.scene else { panic!("{name} is a stack") };
+            let mut compared = 0;
+            for (index, body) in depth.bodies.iter().enumerate() {
+                if !matches!(body.role, Role::Barrel | Role::Rack) {
+                    continue;
+                }
+                let points: Vec<[f64; 2]> =
+                    outlines(&assembly, index).into_iter().flat_map(|line| line.points).collect();
+                let flat = [0, 1].map(|axis| extent(points.iter().map(|point| point[axis])));
+                let deep = [usize::from(!across), 2].map(|axis| along(&body.volumes, axis));
+                // Of a barrel the plane across shows the section above its rails, which the bilge exceeds. Of a rack
+                // along the barrels it shows rails up to the barrel, whose supports are beside them.
+                let barrel = &stack.barrel;
+                let bulge = 0.5
+                    * (barrel.bilge_diameter - barrel.section_diameter)
+                    * scenario.run.similitude;
+                let bulge = if across && body.role == Role::Barrel { bulge } else { 0.0 };
+                for (axis, side) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let hidden = !across && body.role == Role::Rack && (axis, side) == (1, 1);
+                    let apart = (deep[axis][side] - flat[axis][side]).abs();
+                    // The mesh of an outline is 1.5 mm within its arc, measured.
+                    assert!(
+                        hidden || (apart - bulge).abs() < 2e-3,
+                        "{name} {set:?} {}, axis {axis}, side {side}: {} in depth, {} in the plane",
+                        body.name,
+                        deep[axis][side],
+                        flat[axis][side]
+                    );
+                    compared += 1;
+                }
+            }
+            assert!(compared > 20, "{name}: {compared}");
+        }
+    }
 }

@@ -23,6 +23,7 @@ use crate::step::{TimeStepping, keep_restitution};
 
 pub(crate) use builder::{Builder, Draft};
 pub use longitudinal::CHIME_RADIUS;
+pub use posts::cup;
 pub use similitude::Similitude;
 pub(crate) use solid::{Seat, Solid};
 pub use transverse::{BAR_RADIUS, TUBE_CORNER};

@@ -15,7 +15,7 @@ const SPIGOT_PLAY: f64 = 0.005;
 const LIP_RADIUS: f64 = 0.004;
 
 /// Returns the distance (m) from the middle of a post to the outside of the cup over it.
-pub(super) fn cup(rack: &Rack) -> f64 {
+pub fn cup(rack: &Rack) -> f64 {
     0.5 * rack.rail_width + SPIGOT_PLAY + 2.0 * LIP_RADIUS
 }
 
