@@ -281,7 +281,8 @@ fn an_idle_device_may_shorten_the_automatic_step_and_changes_no_bit_at_the_same_
         let idle = Setting { name: "idle", overrides: words.idle };
         let law: Vec<&str> =
             words.idle.iter().copied().filter(|setting| !setting.starts_with("stack.")).collect();
-        let quiet = ["run.duration=\"0.5 s\"", "motion.scale.factor=0.2"];
+        let quiet =
+            ["run.duration=\"0.5 s\"", "motion.scale.factor=0.2", "stack.view=\"transverse\""];
         let of = |settings: &[&str]| run("demo-napa", &[&quiet[..], settings].concat());
         let candidate = &words.candidates[0];
         let settings = idle.over(candidate);

@@ -104,10 +104,10 @@ impl<S: Space> ContactElements<S> {
     /// Returns `true` if no element of a group can come within a gap (m) during the current step in any lane, so that
     /// it need not be tested.
     #[inline(always)]
-    pub(crate) fn sleeps(&self, group: usize, gap: f64) -> bool {
+    pub(crate) fn sleeps(&self, group: usize, gap: S::Real) -> bool {
         let [a, b] = self.groups[group].bodies;
         let way = self.ways[a] + self.ways[b];
-        (way + S::Real::splat(gap + ASLEEP_SLACK)).lt(self.apart[group]).all()
+        (way + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
     }
 
     /// Ends the step: bodies may be moved anywhere, and no group is skipped.

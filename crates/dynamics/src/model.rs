@@ -48,6 +48,9 @@ pub enum Counts {
     BehindFaceOfTarget(usize),
 }
 
+/// Gap (m) within which impacts between bodies of stacks are predicted.
+pub const FORESEEN: f64 = 0.01;
+
 /// Subdivision of time steps during impacts: their laws are the stiffest, but only while they are deep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
@@ -58,6 +61,8 @@ pub struct Substepping<R> {
     /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
     /// contact at rest: stability allows more depth than the accuracy of an impact.
     pub resting_allowance: R,
+    /// Gap (m) within which impacts are predicted; faster ones are predicted later. [`FORESEEN`] suits stacks.
+    pub foreseen_gap: R,
     /// Further rules for fast contacts of whole bodies, if any.
     pub fast: Option<Fast<R>>,
 }
@@ -253,6 +258,7 @@ impl<S: Space> Model<S> {
             substeps: S::Real::splat(1.0),
             whole_step_depth,
             resting_allowance: S::Real::zero(),
+            foreseen_gap: S::Real::splat(FORESEEN),
             fast: None,
         };
         let elements = Vec::new();

@@ -7,6 +7,7 @@ use barrelstack::assemble::{AssembleError, PartKind, assemble};
 use barrelstack::device::Words;
 use barrelstack::run::time_step;
 use barrelstack::scenario::{Scenario, Scene, StackBody, StackSpec, View};
+use barrelstack_dynamics::model::FORESEEN;
 use barrelstack_dynamics::{BodyId, Fast, Interface, Model, Spatial, Substepping, Vec3};
 
 use crate::builder::Builder;
@@ -186,6 +187,7 @@ impl Pace {
             substeps: self.substeps,
             whole_step_depth: depths.collect(),
             resting_allowance: self.resting_allowance,
+            foreseen_gap: FORESEEN,
             fast: Some(FAST),
         }
     }

@@ -2,7 +2,7 @@
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{FreeInterface, Method, Scenario};
-use barrelstack::step::{RESTITUTION_SHARE, round_down};
+use barrelstack::step::{FORESEEN_REBOUND, RESTITUTION_SHARE, round_down};
 use barrelstack_dynamics::solid::Hull;
 use barrelstack_dynamics::{
     Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Substepping, Vec3,
@@ -66,6 +66,7 @@ pub(crate) fn keep_restitution(
         substepping.substeps = substepping.substeps.max((step / shortest).ceil());
         substepping.whole_step_depth[interface] = 0.0;
         substepping.resting_allowance = RESTING;
+        substepping.foreseen_gap = FORESEEN_REBOUND;
     }
     substepping
 }

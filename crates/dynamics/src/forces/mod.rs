@@ -253,9 +253,6 @@ fn wipe<T: Default>(all: &mut [T]) {
     }
 }
 
-/// Gap (m) within which impacts up to the depth of whole steps are predicted; faster ones are predicted later.
-const LOOKAHEAD_GAP: f64 = 0.01;
-
 /// Collects the groups of elements that may touch in the current step, or whose impacts are to be predicted.
 ///
 /// Most need no test, so all are filtered first, separately from their forces.
@@ -265,7 +262,9 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     for (number, group) in elements.groups.iter().enumerate() {
         let impacts = model.substepping.whole_step_depth[group.interface];
         let foreseen = impacts.lt(S::Real::splat(f64::INFINITY)).any();
-        if !elements.sleeps(number, if foreseen { LOOKAHEAD_GAP } else { 0.0 }) {
+        if !elements
+            .sleeps(number, if foreseen { model.substepping.foreseen_gap } else { S::Real::zero() })
+        {
             awake.push(number);
         }
     }

@@ -15,7 +15,7 @@ use crate::shape::{Facing, Gap, Surface, Whole};
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-use super::{Contact, ContactTotals, LOOKAHEAD_GAP, PairForce, Pressed, Scratch};
+use super::{Contact, ContactTotals, PairForce, Pressed, Scratch};
 
 use meeting::Meeting;
 pub(super) use meeting::Seen;
@@ -121,6 +121,7 @@ fn touch_by<S: Space>(
             .any()
             .then_some(whole_step_depth),
         resting_allowance: model.substepping.resting_allowance,
+        foreseen_gap: model.substepping.foreseen_gap,
         fast: model.substepping.fast,
         lookahead: scratch.lookahead,
         needs_substeps: scratch.needs_substeps,
@@ -183,6 +184,8 @@ struct Press<'a, S: Space, L> {
     whole_step_depth: Option<S::Real>,
     /// [`Substepping::resting_allowance`](crate::model::Substepping::resting_allowance).
     resting_allowance: S::Real,
+    /// [`Substepping::foreseen_gap`](crate::model::Substepping::foreseen_gap).
+    foreseen_gap: S::Real,
     /// [`Substepping::fast`](crate::model::Substepping::fast).
     fast: Option<Fast<S::Real>>,
     /// [`Scratch::lookahead`].
@@ -303,7 +306,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     #[inline(always)]
     fn look_ahead(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(whole_step_depth) = self.whole_step_depth else { return };
-        let mut near = gap.distance.lt(S::Real::splat(LOOKAHEAD_GAP) - whole_step_depth);
+        let mut near = gap.distance.lt(self.foreseen_gap - whole_step_depth);
         if !near.any() {
             return;
         }

@@ -299,7 +299,7 @@ lanewise!(struct Body<Planar<R>> {
 });
 
 lanewise!(struct Inert<Planar<R>> { motion, damped, mass, inertia });
-lanewise!(struct Substepping<R> { substeps, whole_step_depth, resting_allowance, fast });
+lanewise!(struct Substepping<R> { substeps, whole_step_depth, resting_allowance, foreseen_gap, fast });
 lanewise!(struct Fast<R> { whole_step_way, hard });
 
 impl<R: Real> Model<Planar<R>> {

@@ -2,7 +2,6 @@
 
 use super::{Group, Laws, Press, midway};
 use crate::body::Round;
-use crate::forces::LOOKAHEAD_GAP;
 use crate::real::{Mask, Real};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
@@ -41,8 +40,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             let nearest = self.nearest(surface, round, center, slack);
             let (mut gap, against_round) = (nearest.gap, nearest.round);
             gap.distance -= round.radius;
-            let foreseen =
-                S::Real::splat(if self.whole_step_depth.is_some() { LOOKAHEAD_GAP } else { 0.0 });
+            let foreseen = if self.whole_step_depth.is_some() { self.foreseen_gap } else { zero };
             if !gap.distance.lt(foreseen).any() {
                 continue;
             }
