@@ -1,16 +1,22 @@
 // The switch between the stage in three dimensions and the flat one.
 
-// What draws in three dimensions, once for a page; null where the browser or the page has nothing for it.
+// What WebGL draws into, once for a page; null where the browser or the page has nothing for it.
+let surface;
+function findSurface() {
+  if (surface === undefined) {
+    const canvas = document.createElement("canvas");
+    const context = document.getElementById("three") && canvas.getContext("webgl2", { alpha: true, antialias: true });
+    surface = context ? { canvas, context } : null;
+  }
+  return surface;
+}
+
+// What draws in three dimensions, unpacked when it is first needed; null where it does not start.
 let engine = null;
 function loadEngine() {
   engine ??= (async () => {
-    if (!document.getElementById("three")) return null;
-    const canvas = document.createElement("canvas");
-    const context = canvas.getContext("webgl2", { alpha: true, antialias: true });
-    if (!context) return null;
-    const script = make("script", {}, new TextDecoder().decode(await held("three")));
-    document.head.append(script);
-    return makeEngine(window.barrelstackThree, canvas, context);
+    document.head.append(make("script", {}, new TextDecoder().decode(await held("three"))));
+    return makeEngine(window.barrelstackThree, surface.canvas, surface.context);
   })().catch(() => null);
   return engine;
 }
@@ -43,7 +49,10 @@ function makeViews(screen, panes, act, changed, refit) {
   async function choose(on) {
     if (on && !deep[0]?.deep) {
       const made = await loadEngine();
-      if (!made) return;
+      if (!made) {
+        group.hidden = true;
+        return;
+      }
       for (const pane of deep) pane.deep = makeDeepStage(pane.data, pane.stage, made, eye, shown);
       made.onLost(() => {
         group.hidden = true;
@@ -55,7 +64,7 @@ function makeViews(screen, panes, act, changed, refit) {
 
   // Shows the switch and three dimensions where they work.
   async function start() {
-    if (deep.length === 0 || !(await loadEngine())) return;
+    if (deep.length === 0 || !findSurface()) return;
     group.hidden = false;
     if (!deep.some(({ data }) => data.depth.bodies.some(({ role }) => role === "rack"))) {
       act("across").textContent = "front";

@@ -62,6 +62,7 @@ export async function open(browser, path, { viewport = DESKTOP, colorScheme = "l
   if (pinned) await pin(page);
   try {
     await page.goto(url);
+    await page.evaluate(() => window.barrelstack?.deep);
     if (pinned) await settleFonts(page);
     await use(page);
   } finally {
