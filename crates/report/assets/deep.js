@@ -2,6 +2,7 @@
 
 const FLOOR = 60; // reach of the floor around what stands on it (m)
 const SAMPLES = 240; // frames by which the room that the bodies take is known
+const SINCE = 3; // time (s) for which the picture keeps room where bodies have been
 const AHEAD = 0.5; // time (s) over which the picture widens for what flies out of it
 const SHARPEST = 2; // pixels of a picture for each of the page
 const SLOW_FRAME = 45, PATIENCE = 12; // time of a picture that is too long (ms), and how many of them in a row are
@@ -227,35 +228,45 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     return [middle(0), middle(1), moving.length === 1 ? all[0][2] : 0];
   }
 
-  // The farthest points of the bodies to all sides until a time, as the camera rides: they spread, and begin to before
-  // the bodies reach the edge of the picture.
+  // The farthest points of the bodies to all sides at about a time, as the camera rides: they spread, and begin to before
+  // the bodies reach the edge of the picture. Where paths are shown, these are all since the start.
   const rooms = {};
-  function known() {
-    const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], lists = [];
-    let far = SIDES.map(() => -Infinity), points = SIDES.flatMap(() => [0, 0, 0]);
+  function known(back) {
+    const stride = Math.max(1, Math.ceil(data.count / SAMPLES)), times = [], alone = [];
     for (let frame = 0; frame < data.count; frame += stride) {
-      const shift = shiftAt(frame);
-      points = points.slice();
+      const shift = shiftAt(frame), far = SIDES.map(() => -Infinity), points = SIDES.map(() => [0, 0, 0]);
       for (const body of moving) {
         if (corners[body].length === 0 || !pose(body, frame, matrix)) continue;
         for (const corner of corners[body]) {
           vector.set(...corner).applyMatrix4(matrix);
           for (const row of depth.bodies[body].rows) {
-            const [x, y, z] = [vector.x + row[0] - shift[0], vector.y + row[1] - shift[1], vector.z + row[2] - shift[2]];
-            SIDES.forEach(([a, b, c], k) => {
-              const along = a * x + b * y + c * z;
-              if (along > far[k]) [far[k], points[3 * k], points[3 * k + 1], points[3 * k + 2]] = [along, x, y, z];
+            const point = [vector.x + row[0] - shift[0], vector.y + row[1] - shift[1], vector.z + row[2] - shift[2]];
+            SIDES.forEach((side, k) => {
+              const along = dot(side, point);
+              if (along > far[k]) [far[k], points[k]] = [along, point];
             });
           }
         }
       }
+      if (!isFinite(far[0])) continue;
       times.push(data.times[frame]);
-      lists.push(points);
+      alone.push({ far, points });
     }
-    return isFinite(far[0]) ? { times, lists } : { times: [0], lists: [SIDES.flat()] };
+    if (times.length === 0) return { times: [0], lists: [SIDES.flat()] };
+    let first = 0;
+    const lists = times.map((time, at) => {
+      while (times[first] < time - back) first += 1;
+      return SIDES.flatMap((_, k) => {
+        let best = alone[first];
+        for (let one = first; one <= at; one++) if (alone[one].far[k] > best.far[k]) best = alone[one];
+        return best.points[k];
+      });
+    });
+    return { times, lists };
   }
   function room(time) {
-    const { times, lists } = (rooms[flat.camera] ??= known());
+    const back = flat.traces && data.traces.length > 0 ? Infinity : SINCE;
+    const { times, lists } = (rooms[`${flat.camera} ${back}`] ??= known(back));
     if (times.length === 1) return threes(lists[0]);
     const sum = lists[0].map(() => 0), steps = 14;
     for (let k = 0; k < steps; k++) {
