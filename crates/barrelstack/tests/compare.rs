@@ -229,3 +229,25 @@ fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() 
     assert!(headline.starts_with("Two levels in place of five levels: collapse"), "{headline}");
     assert!(headline.contains(&said), "{headline}");
 }
+
+#[test]
+fn a_headline_of_both_planes_has_one_colon() {
+    let answered = |name: &str, levels: &str| {
+        let changes = [
+            levels,
+            "imperfections.variants=2",
+            "motion.scale.factor=2.5",
+            "run.duration=9 s",
+            "run.stop_after_collapse=0.2 s",
+        ];
+        let scenario = scenario("demo-napa", &changes);
+        let go = &mut |_| ControlFlow::Continue(());
+        (name.to_owned(), answer(&scenario, Asked::Typical, go).unwrap())
+    };
+    let answers =
+        vec![answered("five levels", "stack.levels=5"), answered("four levels", "stack.levels=4")];
+    let aligned = compare::aligned(answers, &mut |_| ControlFlow::Continue(())).unwrap();
+    let headline = compare::document(&compare::sides(aligned)).verdict.headline;
+    assert!(headline.starts_with("Four levels in place of five levels: collapse "), "{headline}");
+    assert!(headline.contains("; collapse ") && headline.matches(':').count() == 1, "{headline}");
+}

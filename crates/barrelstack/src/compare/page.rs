@@ -126,7 +126,7 @@ fn effect(sides: &[Side]) -> Option<String> {
             (WITHOUT, true, _) => " leaves",
             (WITHOUT, false, true) => " cuts",
             (WITHOUT, false, false) => " raises",
-            _ => ":",
+            _ => "",
         };
         if from == to {
             format!("{verb} collapse{place} at {to} of {of} variants")
@@ -138,7 +138,8 @@ fn effect(sides: &[Side]) -> Option<String> {
     let told =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
     let clauses: Vec<String> = told.map(|(_, pair)| clause(pair)).collect();
-    Some(format!("{cause}{}.", clauses.join(";")))
+    let colon = if cause == "Straps" || cause == WITHOUT { "" } else { ":" };
+    Some(format!("{cause}{colon}{}.", clauses.join(";")))
 }
 
 /// Returns the plane of a pair, where both are analyzed: " across the barrels".
