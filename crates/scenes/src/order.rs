@@ -117,38 +117,39 @@ fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Sp
 const KINDS: [[&str; 4]; 2] =
     [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
 
-/// Returns every two kinds of bodies of the plane that collide aside of their middles, spinning, of 100 and 60 kg.
+/// Returns every two kinds of bodies of the plane that collide aside of their middles, spinning, of 100 and 60 kg and of
+/// 100 kg each.
 pub fn planar_pairs() -> Vec<Order<Planar>> {
     let pair = |i: usize| {
-        let (a, b) = (i / 4, i % 4);
+        let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
         let mut bodies = vec![
             planar(a, "first", 100.0, -0.5, 0.0, 0.3),
-            planar(b, "second", 60.0, 0.5, 0.1, -0.4),
+            planar(b, "second", mass, 0.5, 0.1, -0.4),
         ];
         bodies[0].twist = Twist { linear: Vec2::new(1.0, 0.0), angular: 1.0 };
         bodies[1].twist = Twist { linear: Vec2::new(-1.5, 0.0), angular: 2.0 };
-        let name = format!("{} and {}", KINDS[0][a], KINDS[0][b]);
+        let name = format!("{} and {} of {mass} kg", KINDS[0][a], KINDS[0][b]);
         Order { name, bodies, laws: laws(), gravity: Vec2::default() }
     };
-    (0..16).map(pair).collect()
+    (0..32).map(pair).collect()
 }
 
-/// Returns every two kinds of solids that collide aside of their middles, spinning, of 100 and 60 kg.
+/// Returns every two kinds of solids that collide aside of their middles, spinning, of 100 and 60 kg and of 100 kg each.
 pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     let pair = |i: usize| {
-        let (a, b) = (i / 4, i % 4);
+        let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
         let turns = [Vec3::new(0.3, -0.2, 0.5), Vec3::new(-0.4, 0.6, 0.2)];
         let mut bodies = vec![
             solid(a, "first", 100.0, Vec3::new(-0.5, 0.0, 0.0), turns[0]),
-            solid(b, "second", 60.0, Vec3::new(0.5, 0.06, 0.08), turns[1]),
+            solid(b, "second", mass, Vec3::new(0.5, 0.06, 0.08), turns[1]),
         ];
         let linear = Vec3::new(1.0, 0.0, 0.0);
         bodies[0].twist = Twist { linear, angular: Vec3::new(1.0, 0.5, -0.5) };
         bodies[1].twist = Twist { linear: linear * -1.5, angular: Vec3::new(-0.5, 2.0, 1.0) };
-        let name = format!("{} and {}", KINDS[1][a], KINDS[1][b]);
+        let name = format!("{} and {} of {mass} kg", KINDS[1][a], KINDS[1][b]);
         Order { name, bodies, laws: laws(), gravity: Vec3::default() }
     };
-    (0..16).map(pair).collect()
+    (0..32).map(pair).collect()
 }
 
 /// Returns four bodies of the plane that tumble onto a floor and each other.
