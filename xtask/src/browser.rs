@@ -5,10 +5,16 @@ use std::process::{Command, ExitCode, Stdio};
 
 use anyhow::Context as _;
 
-use crate::steps::{build_program, program};
+use crate::steps::{build_program, program, target};
 
 /// Where the checks of report pages stand in the repository.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
+
+/// What films the demo for the README.
+pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
+
+/// The film.
+const FILMED: &str = "docs/pictures/demo.gif";
 
 /// Where those of the engine in a page stand.
 pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
@@ -66,6 +72,20 @@ impl Check {
     /// Builds the program in release.
     pub(crate) fn build(&self) -> anyhow::Result<()> {
         build_program(&self.root)
+    }
+
+    /// Films the demo for the README.
+    pub(crate) fn film(&self) -> anyhow::Result<ExitCode> {
+        let mut command = self.command().map_err(anyhow::Error::msg)?;
+        self.build()?;
+        let folder = target(&self.root).join("browser").join("film");
+        let mut demo = Command::new(program(&self.root));
+        demo.args(["run", "demo-napa", "--quiet", "--overwrite", "--out"]).arg(&folder);
+        // Its status says whether the stack falls.
+        demo.status().context("the program does not start")?;
+        let report = folder.join("report.html");
+        let status = command.arg(report).arg(FILMED).status().context("node does not start")?;
+        Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 
     /// Keeps the looks of all pages as they are now.

@@ -24,6 +24,7 @@ tasks:
   test       formatting, lints, documentation, and all tests; stops at the first failure
   golden     keeps how all report pages look now, for the next test; look at what it keeps before you commit it
   golden bits  keeps what results are now, to the last bit, once their version is raised
+  film       films the demo for the README, in three dimensions
   web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
   bundle     packs what pages use of three.js, with esbuild; `check` compares it with the one that is kept
   python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["test"] => status(steps::test().map(done)),
         ["golden"] => status(steps::golden()),
+        ["film"] => status(steps::film()),
         ["bundle"] => status(steps::bundle(bundle::Bundle::write).map(done)),
         ["bundle", "check"] => status(steps::bundle(bundle::Bundle::check).map(done)),
         ["web"] => status(steps::web().map(done)),

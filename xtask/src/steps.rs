@@ -120,6 +120,13 @@ pub(crate) fn bundle(use_it: fn(&Bundle) -> anyhow::Result<()>) -> anyhow::Resul
     use_it(&Bundle::find(&root()).map_err(anyhow::Error::msg)?)
 }
 
+/// Films the demo for the README.
+pub(crate) fn film() -> anyhow::Result<ExitCode> {
+    let check = browser::find(&root(), browser::FILM)
+        .context("there is nothing that films pages in this repository")?;
+    check.film()
+}
+
 /// Keeps how all report pages look now.
 pub(crate) fn golden() -> anyhow::Result<ExitCode> {
     let check = browser::find(&root(), browser::REPORTS)
