@@ -22,7 +22,7 @@ const THREE_JS: &str = include_str!("../assets/vendor/three.iife.min.js");
 const THREE_LICENSE: &str = include_str!("../assets/vendor/three-LICENSE");
 
 /// The player's scripts, in order of dependency.
-const PLAYER: [&str; 17] = [
+const PLAYER: [&str; 14] = [
     include_str!("../assets/held.js"),
     include_str!("../assets/decode.js"),
     include_str!("../assets/forces.js"),
@@ -34,12 +34,16 @@ const PLAYER: [&str; 17] = [
     include_str!("../assets/lens.js"),
     include_str!("../assets/moment.js"),
     include_str!("../assets/keys.js"),
-    include_str!("../assets/solids.js"),
-    include_str!("../assets/orbit.js"),
-    include_str!("../assets/deep.js"),
     include_str!("../assets/views.js"),
     include_str!("../assets/link.js"),
     include_str!("../assets/player.js"),
+];
+
+/// Scripts of a stage in three dimensions, for pages with a player.
+const DEPTH: [&str; 3] = [
+    include_str!("../assets/solids.js"),
+    include_str!("../assets/orbit.js"),
+    include_str!("../assets/deep.js"),
 ];
 
 /// Further scripts of a report.
@@ -163,11 +167,10 @@ pub(crate) fn assemble(
 ) -> String {
     let live = !payload.plots.is_empty();
     let deep = payload.has_depth();
+    let played = trial.is_some() || !payload.players.is_empty();
     // Static tables and figures need the scripts, too, which save and copy them.
-    let scripted = live
-        || trial.is_some()
-        || !payload.players.is_empty()
-        || ["<table", "<figure"].iter().any(|element| body.contains(element));
+    let scripted =
+        live || played || ["<table", "<figure"].iter().any(|element| body.contains(element));
     let (policy, style) =
         if trial.is_some() { (PROGRAM_POLICY, trial::STYLE) } else { (POLICY, "") };
     let mut out = head(title, policy, if live { UPLOT_CSS } else { "" }, style);
@@ -194,8 +197,9 @@ pub(crate) fn assemble(
         hold(&mut out, "application/json", "trial-start", &json_in_script(start));
     }
     if scripted {
+        let depth = DEPTH.into_iter().filter(|_| played);
         let tried = trial.map(|_| trial::SCRIPT);
-        let scripts: String = PLAYER.into_iter().chain(REPORT).chain(tried).collect();
+        let scripts: String = PLAYER.into_iter().chain(depth).chain(REPORT).chain(tried).collect();
         out += &strict(&scripts);
     }
     out.push_str("</body>\n</html>\n");
