@@ -29,8 +29,8 @@ fn a_collapse_in_space_has_the_bits_that_are_kept_and_is_as_much_work() {
     let work = (run.work.steps, run.work.evaluations, run.work.contact_evaluations);
     println!("{fallen:?} {work:?} {:016x}", hash(&run.frames.poses));
     // A skipped pair is no evaluation: before pairs were skipped by their true distances there were twice as many.
-    assert_eq!(work, (40_965, 40_966, 6_012_016));
+    assert_eq!(work, (41_109, 41_110, 6_001_491));
     if cfg!(target_arch = "x86_64") {
-        assert_eq!(hash(&run.frames.poses), 0x8b07_acff_b27b_d091, "other bits: see above");
+        assert_eq!(hash(&run.frames.poses), 0xd017_9670_cde8_e108, "other bits: see above");
     }
 }

@@ -13,7 +13,8 @@ export async function opened(browser, file, options = {}, hash = "") {
   page.setDefaultTimeout(PATIENCE);
   const url = pathToFileURL(file).href;
   const faults = [];
-  page.on("console", (message) => faults.push(`console: ${message.text()}`));
+  // What the driver of the graphics says of its pace is none of the page.
+  page.on("console", (message) => { if (!message.text().includes("GL Driver Message")) faults.push(`console: ${message.text()}`); });
   page.on("pageerror", (error) => faults.push(`error: ${error.message}`));
   page.on("request", (request) => {
     if (request.url().split("#")[0] !== url && !/^(data|blob):/.test(request.url())) faults.push(`asks for ${request.url()}`);
