@@ -5,7 +5,7 @@ use crate::ground_motion::GroundMotion;
 use crate::history::History;
 use crate::horizontals::Horizontals;
 use crate::matched::{Matched, MatchedPair, missed_in_words};
-use crate::matching::{Matching, Work, mean_ratio, not_converged, subdivided};
+use crate::matching::{Matching, STEPS_A_PERIOD, Work, mean_ratio, not_converged, subdivided};
 use crate::matching_pair::{match_pair, spectrum};
 use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
@@ -131,13 +131,7 @@ impl Record {
         if after.channels.len() > 1 {
             after.notes.push(format!("all other components scaled by {factor:.4}"));
         }
-        if step != channel.time_step {
-            after.notes.push(format!(
-                "step cut from {} to {step} s, so that the shortest matched period has ten; sums over \
-                 samples, such as the Arias intensity, fall a little where the motion is linear between",
-                channel.time_step
-            ));
-        }
+        after.notes.extend(cut(channel.time_step, step));
         if !matched.missed.is_empty() {
             let words = matched.missed_in_words();
             after.notes.push(format!("{}: the target is missed {words}", channel.name));
@@ -218,9 +212,20 @@ impl Record {
         if after.channels.len() > 2 {
             after.notes.push(format!("all other components scaled by {factor:.4}"));
         }
+        after.notes.extend(cut(first.time_step(), work.time_step));
         if !matched.missed.is_empty() {
             after.notes.push(format!("the target is missed {}", missed_in_words(&matched.missed)));
         }
         Ok((after, matched))
     }
+}
+
+/// States that a match divided the step (s), if it did.
+fn cut(before: f64, after: f64) -> Option<String> {
+    (before != after).then(|| {
+        format!(
+            "step cut from {before} to {after} s, so that the shortest matched period has {STEPS_A_PERIOD}; sums over \
+             samples, such as the Arias intensity, fall a little where the motion is linear between"
+        )
+    })
 }

@@ -76,10 +76,10 @@ pub fn missed_in_words(all: &[Missed]) -> String {
     sizes.sort_by(|a, b| b.total_cmp(a));
     let least = sizes.get(MOST_TOLD - 1).copied().unwrap_or(0.0);
     let worst = all.iter().filter(|missed| missed.misfit.abs() >= least);
-    let mut told: Vec<String> = worst.map(words).collect();
-    match all.len() - told.len() {
-        0 => {}
-        rest => told.push(format!("by less at {rest} other ranges")),
+    let mut ranges: Vec<String> = worst.map(words).collect();
+    let others = all.len() - ranges.len();
+    if others > 0 {
+        ranges.push(format!("by less at {others} other ranges"));
     }
-    told.join(", ")
+    ranges.join(", ")
 }

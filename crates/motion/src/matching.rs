@@ -66,7 +66,7 @@ const MOST_SAMPLES: usize = 14_000_000;
 
 /// Steps per shortest matched period: a peak between two samples is then underestimated by 1.2 % at most; with ten
 /// steps it would be 5 %, the whole tolerance of a match.
-const STEPS_A_PERIOD: f64 = 20.0;
+pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
 /// Matched periods per decade.
 const PER_DECADE: f64 = 60.0;
 /// Judged periods per matched one, so that no misfit hides between.

@@ -288,13 +288,13 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     const [tanX, tanY] = [(tan * aspect * (width - 28)) / width, (tan * (height - above - below)) / height];
     // What is nearer looks larger: the middle of the picture is found in a few rounds.
     for (let round = 0; round < 4; round++) {
-      const seen = list.map((corner) => {
+      const inView = list.map((corner) => {
         const offset = plus(corner, middle, -1);
         return [dot(offset, axes.right), dot(offset, axes.up), dot(offset, axes.back)];
       });
-      away = Math.max(0.2, ...seen.map(([x, y, toward]) => Math.max(Math.abs(x) / tanX, Math.abs(y) / tanY) + toward));
+      away = Math.max(0.2, ...inView.map(([x, y, toward]) => Math.max(Math.abs(x) / tanX, Math.abs(y) / tanY) + toward));
       for (const [axis, way] of [axes.right, axes.up].entries()) {
-        const ends = seen.map((one) => one[axis] / (away - one[2]));
+        const ends = inView.map((one) => one[axis] / (away - one[2]));
         middle = plus(middle, way, 0.5 * away * (Math.min(...ends) + Math.max(...ends)));
       }
     }
@@ -313,7 +313,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     camera.matrixWorldNeedsUpdate = true;
     camera.updateMatrixWorld(true);
     stage.perPixel = () => (2 * away * tan) / height;
-    // The sun stands to the left of the eye, so that what is seen is lit from any side.
+    // The sun stands to the left of the eye, so that the visible side is lit from wherever it is looked at.
     const size = 0.5 * Math.hypot(...high.map((value, axis) => value - low[axis])) + 0.3;
     const around = eye.around - 0.7, from = [0.75 * Math.sin(around), -0.75 * Math.cos(around), 1.15];
     sun.position.set(...plus(center, from, 2 * size));
@@ -330,11 +330,11 @@ function makeDeepStage(data, flat, engine, eye, stages) {
   }
 
   function update(frame, time) {
-    const seen = depth.bodies.map((_, body) => pose(body, frame, now[body]));
+    const placed = depth.bodies.map((_, body) => pose(body, frame, now[body]));
     const base = new three.Color(), tinted = flat.tint && data.tint && depth.plane;
     for (const { mesh, name, places } of groups) {
       places.forEach(({ body, row }, k) => {
-        if (!seen[body]) return mesh.setMatrixAt(k, unseen);
+        if (!placed[body]) return mesh.setMatrixAt(k, unseen);
         matrix.makeTranslation(...row).multiply(now[body]);
         mesh.setMatrixAt(k, matrix);
         if (!mesh.instanceColor) return;
@@ -349,7 +349,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
       mesh.boundingSphere = null;
     }
     for (const { mark, body, row } of labels) {
-      mark.visible = flat.names && seen[body];
+      mark.visible = flat.names && placed[body];
       if (!mark.visible) continue;
       mark.matrix.makeTranslation(...row).multiply(now[body]);
       mark.matrixWorldNeedsUpdate = true;
@@ -357,14 +357,14 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     }
     depth.ties.forEach(({ bodies, points, torn }, k) => {
       const [a, b] = bodies.map((body, end) => new three.Vector3(...points[end]).applyMatrix4(now[body]));
-      const gone = (torn !== null && time >= torn) || !bodies.every((body) => seen[body]);
+      const gone = (torn !== null && time >= torn) || !bodies.every((body) => placed[body]);
       const along = b.sub(a), length = along.length();
       quaternion.setFromUnitVectors(vector.set(1, 0, 0), along.clone().normalize());
       bands.setMatrixAt(k, gone ? unseen : matrix.compose(a, quaternion, vector.set(length, 1, 1)));
     });
     if (depth.ties.length === 0) bands.setMatrixAt(0, unseen);
     bands.instanceMatrix.needsUpdate = true;
-    if (ground >= 0 && seen[ground]) floor.matrix.copy(now[ground]);
+    if (ground >= 0 && placed[ground]) floor.matrix.copy(now[ground]);
     floor.matrixWorldNeedsUpdate = true;
     const at = ground >= 0 ? [now[ground].elements[12], now[ground].elements[13]] : [0, 0];
     field.position.set(Math.round(target[0] - at[0]), Math.round(target[1] - at[1]), 0);
@@ -401,7 +401,7 @@ function makeDeepStage(data, flat, engine, eye, stages) {
     drawOver({ context, width, height, paint, frame, time, view });
   }
 
-  // The place of a body (px) and the radius of what is seen of it.
+  // The place of a body (px) and the radius of its picture.
   function circle(body, frame) {
     const [x, y, scale] = project(placeOf(body, frame));
     const reach = Math.max(0, ...corners[body].map((corner) => Math.hypot(...corner)));

@@ -2,6 +2,20 @@
 
 const NEAREST = 20, FARTHEST = 0.4; // scales against that of the whole picture
 
+// The pointers that are down on a canvas, where one is (px), and the distance and the middle of two (px).
+function pointers(canvas) {
+  const held = new Map();
+  const place = (event) => {
+    const box = canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+  const spread = () => {
+    const [a, b] = [...held.values()];
+    return { wide: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1, at: [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])] };
+  };
+  return { held, place, spread };
+}
+
 // `screen` is the frame of the player; `changed` draws anew.
 function makeLens(screen, stages, changed) {
   const lens = { factor: 1, x: 0, z: 0 };
@@ -30,15 +44,7 @@ function makeLens(screen, stages, changed) {
 
   for (const stage of stages) {
     const { canvas } = stage;
-    const held = new Map();
-    const place = (event) => {
-      const box = canvas.getBoundingClientRect();
-      return [event.clientX - box.left, event.clientY - box.top];
-    };
-    const spread = () => {
-      const [a, b] = [...held.values()];
-      return { wide: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1, at: [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])] };
-    };
+    const { held, place, spread } = pointers(canvas);
     // In three dimensions the canvas has an eye of its own.
     const on = (name, action) => canvas.addEventListener(name, (event) => {
       if (!screen.classList.contains("deep")) action(event);

@@ -73,16 +73,8 @@ function makeEye(screen, canvases, stages, changed) {
   }
 
   for (const { canvas, stage } of canvases) {
-    const held = new Map();
+    const { held, place, spread } = pointers(canvas);
     let moved = 0;
-    const place = (event) => {
-      const box = canvas.getBoundingClientRect();
-      return [event.clientX - box.left, event.clientY - box.top];
-    };
-    const spread = () => {
-      const [a, b] = [...held.values()];
-      return { wide: Math.hypot(a[0] - b[0], a[1] - b[1]) || 1, at: [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])] };
-    };
     const on = (name, action) => canvas.addEventListener(name, (event) => { if (isDeep()) action(event); }, { passive: false });
     on("wheel", (event) => {
       // Alone the wheel scrolls the page; with Ctrl, as pads send a pinch, it zooms.

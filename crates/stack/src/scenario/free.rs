@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use barrelstack_input::choices::Chosen as _;
 use barrelstack_input::declared::{self, Declared as _};
 use barrelstack_input::{section, table};
+use barrelstack_report::column::column_name;
 
 use super::dimension::Dimension;
 use super::element::{self, FreeElement};
@@ -186,11 +187,21 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
+/// Says that the columns of a body would have the name of others.
+pub(super) fn clash(name: &str, column: &str) -> String {
+    format!(
+        "the columns of \"{name}\" would be called {column}_…, as those of another body or of the ground are; give it \
+         another name"
+    )
+}
+
 /// Reads the fields of a free scene from the top of the file.
 pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
     let (mut names, mut nodes) = (BTreeSet::new(), 0.0);
+    // Names of columns, of which some belong to the ground.
+    let mut columns = BTreeSet::from(["ground".to_owned()]);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
             let message = format!("a free scene has at most {MOST_BODIES} bodies");
@@ -200,6 +211,10 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
         if !names.insert(name.clone()) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
+        }
+        let column = column_name(&name);
+        if !columns.insert(column.clone()) {
+            return Err(reader.inconsistent("name", clash(&name, &column)));
         }
         let refuse = reader.inconsistent(
             "shape",

@@ -7,11 +7,12 @@ use barrelstack_input::declared::Declared as _;
 use barrelstack_input::reader::Reader;
 use barrelstack_input::section;
 use barrelstack_input::writer::Writer;
+use barrelstack_report::column::column_name;
 
 use super::dimension::Dimension;
 use super::error::ScenarioError;
 use super::field::{Default, Kind, Range};
-use super::free::FreeInterface;
+use super::free::{FreeInterface, clash};
 use super::interface::{self, Basis};
 
 section! {
@@ -65,6 +66,10 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
         if name == "ground" || bodies.iter().any(|body| body.name == name) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
+        }
+        let column = column_name(&name);
+        if column == "ground" || bodies.iter().any(|body| column_name(&body.name) == column) {
+            return Err(reader.inconsistent("name", clash(&name, &column)));
         }
         // Kept for an error at its place; the body takes the reader.
         let refuse = reader.inconsistent(
