@@ -252,7 +252,7 @@ impl Shell<'_> {
             hold(&mut out, "text/plain", id, &pack::gzip_letters(bytes));
         }
         hold(&mut out, "text/plain", "worker", &format!("\n{}", lean(self.worker)));
-        let player: String = PLAYER.into_iter().map(lean).collect();
+        let player: String = PLAYER.into_iter().chain(DEPTH).map(lean).collect();
         let own: String = self.scripts.iter().copied().map(lean).collect();
         // In a block of its own, so that constants may have the names of the player's.
         out += &strict(&format!("{player}{{\n{own}}}\n"));
