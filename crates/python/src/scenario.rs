@@ -147,20 +147,28 @@ impl Scenario {
         self.inner.is_spatial()
     }
 
-    #[pyo3(signature = (variants, variant, progress))]
+    #[pyo3(signature = (variants, variant, remedy, progress))]
     fn run_in_space(
         &self,
         py: Python<'_>,
         variants: Option<u32>,
         variant: Option<u32>,
+        remedy: bool,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<SpatialRun> {
         let (scenario, count) = with_variants(&self.inner, variants)?;
         let asked = asked(variant, count)?;
         let answer = listening(py, progress, |hear| {
-            barrelstack_space::answer(&scenario, asked, &mut |now| told(hear, now))
+            let mut answer =
+                barrelstack_space::answer(&scenario, asked, &mut |now| told(hear, now))?;
+            if remedy && !hear.stopped() {
+                answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|done| {
+                    hear.tell(done as f64, f64::NAN, "runs of what would have helped")
+                })?;
+            }
+            Ok(answer)
         })?;
-        answer.map(SpatialRun::of).map_err(|error| errors::run(&error, &scenario))
+        answer.map(SpatialRun::of).map_err(|error: RunFailure| errors::run(&error, &scenario))
     }
 
     /// Runs it as stated in one plane, with an observer function that is called every few steps and stops the run by

@@ -2,7 +2,7 @@
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend};
-use barrelstack::variants::Range;
+use barrelstack::variants::{Range, Remedy};
 use barrelstack_report::{
     Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
 };
@@ -45,6 +45,9 @@ pub fn document(answer: &Answer) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     if let Some(table) = variants(summary) {
         blocks.extend([heading("In all variants"), Block::Table(table)]);
+    }
+    if let Some(found) = &summary.remedy {
+        blocks.extend([heading("What would have kept it up"), Block::Table(found.table())]);
     }
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));
@@ -94,7 +97,7 @@ pub fn document(answer: &Answer) -> Document {
         title: summary.title.clone(),
         verdict: Verdict {
             headline: headline(run, summary),
-            advice: String::new(),
+            advice: summary.remedy.as_ref().map(Remedy::sentence).unwrap_or_default(),
             command: String::new(),
             sentences: sentences(run, summary),
             fine: Vec::new(),

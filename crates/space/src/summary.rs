@@ -7,7 +7,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scenario;
 use barrelstack::summary::Unfinished;
 use barrelstack::summary::{Devices, EnergyBalance, JointSummary, Provenance};
-use barrelstack::variants::Spread;
+use barrelstack::variants::{Remedy, Spread};
 use barrelstack_dynamics::Vec3;
 use barrelstack_report::described;
 
@@ -30,6 +30,8 @@ described! {
         pub ensemble: Option<Spread>,
         /// How many of its runs were done; null unless they were stopped before all were.
         pub unfinished: Option<Unfinished>,
+        /// What would have kept the stack up; null where it stands, or none was searched.
+        pub remedy: Option<Remedy>,
         /// In which directions they fall; null where none were run.
         pub directions: Option<Directions>,
         /// What happened.
@@ -222,6 +224,7 @@ impl Summary {
             variant: 0,
             ensemble: None,
             unfinished: None,
+            remedy: None,
             directions: None,
             outcome: outcome(run, sound),
             // Numbers of a run that broke down look like results but are invalid.

@@ -7,10 +7,13 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
 use barrelstack::ensemble::CaseResult;
+use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
-use barrelstack::variants::{Advance, Asked, Plane, Spread, planes};
+use barrelstack::variants::{
+    Advance, Asked, Failed, Observer, Plane, Remedy, Spread, Trial, fails, planes, remedy_by,
+};
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
@@ -35,6 +38,8 @@ pub struct Case {
 /// Result of a scenario in space.
 #[derive(Clone, Debug)]
 pub struct Answer {
+    /// The scenario as stated, with its records in memory.
+    pub scenario: Scenario,
     /// The run that is shown.
     pub run: Run,
     /// Its summary, with the statistics of all variants.
@@ -173,9 +178,19 @@ pub fn run_all(
     let ground = Ground::of(&plane.scenario)?;
     affordable(&plane.scenario, &Stack::of(&plane.scenario)?, &ground)?;
     let numbers = plane.numbers();
+    Ok(run_some(&plane, &ground, &numbers, &|done| observer(done, numbers.len())))
+}
+
+/// Runs variants by their numbers on all cores; the observer receives the number of finished ones, and may stop them.
+fn run_some(
+    plane: &Plane,
+    ground: &Ground,
+    numbers: &[u32],
+    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
+) -> Vec<Case> {
     let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let hear = |done: usize| {
-        if observer(done, numbers.len()).is_break() {
+        if observer(done).is_break() {
             stopped.store(true, Ordering::Relaxed);
         }
     };
@@ -201,11 +216,51 @@ pub fn run_all(
         hear(done.fetch_add(1, Ordering::Relaxed) + 1);
         case
     };
-    Ok(pool::map(&numbers, work, &|_| ()))
+    pool::map(numbers, work, &|_| ())
+}
+
+/// A changed stack in space, with its variants.
+struct InSpace {
+    plane: Plane,
+    ground: Ground,
+    /// Number of finished runs.
+    done: usize,
+}
+
+impl Trial for InSpace {
+    fn run(&mut self, block: std::ops::Range<u32>, observer: Observer<'_>) -> Failed {
+        let numbers: Vec<u32> = (block.start + 1..=block.end).collect();
+        let before = self.done;
+        let cases = run_some(&self.plane, &self.ground, &numbers, &|done| observer(before + done));
+        self.done += cases.len();
+        if cases.iter().any(|case| case.result.outcome == Ok(Outcome::Interrupted)) {
+            return ControlFlow::Break(());
+        }
+        let failed = cases.iter().filter(|case| fails(&case.result)).count();
+        ControlFlow::Continue(vec![u32::try_from(failed).unwrap_or(u32::MAX)])
+    }
+}
+
+/// Searches the smallest change that would have kept the stack up, by the rules and statistics of the planes.
+///
+/// `None` where the stack stands, has no variants, or its runs end before the motion.
+///
+/// # Errors
+/// When the motion cannot be read.
+pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>, GroundError> {
+    if answer.summary.unfinished.is_some() || answer.run.ending == Ending::Interrupted {
+        return Ok(None);
+    }
+    let prepare = |scenario: &Scenario| -> Result<Box<dyn Trial>, GroundError> {
+        let plane = plane(scenario)?;
+        let ground = Ground::of(&plane.scenario)?;
+        Ok(Box::new(InSpace { plane, ground, done: 0 }))
+    };
+    remedy_by(&answer.scenario, answer.summary.ensemble.iter(), &prepare, observer)
 }
 
 /// Returns the scenario with its records in memory, with the variants of space.
-fn plane(scenario: &Scenario) -> Result<Plane, RunFailure> {
+fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
     let mut all = planes(scenario)?;
     Ok(all.swap_remove(0))
 }
@@ -258,5 +313,5 @@ pub fn answer(
     summary.directions =
         spread.as_ref().map(|_| Directions::of(cases.get(1..).unwrap_or_default()));
     summary.ensemble = spread;
-    Ok(Answer { run, summary, cases })
+    Ok(Answer { scenario: plane.scenario, run, summary, cases })
 }

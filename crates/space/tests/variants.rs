@@ -4,12 +4,15 @@
 
 mod common;
 
+use std::ops::ControlFlow;
+
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::View;
 use barrelstack::variants::{Asked, planes};
 use barrelstack_dynamics::Vec3;
 use barrelstack_space::run::{run, stand};
+use barrelstack_space::variants::remedy;
 use barrelstack_space::{Heading, answer};
 
 use common::soft_demo;
@@ -95,7 +98,7 @@ fn an_answer_counts_variants_and_directions() {
     let scenario = demo(&["imperfections.variants=4", "run.stop_after_collapse='0.5 s'"]);
     let answer = answer(&scenario, Asked::Typical, &mut |_| {
         told += 1;
-        std::ops::ControlFlow::Continue(())
+        ControlFlow::Continue(())
     })
     .unwrap();
     let spread = answer.summary.ensemble.as_ref().unwrap();
@@ -120,4 +123,40 @@ fn a_stack_in_space_stands_as_high_as_in_the_planes() {
         // includes the circle above the rails and not the bilge.
         assert!(apart.abs() < 0.03, "{apart}");
     }
+}
+
+#[test]
+fn a_change_that_would_have_kept_a_stack_up_stands_in_as_many_variants_when_it_is_made() {
+    let shaken = [
+        "stack.view=spatial",
+        "stack.levels=2",
+        "motion={ sine = { amplitude = \"12 cm\", period = \"0.8 s\", cycles = 3 } }",
+        "imperfections.variants=8",
+        "run.until=verdict",
+    ];
+    let answered = |more: &[String]| {
+        let key = |change: &str| change.split('=').next().unwrap_or_default().to_owned();
+        let kept = shaken.iter().filter(|one| more.iter().all(|other| key(other) != key(one)));
+        let changes: Vec<String> =
+            kept.map(|one| (*one).to_owned()).chain(more.iter().cloned()).collect();
+        let scenario = Scenario::builtin("demo-napa", &changes).unwrap();
+        answer(&scenario, Asked::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
+    };
+    let own = answered(&[]);
+    let found = remedy(&own, &|_| ControlFlow::Continue(())).unwrap().unwrap();
+    println!("{}", found.sentence());
+    // One lower height and five pretensions.
+    assert!(found.complete && found.candidates == 6 && found.tried.len() >= 2, "{found:?}");
+    let kept: Vec<_> = found.height.iter().chain(&found.straps).collect();
+    assert!(!kept.is_empty(), "{found:?}");
+    for one in found.tried.iter().filter(|one| one.variants == 8) {
+        let spread = answered(&one.changes).summary.ensemble.unwrap();
+        assert_eq!((spread.collapsed + spread.broken, spread.run()), (one.failed, 8), "{one:?}");
+    }
+    // A search that is canceled says so.
+    let stopped = remedy(&own, &|_| ControlFlow::Break(())).unwrap().unwrap();
+    assert!(!stopped.complete && stopped.height.is_none() && stopped.straps.is_none());
+    // A stack that stands needs no remedy.
+    let calm = answered(&["motion.scale={ factor = 0.01 }".to_owned()]);
+    assert_eq!(remedy(&calm, &|_| ControlFlow::Continue(())).unwrap(), None);
 }

@@ -90,7 +90,7 @@ impl Remedy {
     }
 
     /// Tabulates every change that was tried.
-    pub(crate) fn table(&self) -> Table {
+    pub fn table(&self) -> Table {
         let caption = format!(
             "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all stand \
              in every plane. One that more fail than may is dropped after the block of variants by which they have, so \

@@ -38,8 +38,8 @@ use crate::watch::after_collapse;
 
 pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
-pub use remedy::{ENOUGH, PRETENSIONS, Remedy, Tried, remedy};
-pub use spread::{LEVEL, Range, Spread};
+pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
+pub use spread::{LEVEL, Range, Spread, fails};
 
 /// A scenario in one plane, with all its variants.
 #[derive(Clone, Debug)]

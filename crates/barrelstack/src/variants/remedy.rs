@@ -11,9 +11,8 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
 use barrelstack_report::described;
 
-use self::search::{Counts, Failed, Plan};
-use super::spread::{collapsed, judged};
-use super::{Answer, Plane, planes};
+use self::search::{Counts, Plan};
+use super::{Answer, Plane, Spread, fails, planes};
 use crate::device::{Straps, Ties};
 use crate::ensemble::{Audience, CaseResult, Prepared, simulate};
 use crate::ground::{GroundError, from_disk};
@@ -21,7 +20,7 @@ use crate::pool;
 use crate::run::CUT;
 use crate::scenario::{Scenario, Scene, Setting, Source};
 
-pub use self::search::ENOUGH;
+pub use self::search::{ENOUGH, Failed};
 
 /// Pretensions (N) of straps that are tried; a manual ratchet for webbing of 50 mm reaches no more than 5 kN,
 /// an assumption: labels of long-handled ratchets state about 500 daN (their STF, EN 12195-2).
@@ -78,7 +77,17 @@ described! {
 }
 
 /// Progress callback: called from several threads with the count of finished runs of the change at hand; may cancel.
-type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
+pub type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
+
+/// The variants of a changed stack, ready to run for their verdicts.
+pub trait Trial {
+    /// Runs a block of variants, counted from zero, in every plane: returns the number that fails in each, or breaks
+    /// when the observer cancels.
+    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed;
+}
+
+/// Prepares the variants of a changed stack.
+type Prepare<'a> = dyn Fn(&Scenario) -> Result<Box<dyn Trial>, GroundError> + 'a;
 
 /// Searches the smallest change of height, and of straps, that brings the failure rate of a stack below the limit.
 ///
@@ -88,23 +97,38 @@ type Observer<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 ///
 /// # Errors
 /// When a motion cannot be read.
-pub fn remedy(
-    answer: &Answer,
-    observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
-) -> Result<Option<Remedy>, GroundError> {
+pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>, GroundError> {
+    if answer.is_stopped() {
+        return Ok(None);
+    }
     let spreads = answer.decides.summary.spreads();
-    let worst = spreads.iter().filter_map(|(_, spread)| spread.largest_share()).reduce(f64::max);
-    if worst.is_none_or(enough) || answer.is_stopped() {
+    let prepare = |scenario: &Scenario| -> Result<Box<dyn Trial>, GroundError> {
+        Ok(Box::new(InPlanes::new(scenario)?))
+    };
+    remedy_by(&answer.scenario, spreads.iter().map(|(_, spread)| *spread), &prepare, observer)
+}
+
+/// Searches a remedy as [`remedy`], with variants that are run elsewhere; `spreads` are those of the stack as it is.
+///
+/// # Errors
+/// As [`remedy`].
+pub fn remedy_by<'a>(
+    scenario: &Scenario,
+    spreads: impl Iterator<Item = &'a Spread>,
+    prepare: &Prepare<'_>,
+    observer: Observer<'_>,
+) -> Result<Option<Remedy>, GroundError> {
+    if spreads.filter_map(Spread::largest_share).reduce(f64::max).is_none_or(enough) {
         return Ok(None);
     }
     // Read once, not for every change.
-    let scenario = &answer.scenario.with_records(&mut from_disk)?;
+    let scenario = &scenario.with_records(&mut from_disk)?;
     let end = scenario.ground()?.end();
     if scenario.stack().is_none() || scenario.run.duration.is_some_and(|run| run + CUT < end) {
         return Ok(None);
     }
     let mut found = Remedy { required_share: f64::from(ENOUGH) / 100.0, ..Remedy::default() };
-    look(scenario, observer, &mut found)?;
+    look(scenario, prepare, observer, &mut found)?;
     Ok(Some(found))
 }
 
@@ -116,6 +140,7 @@ fn enough(share: f64) -> bool {
 /// Tries the changes of a scenario.
 fn look(
     scenario: &Scenario,
+    prepare: &Prepare<'_>,
     observer: Observer<'_>,
     found: &mut Remedy,
 ) -> Result<(), GroundError> {
@@ -131,11 +156,16 @@ fn look(
         variants: planes.iter().map(Plane::count).max().unwrap_or(0),
         planes: planes.len(),
     };
-    let mut trials: Vec<Option<Trial>> = changes.iter().map(|_| None).collect();
+    let mut trials: Vec<Option<Box<dyn Trial>>> = changes.iter().map(|_| None).collect();
     let mut run = |change: usize, block: Range<u32>| {
         let trial = match &mut trials[change] {
             Some(trial) => trial,
-            none => none.insert(Trial::new(&changes[change])?),
+            none => {
+                let mut scenario = changes[change].scenario.clone();
+                // The course after a collapse does not matter here.
+                scenario.run.stop_after_collapse = Some(0.0);
+                none.insert(prepare(&scenario)?)
+            }
         };
         Ok(trial.run(block, observer))
     };
@@ -236,29 +266,27 @@ impl Change {
     }
 }
 
-/// A change under trial.
-struct Trial {
-    /// The stack and its variants in every plane, ready to run; the nominal case comes first.
+/// Variants in planes, which run side by side.
+struct InPlanes {
+    /// The stack and its variants in every plane; the nominal case comes first.
     cases: Vec<Vec<Prepared>>,
     /// Number of finished runs.
     done: AtomicUsize,
 }
 
-impl Trial {
-    fn new(change: &Change) -> Result<Self, GroundError> {
-        let mut scenario = change.scenario.clone();
-        // The course after a collapse does not matter here.
-        scenario.run.stop_after_collapse = Some(0.0);
-        let planes = planes(&scenario)?;
+impl InPlanes {
+    fn new(scenario: &Scenario) -> Result<Self, GroundError> {
+        let planes = planes(scenario)?;
         let cases = planes
             .iter()
             .map(|plane| plane.prepared(&plane.numbers()))
             .collect::<Result<_, _>>()?;
         Ok(Self { cases, done: AtomicUsize::new(0) })
     }
+}
 
-    /// Runs a block of variants, counted from zero, in every plane; returns the number of failures in each.
-    fn run(&self, block: Range<u32>, observer: Observer<'_>) -> Failed {
+impl Trial for InPlanes {
+    fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed {
         let stopped = AtomicBool::new(false);
         let asked = || {
             if observer(self.done.load(Ordering::Relaxed)).is_break() {
@@ -279,7 +307,7 @@ impl Trial {
             .collect();
         let work = |(plane, cases): &(usize, &[Prepared])| {
             let mut tell = |result: &CaseResult| {
-                if collapsed(result) || !judged(result) {
+                if fails(result) {
                     failed[*plane].fetch_add(1, Ordering::Relaxed);
                 }
                 self.done.fetch_add(1, Ordering::Relaxed);

@@ -185,6 +185,11 @@ pub(super) fn judged(result: &CaseResult) -> bool {
     matches!(result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }))
 }
 
+/// `true` if a case collapses, or has no verdict, which counts against a change.
+pub fn fails(result: &CaseResult) -> bool {
+    collapsed(result) || !judged(result)
+}
+
 /// `true` if a case has a verdict and was shaken, so that it can be shown.
 pub(super) fn shown(result: &CaseResult) -> bool {
     judged(result) && !result.fell_at_rest()

@@ -7,7 +7,7 @@ use anyhow::bail;
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
 use barrelstack::render::{Part, RenderFolder};
-use barrelstack::variants::Asked;
+use barrelstack::variants::{Asked, Remedy};
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_report::paraview_of_solids;
 use barrelstack_space::mesh::solids;
@@ -22,7 +22,7 @@ use crate::progress::Progress;
 pub(super) fn run(
     args: &RunArgs,
     scenario: &Scenario,
-    asked: Asked,
+    selection: Asked,
     folder: Option<&Folder>,
 ) -> anyhow::Result<ExitCode> {
     for (given, option) in [
@@ -37,8 +37,15 @@ pub(super) fn run(
             );
         }
     }
-    let answer = answered(scenario, asked, !args.quiet)
-        .map_err(|error| super::placed(error, scenario, &args.scenario))?;
+    let placed = |error| super::placed(error, scenario, &args.scenario);
+    let mut answer = answered(scenario, selection, !args.quiet).map_err(placed)?;
+    if !args.no_remedy {
+        let progress = Progress::new(!args.quiet);
+        let found = variants::remedy(&answer, &|done| {
+            progress.searched(done as u64, "runs of what would have helped")
+        });
+        answer.summary.remedy = found.map_err(|error| placed(error.into()))?;
+    }
     crate::interrupt::finished();
     // Print the verdict even if the files cannot be written.
     let written = folder.map_or(Ok(()), |folder| {
@@ -63,7 +70,7 @@ pub(super) fn run(
 pub(super) fn render(
     args: &RenderArgs,
     scenario: &Scenario,
-    asked: Asked,
+    selection: Asked,
 ) -> anyhow::Result<ExitCode> {
     if let Some(part) = args.lacking_in_space() {
         bail!(
@@ -77,7 +84,7 @@ pub(super) fn render(
     let folder = RenderFolder::prepare(&args.out, &[Part::Paraview], args.overwrite)?;
     crate::interrupt::writes_to(&args.out.join(Part::Paraview.place()));
     crate::interrupt::writes_to(&args.out);
-    let answer = answered(scenario, asked, !args.quiet)
+    let answer = answered(scenario, selection, !args.quiet)
         .map_err(|error| super::placed(error, scenario, &args.scenario))?;
     let end = answer.run.end_time;
     if between[0] > end {
@@ -91,10 +98,10 @@ pub(super) fn render(
 }
 
 /// Runs a scenario and its variants with a progress bar and Ctrl-C.
-fn answered(scenario: &Scenario, asked: Asked, show: bool) -> Result<Answer, RunFailure> {
+fn answered(scenario: &Scenario, selection: Asked, show: bool) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer = variants::answer(scenario, asked, &mut |told| progress.told_of(told))?;
+    let mut answer = variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
     answer.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     Ok(answer)
 }
@@ -113,8 +120,9 @@ fn in_a_plane(scenario: &Scenario) -> &'static str {
 fn lines(answer: &Answer) -> Vec<String> {
     let Answer { run, summary, .. } = answer;
     let mut lines = vec![summary.title.clone(), format!("  {}", words::headline(run, summary))];
-    lines
-        .extend(words::sentences(run, summary).into_iter().map(|sentence| format!("  {sentence}")));
+    let advice = summary.remedy.as_ref().map(Remedy::sentence);
+    let sentences = advice.into_iter().chain(words::sentences(run, summary));
+    lines.extend(sentences.map(|sentence| format!("  {sentence}")));
     lines.push(String::new());
     let rows = words::rows(run, summary);
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) + 2;

@@ -382,6 +382,7 @@ class Scenario:
         progress: Progress = None,
         *,
         variant: int | None = None,
+        remedy: bool = False,
     ) -> SpatialRun:
         """Runs a scenario in space (``stack.view = "spatial"``) under all three components, with its variants.
 
@@ -395,6 +396,8 @@ class Scenario:
             True for a bar, or a function that is called with (done, of, what) some twenty times a second.
         variant
             The variant to show, 0 for the nominal stack; by default the most typical one.
+        remedy
+            Whether to search a remedy, as the command does.
 
         Returns
         -------
@@ -427,9 +430,11 @@ class Scenario:
             )
         if record is not None:
             record = record if isinstance(record, Record) else Record.read(record)
-            return self.with_record(record).run_in_space(None, variants, progress, variant=variant)
+            return self.with_record(record).run_in_space(
+                None, variants, progress, variant=variant, remedy=remedy
+            )
         with told(progress, f"run of {self.title!r} in space") as hear:
-            run = SpatialRun(self._shaken.run_in_space(variants, variant, hear), self.to_toml())
+            run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, hear), self.to_toml())
         warn(run.warnings)
         return run
 

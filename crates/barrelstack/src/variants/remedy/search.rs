@@ -108,7 +108,7 @@ pub(super) struct Found {
 }
 
 /// Number of failures of a block in each plane, or `Break` when canceled.
-pub(super) type Failed = ControlFlow<(), Vec<u32>>;
+pub type Failed = ControlFlow<(), Vec<u32>>;
 
 /// Runs a block of variants, counted from zero, of a change.
 type RunBlock<'a, E> = dyn FnMut(usize, Range<u32>) -> Result<Failed, E> + 'a;
