@@ -17,7 +17,7 @@ use barrelstack_dynamics::math;
 use barrelstack_input::measured::TableError;
 use barrelstack_motion::Random;
 
-use self::ensemble::{Seen, placed, simulate};
+use self::ensemble::{Course, placed, simulate};
 use self::observed::{Mode, Observed};
 use self::sampler::{Draw, Posterior, sample};
 use super::least_squares::normalized;
@@ -143,7 +143,7 @@ pub fn collapse(
     let reach = math::log(settings.within);
     let point = |draw: &Draw| draw.point.iter().map(|x| reach * x).collect::<Vec<f64>>();
     let of = settings.simulations * trials.len();
-    let mut courses: Vec<Option<Seen>> = Vec::new();
+    let mut courses: Vec<Option<Course>> = Vec::new();
     let mut stopped = false;
     let posterior = sample(parameters.len(), settings.simulations, settings.seed, |draws| {
         let before = courses.len();
@@ -160,24 +160,24 @@ pub fn collapse(
                 trials.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
-        let told = |done| tell(before + done, of.max(before + done));
-        let seen = if stopped { None } else { simulate(batch, settings.lanes, &told) };
-        let Some(seen) = seen else {
+        let report = |done| tell(before + done, of.max(before + done));
+        let simulated = if stopped { None } else { simulate(batch, settings.lanes, &report) };
+        let Some(simulated) = simulated else {
             stopped = true;
             return vec![f64::NEG_INFINITY; draws.len()];
         };
-        let logs = seen
+        let logs = simulated
             .chunks_exact(trials.len())
             .map(|tests| {
-                let log = |(trial, seen): (&Trial<'_>, &Option<Seen>)| {
-                    seen.as_ref().map_or(f64::NEG_INFINITY, |seen| {
-                        settings.errors.log_likelihood(trial.observed, seen)
+                let log = |(trial, course): (&Trial<'_>, &Option<Course>)| {
+                    course.as_ref().map_or(f64::NEG_INFINITY, |course| {
+                        settings.errors.log_likelihood(trial.observed, course)
                     })
                 };
                 trials.iter().zip(tests).map(log).sum()
             })
             .collect();
-        courses.extend(seen);
+        courses.extend(simulated);
         logs
     });
     if stopped {
@@ -211,7 +211,7 @@ pub fn collapse(
             ));
             if share < UNSEEN {
                 warnings.push(format!(
-                    "test {}: the model hardly shows what was seen ({name} in {:.0} % of the weight): see \
+                    "test {}: the model hardly shows what was observed ({name} in {:.0} % of the weight): see \
                      whether motion, geometry and the definition of the mode are those of the test",
                     at + 1,
                     100.0 * share
@@ -333,7 +333,7 @@ fn identifiability(
         let width = posterior.quantile(at, 0.975) - posterior.quantile(at, 0.025);
         if width > (1.0 - TOLD) * 1.9 {
             warnings.push(format!(
-                "what was seen says nothing about {}: its interval is the range that was tried, not a \
+                "what was observed says nothing about {}: its interval is the range that was tried, not a \
                  measurement; test it on its own, or do not fit it",
                 estimate.name
             ));
@@ -347,7 +347,7 @@ fn identifiability(
     warnings.extend(inseparable(estimates, correlation, ALIKE));
     if posterior.power < 1.0 {
         warnings.push(format!(
-            "too few simulations came near to what was seen, so its likelihood counts to the power {} and \
+            "too few simulations came near to what was observed, so its likelihood counts to the power {} and \
              the intervals are wider than they need be: ask for more",
             short(posterior.power)
         ));
@@ -359,7 +359,7 @@ fn identifiability(
 /// was observed.
 fn alike<'a>(
     trial: &Trial<'_>,
-    courses: impl Iterator<Item = &'a Option<Seen>>,
+    courses: impl Iterator<Item = &'a Option<Course>>,
     posterior: &Posterior,
 ) -> (String, Option<f64>) {
     let Some(mode) = trial.observed.mode else { return (String::new(), None) };
@@ -367,8 +367,8 @@ fn alike<'a>(
         Mode::Stands => "stands".to_owned(),
         Mode::Collapse(mode) => mode.name().to_owned(),
     };
-    let same = |seen: &Option<Seen>| seen.as_ref().is_some_and(|seen| seen.mode == mode);
-    let weights = courses.zip(&posterior.weights).filter(|(seen, _)| same(seen));
+    let same = |course: &Option<Course>| course.as_ref().is_some_and(|course| course.mode == mode);
+    let weights = courses.zip(&posterior.weights).filter(|(course, _)| same(course));
     (name, Some(weights.fold(0.0, |sum, (_, weight)| sum + weight)))
 }
 

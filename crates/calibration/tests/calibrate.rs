@@ -543,7 +543,10 @@ fn observations_are_refused_at_their_place() {
             "mode,B4.1 fell (s),until (s)\n,3,2\n",
             "expected a time up to the end of the watch at 2 s",
         ),
-        ("mode,B4.1 fell (s)\n,\n", "line 2, column \"mode\": expected something that was seen"),
+        (
+            "mode,B4.1 fell (s)\n,\n",
+            "line 2, column \"mode\": expected something that was observed",
+        ),
     ];
     for (text, words) in cases {
         let table = Table::parse("video.csv", text).unwrap();

@@ -12,7 +12,7 @@ use super::observed::{Mode, Time};
 
 /// Observable result of a simulated case.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct Course {
     /// Mode.
     pub(super) mode: Mode,
     /// Time at which the first body left its seat.
@@ -21,7 +21,7 @@ pub(super) struct Seen {
     pub(super) falls: Vec<(String, Time)>,
 }
 
-impl Seen {
+impl Course {
     fn of(case: &CaseResult) -> Option<Self> {
         // A tested stack stood at rest before: parameters with which it falls at rest are impossible.
         if case.fell_at_rest() {
@@ -60,12 +60,12 @@ pub(super) fn simulate(
     cases: Vec<Prepared>,
     lanes: Option<Width>,
     done: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
-) -> Option<Vec<Option<Seen>>> {
+) -> Option<Vec<Option<Course>>> {
     let finished = AtomicUsize::new(0);
     let observer = |_: &CaseResult| done(finished.fetch_add(1, Ordering::Relaxed) + 1);
     let stop = || done(finished.load(Ordering::Relaxed)).is_break();
     let results = Ensemble { cases, lanes }.run_until(&observer, &stop)?;
-    Some(results.iter().map(Seen::of).collect())
+    Some(results.iter().map(Course::of).collect())
 }
 
 /// Returns a scenario with every rack and barrel offset by normal deviates of a standard deviation (m), since no two

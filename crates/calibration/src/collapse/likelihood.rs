@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use barrelstack_dynamics::math;
 
-use super::ensemble::Seen;
+use super::ensemble::Course;
 use super::observed::{Observed, Time};
 
 /// Errors of observations relative to the course of a correct simulation.
@@ -32,23 +32,23 @@ impl Errors {
     /// Labels that agree have the probability 1 − ε, others ε. A time t given a simulated one s has the density
     /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
     /// duration of observation.
-    pub(super) fn log_likelihood(&self, observed: &Observed, seen: &Seen) -> f64 {
+    pub(super) fn log_likelihood(&self, observed: &Observed, course: &Course) -> f64 {
         let label = |same: bool| math::log(if same { 1.0 - self.other } else { self.other });
-        let mut sum = observed.mode.map_or(0.0, |mode| label(mode == seen.mode));
-        let first = seen.first_fall();
+        let mut sum = observed.mode.map_or(0.0, |mode| label(mode == course.mode));
+        let first = course.first_fall();
         if let Some(barrel) = &observed.first_barrel {
             sum += label(first.is_some_and(|(name, _)| name == barrel));
         }
         if let Some(loss) = observed.loss {
-            sum += self.time(observed, loss, seen.loss, seen.loss);
+            sum += self.time(observed, loss, course.loss, course.loss);
         }
         if let Some(fall) = observed.first_fall {
             let simulated = first.map_or(Time::Never, |(_, time)| Time::At(time));
-            sum += self.time(observed, fall, simulated, seen.loss);
+            sum += self.time(observed, fall, simulated, course.loss);
         }
         for (barrel, time) in &observed.falls {
-            if let Some(simulated) = seen.fall(barrel) {
-                sum += self.time(observed, *time, simulated, seen.loss);
+            if let Some(simulated) = course.fall(barrel) {
+                sum += self.time(observed, *time, simulated, course.loss);
             }
         }
         sum

@@ -128,7 +128,9 @@ impl Observed {
             .fold(0.0, f64::max);
         if self.mode.is_none() && self.times().next().is_none() && self.first_barrel.is_none() {
             let remedy = "state a mode or a time, or remove the row";
-            return Err(table.at(row, "mode", "something that was seen", "nothing", remedy).into());
+            return Err(table
+                .at(row, "mode", "something that was observed", "nothing", remedy)
+                .into());
         }
         if let Some(Time::At(until)) = end {
             if let Some((column, _)) =

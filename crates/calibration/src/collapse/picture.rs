@@ -2,7 +2,7 @@
 
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 
-use super::ensemble::Seen;
+use super::ensemble::Course;
 use super::observed::Time;
 use super::sampler::Posterior;
 use super::{Trial, alike};
@@ -14,7 +14,7 @@ const MIDDLE: [f64; 2] = [0.05, 0.95];
 /// Draws the posterior weight of the observed modes, and the times of the observed events.
 pub(super) fn pictures(
     trials: &[Trial<'_>],
-    courses: &[Option<Seen>],
+    courses: &[Option<Course>],
     posterior: &Posterior,
 ) -> Vec<Figure> {
     [modes(trials, courses, posterior), times(trials, courses, posterior)]
@@ -25,15 +25,19 @@ pub(super) fn pictures(
 
 /// Returns the courses of a test.
 fn of<'a>(
-    courses: &'a [Option<Seen>],
+    courses: &'a [Option<Course>],
     at: usize,
     trials: &[Trial<'_>],
-) -> impl Iterator<Item = &'a Option<Seen>> {
+) -> impl Iterator<Item = &'a Option<Course>> {
     courses.iter().skip(at).step_by(trials.len())
 }
 
 /// Draws the weight of the courses with the observed mode; `None` if no mode was observed.
-fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
+fn modes(
+    trials: &[Trial<'_>],
+    courses: &[Option<Course>],
+    posterior: &Posterior,
+) -> Option<Figure> {
     let mut rows = Rows::default();
     for (at, trial) in trials.iter().enumerate() {
         let (name, share) = alike(trial, of(courses, at, trials), posterior);
@@ -41,20 +45,24 @@ fn modes(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
             rows.bar(format!("test {}: {name}", at + 1), [0.0, share]);
         }
     }
-    let caption = "How much of the weight of the simulations goes as the test was seen to go.";
+    let caption = "How much of the weight of the simulations goes as the test was observed to go.";
     let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share of the weight", "") };
     rows.figure("collapse-modes", caption, x, None)
 }
 
 /// Draws the times of events; `None` if no time was observed.
-fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) -> Option<Figure> {
+fn times(
+    trials: &[Trial<'_>],
+    courses: &[Option<Course>],
+    posterior: &Posterior,
+) -> Option<Figure> {
     let mut rows = Rows::default();
-    let mut seen = Vec::new();
+    let mut observed = Vec::new();
     for (at, trial) in trials.iter().enumerate() {
         let test = trial.observed;
-        let loss = |seen: &Seen| Some(seen.loss);
-        let first = |seen: &Seen| seen.first_fall().map(|(_, time)| Time::At(time));
-        let mut row = |name: &str, time: Time, simulated: &dyn Fn(&Seen) -> Option<Time>| {
+        let loss = |course: &Course| Some(course.loss);
+        let first = |course: &Course| course.first_fall().map(|(_, time)| Time::At(time));
+        let mut row = |name: &str, time: Time, simulated: &dyn Fn(&Course) -> Option<Time>| {
             let Time::At(time) = time else { return };
             let weighed = of(courses, at, trials).zip(&posterior.weights);
             let weighed = weighed.filter_map(|(course, weight)| {
@@ -62,7 +70,7 @@ fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
                 Some((time, *weight))
             });
             rows.bar(format!("test {}: {name}", at + 1), middle(weighed.collect()));
-            seen.push(time);
+            observed.push(time);
         };
         if let Some(time) = test.loss {
             row("loss of seat", time, &loss);
@@ -71,12 +79,12 @@ fn times(trials: &[Trial<'_>], courses: &[Option<Seen>], posterior: &Posterior) 
             row("first fall", time, &first);
         }
         for (barrel, time) in &test.falls {
-            row(&format!("{barrel} fell"), *time, &|seen| seen.fall(barrel));
+            row(&format!("{barrel} fell"), *time, &|course| course.fall(barrel));
         }
     }
-    let caption = "When it was seen, and when it happens in the simulations: the middle 90 % of the weight of those in \
+    let caption = "When it was observed, and when it happens in the simulations: the middle 90 % of the weight of those in \
                    which it does. A row without a bar happens in none.";
-    rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(seen))
+    rows.figure("collapse-times", caption, Axis::new("time", "s"), Some(observed))
 }
 
 /// Returns the quantiles that enclose the middle of the weight; NaN without weight.
@@ -110,15 +118,21 @@ impl Rows {
     }
 
     /// Draws the rows, each beside its observed value.
-    fn figure(self, id: &str, caption: &str, x: Axis, seen: Option<Vec<f64>>) -> Option<Figure> {
+    fn figure(
+        self,
+        id: &str,
+        caption: &str,
+        x: Axis,
+        observed: Option<Vec<f64>>,
+    ) -> Option<Figure> {
         let rows = (0..self.names.len()).map(Axis::row).collect();
         let style = SeriesStyle { bar: true, index: Some(0), ..SeriesStyle::default() };
         let bars = Series { style, ..Series::new("simulated", self.x, self.y) };
-        let seen = seen.map(|seen| measured("seen", seen, rows, 1));
+        let observed = observed.map(|times| measured("observed", times, rows, 1));
         let plot = Plot {
             x,
             y: Axis::named(self.names),
-            series: std::iter::once(bars).chain(seen).collect(),
+            series: std::iter::once(bars).chain(observed).collect(),
             ..Plot::default()
         };
         (!plot.y.names.is_empty()).then(|| Figure::new(id, caption, plot))

@@ -8,7 +8,7 @@ use barrelstack::ground::Ground;
 use barrelstack::scenario::Scenario;
 use barrelstack_motion::Random;
 
-use super::ensemble::{Seen, placed, simulate};
+use super::ensemble::{Course, placed, simulate};
 use super::likelihood::Errors;
 use super::observed::{Mode, Observed, Time};
 use super::sampler::{Draw, Posterior};
@@ -18,15 +18,19 @@ const ALL: [Parameter; 3] =
     [Parameter::Stiffness, Parameter::Damping, Parameter::FrictionBarrelRack];
 
 /// Returns what an observer records of a course.
-fn noted(seen: &Seen, until: f64, errors: &Errors, random: &mut Random) -> Observed {
+fn noted(course: &Course, until: f64, errors: &Errors, random: &mut Random) -> Observed {
     let read = |time: Time, random: &mut Random| match time {
         Time::At(time) => Time::At((time + errors.reading * random.normal()).clamp(1e-3, until)),
         Time::Never => Time::Never,
     };
     Observed {
-        mode: Some(seen.mode),
-        loss: Some(read(seen.loss, random)),
-        falls: seen.falls.iter().map(|(name, time)| (name.clone(), read(*time, random))).collect(),
+        mode: Some(course.mode),
+        loss: Some(read(course.loss, random)),
+        falls: course
+            .falls
+            .iter()
+            .map(|(name, time)| (name.clone(), read(*time, random)))
+            .collect(),
         until,
         ..Observed::default()
     }
@@ -71,20 +75,24 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             scenarios.iter().zip(&grounds).map(built).collect::<Vec<_>>()
         })
         .collect();
-    let seen: Vec<Seen> = simulate(batch, None, &|_| ControlFlow::Continue(()))
+    let simulated: Vec<Course> = simulate(batch, None, &|_| ControlFlow::Continue(()))
         .unwrap()
         .into_iter()
         .map(Option::unwrap)
         .collect();
-    let collapsed = seen.iter().filter(|seen| seen.mode != Mode::Stands).count();
-    let courses: Vec<&[Seen]> = seen.chunks_exact(TESTS).collect();
+    let collapsed = simulated.iter().filter(|course| course.mode != Mode::Stands).count();
+    let courses: Vec<&[Course]> = simulated.chunks_exact(TESTS).collect();
     let (table, truths) = courses.split_at(TABLE);
     let (mut covered, mut width) = ([0; 3], [0.0; 3]);
     for (truth, draw) in truths.iter().zip(&draws[TABLE..]) {
         let notes: Vec<Observed> =
-            truth.iter().map(|seen| noted(seen, until, &errors, &mut random)).collect();
-        let log = |course: &&[Seen]| -> f64 {
-            notes.iter().zip(*course).map(|(note, seen)| errors.log_likelihood(note, seen)).sum()
+            truth.iter().map(|course| noted(course, until, &errors, &mut random)).collect();
+        let log = |course: &&[Course]| -> f64 {
+            notes
+                .iter()
+                .zip(*course)
+                .map(|(note, course)| errors.log_likelihood(note, course))
+                .sum()
         };
         let logs: Vec<f64> = table.iter().map(log).collect();
         let posterior = Posterior::of(draws[..TABLE].to_vec(), &logs).unwrap();
@@ -94,7 +102,7 @@ fn intervals_hold_the_truth_in_ninety_of_a_hundred_campaigns() {
             width[at] += (high - low) / 1.9 / 100.0;
         }
     }
-    println!("{collapsed} of {} stacks collapse", seen.len());
+    println!("{collapsed} of {} stacks collapse", simulated.len());
     println!("k, c and μ covered in {covered:?} of 100 campaigns");
     println!("mean width of the intervals over that of the range: {width:.2?}");
     // measured 94, 93 and 97; widths 0.75, 0.97 and 0.60: collapses say nothing about c

@@ -198,7 +198,7 @@ struct ResponseArgs {
 struct CollapseArgs {
     /// The scenario of the tests: a file (TOML), or the name of a built-in scenario.
     scenario: String,
-    /// What was seen (CSV).
+    /// Observations (CSV).
     file: PathBuf,
     /// What to find: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
     /// (barrel-rack), mu-rg (rack-ground).
