@@ -16,8 +16,8 @@ Results go to standard output, warnings and errors to standard error.
 Exit status:
   0    there is a result, whatever became of the stack
   1    the numbers broke down, and there is no verdict
-  2    there is none: a mistake in what was asked for, or a file that could not be read or written
-  3    a motion was matched only nearly, and written as asked (motion match --accept-misfit)
+  2    there is none: a mistake in the request, or a file that could not be read or written
+  3    a motion was matched only nearly, and written as requested (motion match --accept-misfit)
   4    chunks of a study are missing, and its table holds those that are there (study collect)
   130  stopped by Ctrl-C or SIGTERM: unfinished work has no verdict; what is finished is printed and written
 

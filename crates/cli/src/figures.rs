@@ -23,11 +23,11 @@ impl FigureArgs {
 
     /// Returns the formats, each once, SVG first.
     pub(crate) fn formats(&self) -> Vec<Format> {
-        let asked = |format: &Format| {
+        let requested = |format: &Format| {
             let named = self.format.iter().any(|name| Format::from(*name) == *format);
             *format == Format::Svg || self.format.is_empty() || named
         };
-        Format::ALL.into_iter().filter(asked).collect()
+        Format::ALL.into_iter().filter(requested).collect()
     }
 }
 

@@ -177,12 +177,12 @@ impl Interrupt {
 
     /// `true` if the user requested a stop.
     #[expect(clippy::unused_self, reason = "who asks has to listen")]
-    pub(crate) fn asked(&self) -> bool {
-        let asked = ASKED.load(Ordering::Relaxed);
-        if asked {
+    pub(crate) fn is_requested(&self) -> bool {
+        let requested = ASKED.load(Ordering::Relaxed);
+        if requested {
             STOPPED.store(true, Ordering::Relaxed);
         }
-        asked
+        requested
     }
 
     /// Reports the progress of work of a kind: the place at which a test stops it.
@@ -199,6 +199,6 @@ impl Interrupt {
 
     /// Returns `Break` if a stop was requested.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
-        if self.asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if self.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

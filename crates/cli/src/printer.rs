@@ -98,7 +98,7 @@ pub(crate) fn error(error: &anyhow::Error, json: bool) {
     }
     let read = error.chain().find_map(|cause| cause.downcast_ref::<ScenarioError>());
     let place = error.downcast_ref::<Place>().or(read.map(ScenarioError::place));
-    told(&ErrorDocument::of(&(&words, next, place, 2)), json);
+    error_document(&ErrorDocument::of(&(&words, next, place, 2)), json);
 }
 
 /// Shortens an overlong text in the middle.
@@ -118,18 +118,18 @@ pub(crate) fn usage(words: &str, json: bool) {
     let words = &bounded(words);
     eprint!("{}", harmless(words));
     let first = words.split("\n\n").next().unwrap_or(words).trim_start_matches("error: ");
-    told(&ErrorDocument::of(&(first, None, None, 2)), json);
+    error_document(&ErrorDocument::of(&(first, None, None, 2)), json);
 }
 
 /// Prints that the program was stopped, and what is kept.
 pub(crate) fn stopped(json: bool) {
     let words = Stopped.to_string();
     note(&words);
-    told(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
+    error_document(&ErrorDocument::of(&(&words, None, None, STATUS)), json);
 }
 
 /// Prints the document of an error if documents are requested and none was printed.
-fn told(document: &ErrorDocument, json: bool) {
+fn error_document(document: &ErrorDocument, json: bool) {
     if json && !PRINTED.load(Ordering::Relaxed) {
         // If standard output is closed, standard error has it all.
         drop(self::document(document));

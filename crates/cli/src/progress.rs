@@ -67,18 +67,18 @@ impl Progress {
     pub(crate) fn at(&self, progress: barrelstack::Progress) -> ControlFlow<()> {
         let barrelstack::Progress { time, end_time } = progress;
         self.interrupt.reached("seconds", time);
-        self.told(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
+        self.report(time, end_time, Of::One, || format!("{time:.1} of {end_time:.1} s simulated"))
     }
 
     /// Reports the number of finished things of a total.
     pub(crate) fn counted(&self, done: u64, of: u64, things: &str) -> ControlFlow<()> {
         self.interrupt.reached(things, done as f64);
-        self.told(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
+        self.report(done as f64, of as f64, Of::Many, || format!("{done} of {of} {things}"))
     }
 
     /// Reports the progress of a run and its variants.
-    pub(crate) fn told_of(&self, told: variants::Advance) -> ControlFlow<()> {
-        match told {
+    pub(crate) fn advance(&self, reached_so_far: variants::Advance) -> ControlFlow<()> {
+        match reached_so_far {
             variants::Advance::Run(reached) => self.at(reached),
             variants::Advance::First { variants, headline } => {
                 self.said(&format!("after the first {variants} variants: {headline}"))
@@ -99,7 +99,7 @@ impl Progress {
     fn said(&self, line: &str) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             bar.println(line);
-        } else if self.lines.told.is_some() {
+        } else if self.lines.last.is_some() {
             printer::note(line);
         }
         self.interrupt.flow()
@@ -116,7 +116,7 @@ impl Progress {
         self.interrupt.flow()
     }
 
-    fn told(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) -> ControlFlow<()> {
+    fn report(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) -> ControlFlow<()> {
         if let Some(bar) = &self.bar.0 {
             if bar.length().is_none() {
                 bar.set_style(style("{spinner} {bar:30} {msg}, {eta} to go"));
@@ -157,7 +157,7 @@ impl Of {
 /// Lines without a terminal: an estimate of the total time, then the progress every few seconds.
 pub(crate) struct Lines {
     /// `None` if no lines are requested.
-    told: Option<Mutex<LastLine>>,
+    last: Option<Mutex<LastLine>>,
 }
 
 /// State of the lines of some work.
@@ -177,54 +177,54 @@ struct LastLine {
 impl Lines {
     /// Starts; prints only if requested, and only without a terminal.
     pub(crate) fn new(show: bool) -> Self {
-        let told = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
+        let line = LastLine { last: Instant::now(), whole: false, start: None, done: 0.0, of: 0.0 };
         let wanted = show && !std::io::stderr().is_terminal();
-        Self { told: wanted.then(|| Mutex::new(told)) }
+        Self { last: wanted.then(|| Mutex::new(line)) }
     }
 
     /// Marks the work as a part, so that the total time is unknown.
     fn part(&self) {
-        if let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) {
-            told.whole = true;
+        if let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) {
+            line.whole = true;
         }
     }
 
     /// Reports the progress of work of unknown length.
     fn now_and_then(&self, words: impl Fn() -> String) {
-        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
-        if told.last.elapsed() > EVERY {
+        let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
+        if line.last.elapsed() > EVERY {
             printer::note(&words());
-            told.last = Instant::now();
+            line.last = Instant::now();
         }
     }
 
     /// Reports the progress of work.
     pub(crate) fn at(&self, done: f64, of: f64, work: Of, words: impl Fn() -> String) {
-        let Some(Ok(mut told)) = self.told.as_ref().map(Mutex::lock) else { return };
+        let Some(Ok(mut line)) = self.last.as_ref().map(Mutex::lock) else { return };
         // A large decrease starts the next part; a small one comes from another thread.
-        let anew = of != told.of || done < 0.5 * told.done;
-        (told.done, told.of) = (done, of);
-        let (start, first) = match told.start {
+        let anew = of != line.of || done < 0.5 * line.done;
+        (line.done, line.of) = (done, of);
+        let (start, first) = match line.start {
             Some(start) if !anew => start,
-            _ => *told.start.insert((Instant::now(), done)),
+            _ => *line.start.insert((Instant::now(), done)),
         };
         let spent = start.elapsed();
         let Some(to_go) = work.to_go(spent, first, done, of) else {
-            if told.last.elapsed() > EVERY {
+            if line.last.elapsed() > EVERY {
                 printer::note(&words());
-                told.last = Instant::now();
+                line.last = Instant::now();
             }
             return;
         };
-        if !told.whole && spent + to_go > LONG {
-            told.whole = true;
+        if !line.whole && spent + to_go > LONG {
+            line.whole = true;
             printer::note(&format!("this takes about {}", rounded(spent + to_go)));
-        } else if told.last.elapsed() > EVERY {
+        } else if line.last.elapsed() > EVERY {
             printer::note(&format!("{}, about {} to go", words(), rounded(to_go)));
         } else {
             return;
         }
-        told.last = Instant::now();
+        line.last = Instant::now();
     }
 }
 

@@ -60,21 +60,21 @@ pub(crate) struct CompareArgs {
 
 /// Runs all scenarios and writes the comparison.
 pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
-    let asked = asked(args);
-    if asked.iter().filter(|(_, one)| one.scenario == "-").count() > 1 {
+    let requested = requested(args);
+    if requested.iter().filter(|(_, one)| one.scenario == "-").count() > 1 {
         bail!(
             "standard input can be read for one run only: write the scenario to a file and name it"
         );
     }
     let mut scenarios = Vec::new();
-    for (name, one) in &asked {
+    for (name, one) in &requested {
         let mut scenario = super::load(one)?;
         let variants = VariantArgs { variants: args.variants, variant: None };
-        super::run::asked(&mut scenario, variants)?;
+        super::run::selected(&mut scenario, variants)?;
         scenarios.push((name.clone(), scenario));
     }
     compare::check(&scenarios)?;
-    for ((_, scenario), (_, one)) in scenarios.iter().zip(&asked) {
+    for ((_, scenario), (_, one)) in scenarios.iter().zip(&requested) {
         // Fail early if a run cannot be shown.
         if scenario.is_spatial() {
             return Err(super::placed(AssembleError::Space.into(), scenario, one));
@@ -90,7 +90,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     }
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut answers = Vec::new();
-    for ((name, scenario), (_, one)) in scenarios.iter().zip(&asked) {
+    for ((name, scenario), (_, one)) in scenarios.iter().zip(&requested) {
         let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
             .map_err(|error| super::placed(error, scenario, one))?;
         let stopped = answer.is_stopped();
@@ -169,7 +169,7 @@ fn alone(
 }
 
 /// Returns the requested runs, with a short name for each.
-fn asked(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
+fn requested(args: &CompareArgs) -> Vec<(String, ScenarioArgs)> {
     let with = |scenario: &String, more: Option<&String>| ScenarioArgs {
         scenario: scenario.clone(),
         // Changes of one run apply on top of those of all runs.

@@ -16,12 +16,12 @@ const NAME: &str = "demo-napa";
 /// Runs the demo scenario and summarizes the result in a few sentences.
 pub(crate) fn demo(args: &DemoArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = Scenario::builtin(NAME, &args.set)?;
-    let asked = super::run::asked(&mut scenario, args.variants)?;
+    let selection = super::run::selected(&mut scenario, args.variants)?;
     let folder = Folder::prepare_again(&args.out)?;
     crate::interrupt::writes_to(folder.path());
     let typed = ScenarioArgs { scenario: NAME.to_owned(), set: args.set.clone(), record: None };
     let placed = |error| super::placed(error, &scenario, &typed);
-    let mut answer = super::run::answered(&scenario, asked, true).map_err(placed)?;
+    let mut answer = super::run::answered(&scenario, selection, true).map_err(placed)?;
     if !args.no_remedy {
         let command = Command::of(&typed, args.variants);
         super::run::remedied(&mut answer, &command, true).map_err(placed)?;

@@ -125,7 +125,7 @@ fn velocities(typed: &[String]) -> anyhow::Result<Vec<f64>> {
 /// Shows the stack as it is and with the best protection side by side, under the motion of the scenario.
 fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<()> {
     let progress = Progress::new(!args.page.quiet);
-    let shown = found.show_before_and_after(&mut |told| progress.told_of(told));
+    let shown = found.show_before_and_after(&mut |reached| progress.advance(reached));
     drop(progress);
     match shown {
         Ok(_) => Ok(()),

@@ -78,16 +78,16 @@ fn rate(text: &str) -> Result<f64, String> {
 impl RenderArgs {
     /// Returns the parts, each once, in the order of the help.
     fn parts(&self) -> Vec<Part> {
-        let asked = |part: &Part| {
+        let requested = |part: &Part| {
             self.only.is_empty() || self.only.iter().any(|name| Part::from(*name) == *part)
         };
-        Part::ALL.into_iter().filter(asked).collect()
+        Part::ALL.into_iter().filter(requested).collect()
     }
 
     /// Returns the first part requested by name that runs in space do not have.
     pub(super) fn lacking_in_space(&self) -> Option<Part> {
-        let asked = self.only.iter().map(|name| Part::from(*name));
-        asked.into_iter().find(|part| *part != Part::Paraview)
+        let requested = self.only.iter().map(|name| Part::from(*name));
+        requested.into_iter().find(|part| *part != Part::Paraview)
     }
 
     pub(super) fn between(&self) -> anyhow::Result<Option<[f64; 2]>> {
@@ -104,9 +104,9 @@ impl RenderArgs {
 /// Runs the scenario and writes its parts.
 pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
-    let asked = super::run::asked(&mut scenario, args.variants)?;
+    let selection = super::run::selected(&mut scenario, args.variants)?;
     if scenario.is_spatial() {
-        return super::space::render(args, &scenario, asked);
+        return super::space::render(args, &scenario, selection);
     }
     let how = Rendering {
         formats: args.figures.formats(),
@@ -122,7 +122,7 @@ pub(crate) fn render(args: &RenderArgs) -> anyhow::Result<ExitCode> {
         crate::interrupt::writes_to(&args.out.join(part.place()));
     }
     crate::interrupt::writes_to(&args.out);
-    let answer = super::run::answered(&scenario, asked, !args.quiet)
+    let answer = super::run::answered(&scenario, selection, !args.quiet)
         .map_err(|error| super::placed(error, &scenario, &args.scenario))?;
     let Shown { run, summary, .. } = &answer.decides;
     how.check(run).map_err(anyhow::Error::msg)?;

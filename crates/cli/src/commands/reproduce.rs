@@ -27,8 +27,8 @@ pub(crate) fn reproduce(args: &ReproduceArgs) -> anyhow::Result<ExitCode> {
     drop(progress);
     let found = match result {
         Err(ReproduceError::Stopped { done }) => {
-            let told = done.into_iter().map(|(case, became)| format!("{case}: {became}"));
-            printer::lines(told)?;
+            let lines = done.into_iter().map(|(case, became)| format!("{case}: {became}"));
+            printer::lines(lines)?;
             return Err(Stopped.into());
         }
         other => other?,

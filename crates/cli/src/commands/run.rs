@@ -25,15 +25,15 @@ const PAGE_LIMIT: usize = 64 << 20;
 /// Runs and reports.
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
     let mut scenario = super::load(&args.scenario)?;
-    let asked = asked(&mut scenario, args.variants)?;
+    let selection = selected(&mut scenario, args.variants)?;
     // Check the folder before the work is done.
     let folder = args.out.as_deref().map(|out| Folder::prepare(out, args.overwrite)).transpose()?;
     if scenario.is_spatial() {
-        return super::space::run(args, &scenario, asked, folder.as_ref());
+        return super::space::run(args, &scenario, selection, folder.as_ref());
     }
     let engine = args.with_engine.as_deref().map(engine).transpose()?;
     let placed = |error| super::placed(error, &scenario, &args.scenario);
-    let mut answer = answered(&scenario, asked, !args.quiet).map_err(placed)?;
+    let mut answer = answered(&scenario, selection, !args.quiet).map_err(placed)?;
     if !args.no_remedy {
         let command = Command::of(&args.scenario, args.variants);
         remedied(&mut answer, &command, !args.quiet).map_err(placed)?;
@@ -87,7 +87,7 @@ fn engine(path: &Path) -> anyhow::Result<String> {
 }
 
 /// Returns the run to show; sets the number of variants as requested.
-pub(super) fn asked(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<Asked> {
+pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<Asked> {
     let count = match &mut scenario.scene {
         Scene::Stack { imperfections, .. } => {
             imperfections.variants = args.variants.unwrap_or(imperfections.variants);
@@ -113,12 +113,12 @@ pub(super) fn asked(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Resul
 /// Runs a scenario and its variants with a progress bar and Ctrl-C.
 pub(super) fn answered(
     scenario: &Scenario,
-    asked: Asked,
+    selection: Asked,
     show: bool,
 ) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer = variants::answer(scenario, asked, &mut |told| progress.told_of(told))?;
+    let mut answer = variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
     answer.decides.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     Ok(answer)
 }

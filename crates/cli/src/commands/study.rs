@@ -308,7 +308,7 @@ fn run_chunk(args: &ChunkArgs) -> anyhow::Result<ExitCode> {
     let waiting = live::Waiting::new(&args.out);
     let stop = || {
         waiting.at(Some(args.chunk));
-        interrupt.asked()
+        interrupt.is_requested()
     };
     match study.run_chunk(&args.out, args.chunk, lanes, &stop) {
         Ok(ChunkRun::Before) => {

@@ -235,15 +235,15 @@ fn recorded(record: &Record) -> Table {
         ("elevation (m)", &|c| meters(c.site.elevation)),
         ("Vs30 (m/s)", &|c| meters(c.site.vs30)),
     ];
-    let told: Vec<_> = columns
+    let shown: Vec<_> = columns
         .iter()
         .filter(|(_, cell)| record.channels.iter().any(|channel| !cell(channel).is_empty()))
         .collect();
-    let words = told.iter().filter(|(head, _)| ["station", "sensor"].contains(head)).count();
-    let head = std::iter::once("channel").chain(told.iter().map(|(head, _)| *head));
+    let words = shown.iter().filter(|(head, _)| ["station", "sensor"].contains(head)).count();
+    let head = std::iter::once("channel").chain(shown.iter().map(|(head, _)| *head));
     let mut table = Table::new(1 + words, head);
-    for channel in record.channels.iter().filter(|_| !told.is_empty()) {
-        let cells = told.iter().map(|(_, cell)| cell(channel));
+    for channel in record.channels.iter().filter(|_| !shown.is_empty()) {
+        let cells = shown.iter().map(|(_, cell)| cell(channel));
         table.row(std::iter::once(channel.name.clone()).chain(cells));
     }
     table
@@ -291,7 +291,7 @@ described! {
         stage: String = found.0.stage.to_string(),
         /// Its components.
         channels: Vec<ChannelInfo> = found.1,
-        /// Peaks over all horizontal directions, where all measures are asked for.
+        /// Peaks over all horizontal directions, where all measures are requested.
         over_all_directions: Vec<RotatedInfo> = found.2.iter().map(RotatedInfo::of).collect(),
         /// What is wrong or doubtful.
         warnings: Vec<String> = found.0.warnings.iter().map(ToString::to_string).collect(),
@@ -331,11 +331,11 @@ described! {
         initial_velocity: f64 as "m/s" = found.0.initial_velocity,
         /// Peaks that the file states, beside those of its samples.
         stated_peaks: Vec<PeakInfo> = found.0.peaks.iter().map(PeakInfo::of).collect(),
-        /// Where the signal stands above the noise; null where that cannot be told.
+        /// Where the signal stands above the noise; null where that is unknown.
         noise_corners: Option<CornersInfo> = found.1.as_ref().map(CornersInfo::of),
         /// Intensity measures, by name.
         measures: BTreeMap<String, MeasureInfo> = found.2,
-        /// The dominant velocity pulse, where all measures are asked for.
+        /// The dominant velocity pulse, where all measures are requested.
         velocity_pulse: Option<PulseInfo> = found.3.as_ref().map(PulseInfo::of),
     }
 
@@ -359,7 +359,7 @@ described! {
         low_pass: f64 as "Hz" = found.low_pass,
         /// When the signal arrives.
         arrival: f64 as "s" = found.arrival,
-        /// Signal over noise that was asked for.
+        /// Requested signal-to-noise ratio.
         least_ratio: f64 as "1" = found.least_ratio,
     }
 

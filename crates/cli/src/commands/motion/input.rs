@@ -132,7 +132,7 @@ impl Input {
     }
 
     /// Returns the options about files, as text.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn description(&self) -> String {
         format!(
             "unit {:?}, step {:?}, sensitivity {:?} of {:?}, as {:?}, mixed {}",
             self.unit,

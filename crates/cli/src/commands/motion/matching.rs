@@ -107,7 +107,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
             Some(words) => format!("The spectrum of {name} misses {} {words}.", args.to),
         };
         let tables = vec![
-            compared.on_page("The spectrum that was asked for, and those before and after."),
+            compared.on_page("The target spectrum, and those before and after."),
             measured.on_page("Measures of the motion, before and after."),
         ];
         page::write(figure, &drawn, &after, PageText { headline, tables })?;
@@ -116,7 +116,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
         None => Ok(ExitCode::SUCCESS),
         Some(words) => {
             printer::warning(&format!(
-                "the target is missed {words}: accepted as asked; exit status {NEAR}"
+                "the target is missed {words}: accepted as requested; exit status {NEAR}"
             ));
             Ok(ExitCode::from(NEAR))
         }

@@ -38,17 +38,17 @@ pub(super) fn write(
     path: &Path,
     figure: &Figure,
     after: &Record,
-    told: PageText,
+    text: PageText,
 ) -> anyhow::Result<()> {
     if let (FigureKind::Panels(panels), true) = (&figure.kind, is_page(path)) {
-        store(path, html(&document(panels, after, told)).as_bytes())?;
+        store(path, html(&document(panels, after, text)).as_bytes())?;
     } else {
         panels::write(path, figure)?;
     }
     printer::lines([format!("written: {}", path.display())])
 }
 
-fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
+fn document(panels: &Panels, after: &Record, text: PageText) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     let mut blocks = Vec::new();
     // The spectra, which are the last row, come first: they matter most.
@@ -56,7 +56,7 @@ fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
         blocks.push(heading("Spectra"));
         blocks.extend(spectra.iter().enumerate().map(|(at, plot)| live("spectra", at, plot)));
         blocks.push(heading("What became of it"));
-        blocks.extend(told.tables.into_iter().map(Block::Table));
+        blocks.extend(text.tables.into_iter().map(Block::Table));
         for (row, plots) in components.iter().enumerate() {
             let name = plots.first().and_then(|plot| plot.y.label.split_once(": "));
             blocks.push(heading(&format!("Component {}", name.map_or("", |(name, _)| name))));
@@ -68,7 +68,7 @@ fn document(panels: &Panels, after: &Record, told: PageText) -> Document {
     Document {
         title: panels.title.clone(),
         verdict: Verdict {
-            headline: told.headline,
+            headline: text.headline,
             sentences: panels.lines.iter().map(|line| format!("{line}.")).collect(),
             tone: Tone::Neutral,
             ..Verdict::default()
@@ -101,8 +101,8 @@ pub(super) fn table(caption: &str, rows: &[Vec<String>]) -> Table {
     let mut table = Table::new(caption, &columns);
     // Keep the digits of the terminal.
     let digits = |text: &str| {
-        let told = text.trim_start_matches(['-', '0', '.']);
-        told.chars().filter(char::is_ascii_digit).count()
+        let digits = text.trim_start_matches(['-', '0', '.']);
+        digits.chars().filter(char::is_ascii_digit).count()
     };
     let cell = |text: &String| match text.parse::<f64>() {
         Ok(value) => Cell::Number(value, digits(text)),

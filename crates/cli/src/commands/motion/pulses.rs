@@ -9,7 +9,7 @@ use super::input::quantity;
 /// Size and period of a pulse.
 #[derive(Debug, clap::Args)]
 pub(super) struct Size {
-    /// Peak of the acceleration, velocity or displacement, told apart by the unit: "0.4 g",
+    /// Peak of the acceleration, velocity or displacement, distinguished by the unit: "0.4 g",
     /// "60 cm/s", "5 cm".
     #[arg(long, value_name = "QUANTITY")]
     peak: String,

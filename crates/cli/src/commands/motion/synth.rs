@@ -244,13 +244,13 @@ impl Source {
 
     fn motion(&self, step: f64) -> anyhow::Result<GroundMotion> {
         let made = format!("made by the {}", self.sentence());
-        Ok(told(self.build()?.motion(step, self.seed.seed)?, made))
+        Ok(with_provenance(self.build()?.motion(step, self.seed.seed)?, made))
     }
 }
 
 /// Replaces the first step of a motion's provenance by one in the terms of the command line, with
 /// units.
-fn told(mut motion: GroundMotion, made: String) -> GroundMotion {
+fn with_provenance(mut motion: GroundMotion, made: String) -> GroundMotion {
     match motion.provenance.first_mut() {
         Some(first) => *first = made,
         None => motion.provenance.push(made),
@@ -284,7 +284,7 @@ impl Noise {
             self.decay,
             self.seed.seed
         );
-        Ok(told(soil.motion(&envelope, duration, step, self.seed.seed)?, made))
+        Ok(with_provenance(soil.motion(&envelope, duration, step, self.seed.seed)?, made))
     }
 }
 
@@ -311,7 +311,7 @@ impl Fault {
             self.start,
             self.source.sentence()
         );
-        Ok(told(near_fault.motion(step, self.source.seed.seed)?, made))
+        Ok(with_provenance(near_fault.motion(step, self.source.seed.seed)?, made))
     }
 }
 

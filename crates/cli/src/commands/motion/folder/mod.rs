@@ -158,7 +158,7 @@ pub(super) fn run(
     let specs: Vec<_> = cells(None, &periods).into_iter().map(|(spec, _)| spec).collect();
     let fingerprint = flatfile.as_ref().map_or(0, |(_, hash)| *hash);
     let settings =
-        format!("{}; {}; flatfile {fingerprint:016x}", batch.settings, batch.input.told());
+        format!("{}; {}; flatfile {fingerprint:016x}", batch.settings, batch.input.description());
     let journal = Journal::open(batch.out, &settings, &specs)?;
     let bar = Bar::new(!batch.folder.quiet, || {
         let template = "{spinner} {bar:30} {pos} of {len} records, {per_sec}, {eta} to go";
@@ -172,7 +172,7 @@ pub(super) fn run(
     let interrupt = Interrupt::listen();
     let before = AtomicUsize::new(0);
     let one = |source: &Source| -> anyhow::Result<Done> {
-        if interrupt.asked() {
+        if interrupt.is_requested() {
             return Ok(Done::Stopped);
         }
         let hash = fingerprint_of(source);

@@ -123,7 +123,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     }
     let (rows, left_out) = args.limits.rows(&found.table);
     let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
-    let mut told = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
+    let mut statement = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
     let [least, largest] = args.scale.ends();
     let choosing = Choosing {
         count: args.count.unwrap_or(USUAL_COUNT),
@@ -135,19 +135,19 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
         Some(_) => choose(&target, &candidates, &choosing),
         None => as_many_as_there_are(&target, &candidates, &choosing),
     };
-    let selection = selection.inspect_err(|_| printer::note(&told))?;
+    let selection = selection.inspect_err(|_| printer::note(&statement))?;
     if args.count.is_none() && selection.chosen.len() < USUAL_COUNT {
         let few = format!(
             "; a set has {USUAL_COUNT} where there are as many, this one has the {} that can be \
              brought to the target",
             selection.chosen.len()
         );
-        told.push_str(&few);
+        statement.push_str(&few);
     }
-    printer::lines([&told])?;
+    printer::lines([&statement])?;
     let set = set::Set { args, table: &found.table, rows: &rows, selection: &selection };
     set.write()?;
-    page::write(&set, &target, &candidates, &told)?;
+    page::write(&set, &target, &candidates, &statement)?;
     printer::lines(set.summary(&target))?;
     Ok(ExitCode::SUCCESS)
 }

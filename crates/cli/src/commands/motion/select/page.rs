@@ -14,16 +14,16 @@ pub(super) fn write(
     set: &Set<'_>,
     target: &SelectionTarget,
     candidates: &[Candidate],
-    told: &str,
+    statement: &str,
 ) -> anyhow::Result<()> {
-    page::write(&set.args.out, &document(set, target, candidates, told), &[])
+    page::write(&set.args.out, &document(set, target, candidates, statement), &[])
 }
 
 fn document(
     set: &Set<'_>,
     target: &SelectionTarget,
     candidates: &[Candidate],
-    told: &str,
+    statement: &str,
 ) -> Document {
     let args = set.args;
     let given = target.condition().map(|(_, given)| {
@@ -33,7 +33,7 @@ fn document(
             given.acceleration / STANDARD_GRAVITY
         )
     });
-    let sentences = [Some(format!("{}.", set.fit(target))), given, Some(format!("{told}."))];
+    let sentences = [Some(format!("{}.", set.fit(target))), given, Some(format!("{statement}."))];
     let mut blocks =
         vec![Block::heading(2, "Spectra"), Block::Figure(spectra(set, target, candidates))];
     if target.deviation().iter().any(|s| *s > 0.0) {
