@@ -3,13 +3,14 @@
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
 use barrelstack::scenario::{FreeInterface, Scenario, SpatialBody, SpatialScene};
+use barrelstack::step::keep_restitution;
 use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Counts, Model, Motion, Quaternion, Solid, Spatial, Vec3,
 };
 
 use crate::part::{Part, ground};
 use crate::stack::Stack;
-use crate::step::{keep_restitution, time_step};
+use crate::step::{critical_of_interface, time_step};
 
 /// Builds a free scene, without settling it.
 pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stack, RunFailure> {
@@ -30,8 +31,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     let mut model =
         Model::new(bodies, laws_of_free(scene), pairs, gravity).map_err(AssembleError::from)?;
     let step = time_step(scenario, &model)?;
-    let divided = keep_restitution(&model, &scene.interfaces, step);
-    model.set_substepping(divided);
+    keep_restitution(&mut model, &scene.interfaces, step, 1.0, critical_of_interface);
     Ok(Stack {
         model,
         parts,

@@ -11,6 +11,7 @@ use barrelstack::run::{
     thresholds,
 };
 use barrelstack::scenario::Scenario;
+use barrelstack::step::restitution_warning;
 use barrelstack::watch::{ElementFate, ElementFates, Ending, Loss, PROGRESS, after_collapse};
 use barrelstack::{Restless, RunFailure};
 use barrelstack_dynamics::{
@@ -213,7 +214,8 @@ pub fn run_on(
     let judge = || judge(&stack, &fates);
     let Verdict { outcome, energy, steps, warnings: told, ending } =
         Verdict::of(ended, judge, state.time, ground.end(), ending);
-    let warnings = ground.warnings.iter().cloned().chain(told).collect();
+    let warnings =
+        ground.warnings.iter().cloned().chain(told).chain(restitution_warning(scenario)).collect();
     let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
     let first_fall = fates.first_fall();
     let all = fates.at_end(&state);

@@ -1,12 +1,10 @@
 //! Time step of a free scene in space, from its contacts and its spins.
 
 use barrelstack::RunFailure;
-use barrelstack::scenario::{FreeInterface, Method, Scenario};
-use barrelstack::step::{FORESEEN_REBOUND, RESTITUTION_SHARE, round_down};
+use barrelstack::scenario::{Method, Scenario};
+use barrelstack::step::round_down;
 use barrelstack_dynamics::solid::Hull;
-use barrelstack_dynamics::{
-    Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Substepping, Vec3,
-};
+use barrelstack_dynamics::{Body, ContactPair, Model, Motion, Nodes, Rotation3, Spatial, Vec3};
 
 /// Fraction of the critical time step, as in the plane.
 const SHARE: f64 = 0.3;
@@ -19,9 +17,6 @@ const REFERENCE: f64 = 0.01;
 
 /// Maximum step (s) if nothing requires a shorter one.
 const LONGEST: f64 = 1e-3;
-
-/// Penetration (m) to which a contact at rest is followed with whole steps, as in the plane.
-const RESTING: f64 = 5e-4;
 
 /// Maximum rotation (rad) per step of bodies with an initial spin: a tumbling block then keeps its energy to 3e-9.
 const TURN: f64 = 5e-3;
@@ -50,25 +45,13 @@ pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f
     }
 }
 
-/// Divides steps (s) while contacts that state a restitution are closed or about to close, as in the plane.
-pub(crate) fn keep_restitution(
-    model: &Model<Spatial>,
-    laws: &[FreeInterface],
-    step: f64,
-) -> Substepping<f64> {
-    let mut substepping = model.substepping().clone();
-    for (interface, _) in laws.iter().enumerate().filter(|(_, law)| law.law.states_restitution()) {
-        let rate = fastest(model, |pair| {
-            let law = &model.interfaces()[pair.interface].normal;
-            if pair.interface == interface { law.tangent_stiffness(REFERENCE) } else { 0.0 }
-        });
-        let shortest = RESTITUTION_SHARE * 2.0 / rate.sqrt();
-        substepping.substeps = substepping.substeps.max((step / shortest).ceil());
-        substepping.whole_step_depth[interface] = 0.0;
-        substepping.resting_allowance = RESTING;
-        substepping.foreseen_gap = FORESEEN_REBOUND;
-    }
-    substepping
+/// Returns the critical time step (s) of the contacts of an interface at a penetration (m).
+pub(crate) fn critical_of_interface(model: &Model<Spatial>, depth: f64, interface: usize) -> f64 {
+    let rate = fastest(model, |pair| {
+        let law = &model.interfaces()[pair.interface].normal;
+        if pair.interface == interface { law.tangent_stiffness(depth) } else { 0.0 }
+    });
+    2.0 / rate.sqrt()
 }
 
 fn adapts(method: Method) -> bool {

@@ -16,6 +16,7 @@ use crate::outcome::{Outcome, judge};
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
 use crate::step::critical_time_step;
+use crate::step::restitution_warning;
 use crate::stick::SoftStick;
 use crate::watch::{
     ElementFate, End, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds, Watch,
@@ -222,6 +223,7 @@ impl Scenario {
         let ended = result.map(|totals| Ended::of(&totals));
         let Verdict { outcome, energy, steps, mut warnings, ending } =
             conclude(&assembly, &ground, &fates, ended, state.time, ending);
+        warnings.extend(restitution_warning(self));
         if outcome == Outcome::Stable {
             // A fallen stack has no slip that could be wrong.
             let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());

@@ -4,10 +4,11 @@ use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::model::FORESEEN;
 use barrelstack_dynamics::{
     Basis, Body, BodyId, ContactPair, Element, Linear as _, Model, Node, Nodes, NormalLaw, Planar,
-    Round, Shape, Space as _, Substepping, math,
+    Round, Shape, Space, Substepping, math,
 };
 
 use crate::assemble::Assembly;
+use crate::scenario::{FreeInterface, Method, Scenario, Scene};
 
 /// Fraction of the critical time step of seats: accuracy requires more than stability.
 const SHARE: f64 = 0.3;
@@ -43,10 +44,10 @@ const LOADED_SHARE: f64 = 1.4;
 /// Fraction of the critical time step of a contact that states a restitution, applied while it lasts: its damper engages
 /// at once, somewhere within a step, which is an error of first order. With it a restitution of 0.7 is kept to 0.002,
 /// of 0.3 to 0.003, besides the work of gravity during the contact.
-pub const RESTITUTION_SHARE: f64 = 0.005;
+const RESTITUTION_SHARE: f64 = 0.005;
 
 /// Gap (m) at full scale within which such contacts are foreseen: so fast that 40 m/s are foreseen at steps of 1 ms.
-pub const FORESEEN_REBOUND: f64 = 0.05;
+const FORESEEN_REBOUND: f64 = 0.05;
 
 /// Radius (m) above which a round piece counts as nearly straight: for contacts whose constants are stated per seat,
 /// and for others. Levers of rounder ones are overestimated by up to four times; the paper's cases, whose staves are
@@ -106,24 +107,52 @@ impl TimeStepping {
     }
 }
 
-/// Divides steps (s) while contacts of some interfaces are closed or about to close, so that they give back what they
-/// state; `time_scale` is that of similitude.
-pub(crate) fn keep_restitution(
-    model: &Model<Planar>,
-    stated: &[usize],
+/// Largest tolerance with which the adaptive method, whose steps are not divided, keeps a restitution: within 1 % of the
+/// exact motion, where 1e-3 misses it by 4 %.
+const KEEPS_RESTITUTION: f64 = 1e-6;
+
+/// Returns a warning if the adaptive method is too inaccurate for the restitution that a free scene states.
+pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
+    let Method::BogackiShampine { tolerance } = scenario.run.method else { return None };
+    let laws = match &scenario.scene {
+        Scene::Stack { .. } => return None,
+        Scene::Free(scene) => &scene.interfaces,
+        Scene::Spatial(scene) => &scene.interfaces,
+    };
+    let states = laws.iter().any(|law| law.law.states_restitution());
+    (states && tolerance > KEEPS_RESTITUTION).then(|| {
+        format!(
+            "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution that this \
+             scene states by several percent; {KEEPS_RESTITUTION:e} keeps it"
+        )
+    })
+}
+
+/// Divides the steps (s) of a free scene while contacts that state a restitution are closed or about to close, so that
+/// they give it back; `critical` is the critical time step (s) of the contacts of an interface at a penetration (m), and
+/// `time_scale` that of similitude.
+pub fn keep_restitution<S: Space<Real = f64>>(
+    model: &mut Model<S>,
+    laws: &[FreeInterface],
     step: f64,
     time_scale: f64,
-) -> Substepping<f64> {
+    critical: impl Fn(&Model<S>, f64, usize) -> f64,
+) {
     let depth = REFERENCE * time_scale * time_scale;
     let mut substepping = model.substepping().clone();
-    for interface in stated {
-        let shortest =
-            RESTITUTION_SHARE * critical(model, 0.0, depth, &|pair| pair.interface == *interface);
+    for (interface, _) in laws.iter().enumerate().filter(|(_, law)| law.law.states_restitution()) {
+        let shortest = RESTITUTION_SHARE * critical(model, depth, interface);
         substepping.substeps = substepping.substeps.max((step / shortest).ceil());
-        substepping.whole_step_depth[*interface] = 0.0;
+        substepping.whole_step_depth[interface] = 0.0;
+        substepping.resting_allowance = WHOLE_STEP * depth;
         substepping.foreseen_gap = FORESEEN_REBOUND * time_scale * time_scale;
     }
-    substepping
+    model.set_substepping(substepping);
+}
+
+/// Returns the critical time step (s) of the contacts of an interface in the plane at a penetration (m).
+pub(crate) fn critical_of_interface(model: &Model<Planar>, depth: f64, interface: usize) -> f64 {
+    critical(model, 0.0, depth, &|pair| pair.interface == interface)
 }
 
 /// Returns `true` if a pair meets in impacts and carries little load between them.

@@ -19,7 +19,7 @@ use barrelstack_dynamics::{
 
 use crate::device::{Loose, Words};
 use crate::scenario::{self, FreeInterface, Scenario, Scene, SpatialScene, StackSpec, View};
-use crate::step::{TimeStepping, keep_restitution};
+use crate::step::{TimeStepping, critical_of_interface, keep_restitution};
 
 pub(crate) use builder::{Builder, Draft};
 pub use longitudinal::CHIME_RADIUS;
@@ -238,13 +238,10 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
             // Springs between bodies are slow, and their oscillation is the result of interest.
             assembly.step = assembly.step.min(SWINGING_STEP * scale.time());
         }
-        let laws = scene.interfaces.iter().enumerate();
-        let stated: Vec<usize> =
-            laws.filter(|(_, law)| law.law.states_restitution()).map(|(at, _)| at).collect();
         let step = scenario.run.step.map(|step| step * scale.time());
         let step = step.unwrap_or(assembly.step * scenario.run.accuracy.step());
-        let divided = keep_restitution(&assembly.model, &stated, step, scale.time());
-        assembly.model.set_substepping(divided);
+        let (model, laws) = (&mut assembly.model, &scene.interfaces);
+        keep_restitution(model, laws, step, scale.time(), critical_of_interface);
     }
     Ok(assembly)
 }
