@@ -147,6 +147,9 @@ impl MotionUnit {
             .as_str()
         {
             "" if plain.contains('/') => return None,
+            "" if matches!(length, "kine" | "kines") => {
+                return Some(Self { quantity: Quantity::Velocity, factor: 1e-2 });
+            }
             "" => Quantity::Displacement,
             "s" => Quantity::Velocity,
             "s2" | "s/s" | "ss" | "squared" | "ssquared" => Quantity::Acceleration,

@@ -473,3 +473,102 @@ fn a_velocity_stated_on_the_line_of_the_count_is_refused_whatever_the_unit_given
         }
     }
 }
+
+/// Returns 60 values to both sides, one to a line.
+fn waves() -> String {
+    (0..60).map(|k| format!("{:.4}\n", (0.3 * f64::from(k)).sin())).collect()
+}
+
+#[test]
+fn a_step_in_other_words_or_under_the_name_of_the_rate_is_taken() {
+    for stated in [
+        "sampling rate: 0.005 s",
+        "sampling frequency: 0.005 s",
+        "Sampling rate : 1/200",
+        "Sampling: 200 Hz",
+        "200 Hz",
+        "delta = 0.005",
+        "dt: 0,005",
+        "SAMPLES/SEC=200",
+        "Abtastrate: 200 Hz",
+        "Original dt 0.01 s, resampled to 0.005 s",
+        "interval 5 ms",
+    ] {
+        let text = format!("Station NOW\n{stated}\nAcceleration in cm/s2\n{}", waves());
+        // A step given must not replace the one stated.
+        let given = ReadOptions { time_step: Some(0.02), ..ReadOptions::default() };
+        match read(text.as_bytes(), "t.txt", &given) {
+            Ok(record) => assert!((record.channels[0].time_step - 0.005).abs() < 1e-9, "{stated}"),
+            Err(error) => assert!(error.to_string().contains("step"), "{stated}: {error}"),
+        }
+    }
+}
+
+#[test]
+fn numbers_that_are_no_steps_leave_the_step_given() {
+    for other in [
+        "Baud rate: 9600",
+        "delta = 0.083",
+        "delta = 50",
+        "Slip rate: 25 mm/yr",
+        "taper of 0.1 s at both ends of 60 values",
+        "step 0.02",
+        "Instrument: Kinemetrics ETNA, deployed 2010",
+    ] {
+        let text = format!("Station NOW\n{other}\nunit: cm/s2\n{}", waves());
+        let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
+        let record = read(text.as_bytes(), "t.txt", &given);
+        let record = record.unwrap_or_else(|error| panic!("{other}: {error}"));
+        assert!((record.channels[0].time_step - 0.01).abs() < 1e-12, "{other}");
+    }
+}
+
+#[test]
+fn letters_of_the_ground_are_quantities_and_rotations_and_spectra_are_refused() {
+    let table = |header: &str, mark: &str| {
+        let rows: String = (0..60)
+            .map(|k| {
+                let t = 0.01 * f64::from(k);
+                let columns = header.matches(mark).count();
+                let sine = |j: usize| format!("{mark}{:.5}", (30.0 * t + j as f64).sin() + 0.1);
+                format!("{t:.2}{}\n", (0..columns).map(sine).collect::<String>())
+            })
+            .collect();
+        let given = ReadOptions { unit: Some(AccelerationUnit::G), ..ReadOptions::default() };
+        read(format!("{header}\n{rows}").as_bytes(), "t.csv", &given)
+    };
+    assert_eq!(table("t,a_g,v_g,d_g", ",").unwrap().channels.len(), 1);
+    assert_eq!(table("time (s),Acc (N),Acc (E),Acc (V)", ",").unwrap().channels.len(), 3);
+    for (header, mark) in [
+        ("T [s];Se [g]", ";"),
+        ("T (sec),Sae (g)", ","),
+        ("Periodo (s),Acc (g)", ","),
+        ("time (s),NS (rad/s)", ","),
+        ("Zeit (s);Geschwindigkeit (cm/s)", ";"),
+    ] {
+        let error = table(header, mark).unwrap_err();
+        assert_eq!(error.refusal, Refusal::NotAcceleration, "{header}: {error}");
+    }
+}
+
+#[test]
+fn a_hole_in_times_since_1970_is_found() {
+    let table = |hole: f64| {
+        let rows: String = (0..400)
+            .map(|k| {
+                let t = 1_577_836_800.0 + 0.01 * f64::from(k) + if k < 200 { 0.0 } else { hole };
+                format!("{t:.2},{:.4}\n", (0.3 * f64::from(k)).sin())
+            })
+            .collect();
+        let text = format!("timestamp (s),acc (g)\n{rows}");
+        read(text.as_bytes(), "t.csv", &ReadOptions::default())
+    };
+    assert!((table(0.0).unwrap().channels[0].time_step - 0.01).abs() < 1e-9);
+    for hole in [0.03, 0.5, 1.0] {
+        // A short hole is filled with a warning.
+        if let Ok(record) = table(hole) {
+            let warned = record.warnings.iter().any(|w| w.message.contains("unevenly spaced"));
+            assert!(warned && hole < 0.1, "{hole}: {:?}", record.warnings);
+        }
+    }
+}

@@ -61,9 +61,9 @@ pub(crate) fn even_steps(
     let (first, last) = (time[0], time[time.len() - 1]);
     let mean = (last - first) / (time.len() - 1) as f64;
     let fits = |step: f64| {
-        time.iter()
-            .enumerate()
-            .all(|(k, t)| (t - first - k as f64 * step).abs() <= 0.51 * resolution + 1e-9 * t.abs())
+        time.iter().enumerate().all(|(k, t)| {
+            (t - first - k as f64 * step).abs() <= 0.51 * resolution + slack(*t, first)
+        })
     };
     if let Some(step) = candidates(mean, resolution / (last - first)).find(|&step| fits(step)) {
         return Ok((step, values));
@@ -125,12 +125,18 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
+/// Returns the rounding (s) of a time: of the length since the first one, and of the double that holds it, as times
+/// since 1970 are large.
+fn slack(time: f64, first: f64) -> f64 {
+    1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
+}
+
 /// Returns a round step from which no time deviates by more than one unit of its last digit, as for truncated
 /// times.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {
-        (t - time[0] - k as f64 * step).abs() > 1.01 * resolution + 1e-9 * t.abs()
+        (t - time[0] - k as f64 * step).abs() > 1.01 * resolution + slack(*t, time[0])
     };
     // Times coarser than the step would be no evidence of evenness.
     let fine = resolution < 0.5 * step;

@@ -2,7 +2,7 @@
 
 use crate::direction::Direction;
 use crate::error::ReadError;
-use crate::format::source::{Source, leading_printed, leading_text, quoted};
+use crate::format::source::{Source, latin1, leading_printed, leading_text, quoted};
 use crate::record::Quantity;
 use crate::units::MotionUnit;
 
@@ -40,7 +40,7 @@ pub(super) struct Facts {
     pub(super) component: Option<String>,
 }
 
-const STEP_KEYS: [&str; 24] = [
+const STEP_KEYS: &[&str] = &[
     "dt",
     "delta t",
     "delta-t",
@@ -65,8 +65,18 @@ const STEP_KEYS: [&str; 24] = [
     "intervallo di campionamento",
     "intervalo de muestreo",
     "ornekleme araligi",
+    "pas de temps",
+    "pas d'echantillonnage",
+    "zeitschritt",
+    "abtastintervall",
+    "intervalo de amostragem",
+    "intervalo de tiempo",
+    "paso de tiempo",
+    "passo temporale",
+    "time between samples",
+    "interval of sampling",
 ];
-const RATE_KEYS: [&str; 10] = [
+const RATE_KEYS: &[&str] = &[
     "sampling rate",
     "sample rate",
     "sampling_rate",
@@ -77,8 +87,46 @@ const RATE_KEYS: [&str; 10] = [
     "fs",
     "frequenza di campionamento",
     "frecuencia de muestreo",
+    "tasa de muestreo",
+    "taxa de amostragem",
+    "frequencia de amostragem",
+    "frequence d'echantillonnage",
+    "abtastrate",
+    "abtastfrequenz",
+    "ornekleme frekansi",
+    "ornekleme hizi",
+    "samples per second",
+    "samples per sec",
+    "samples/second",
+    "samples/sec",
+    "f_s",
 ];
-const COUNT_KEYS: [&str; 24] = [
+/// Words of a sampling interval or rate, of which the unit or the size of the number says which.
+const SAMPLING_KEYS: &[&str] = &[
+    "sampling",
+    "sampled at",
+    "resampled to",
+    "rate",
+    "muestreo",
+    "campionamento",
+    "amostragem",
+    "abtastung",
+    "delta",
+    "step",
+    "interval",
+    "intervalo",
+    "intervallo",
+    "increment",
+];
+/// Words of [`SAMPLING_KEYS`] that need no unit beside the number.
+const BARE: &[&str] =
+    &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
+/// Words beside a number with a unit of time that make it the step.
+const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
+/// Largest step (s) and smallest rate (Hz) of statements that do not name the quantity.
+const LARGEST_UNNAMED_STEP: f64 = 0.1;
+const SMALLEST_UNNAMED_RATE: f64 = 20.0;
+const COUNT_KEYS: &[&str] = &[
     "npts",
     "ndata",
     "nsamp",
@@ -103,6 +151,13 @@ const COUNT_KEYS: [&str; 24] = [
     "numero di campioni",
     "numero de datos",
     "numero de muestras",
+    "numero de amostras",
+    "nombre de points",
+    "nombre d'echantillons",
+    "anzahl der werte",
+    "anzahl werte",
+    "veri sayisi",
+    "muestras",
 ];
 const DURATION_KEYS: [&str; 5] =
     ["duration", "record length", "length of record", "total time", "length"];
@@ -146,9 +201,11 @@ impl Facts {
         lines: impl Iterator<Item = usize>,
     ) -> Result<Self, ReadError> {
         let mut facts = Self::default();
+        let mut unnamed: Vec<Stated<f64>> = Vec::new();
         for line in lines {
             let text = source.text(line);
-            let lower = text.to_ascii_lowercase();
+            let lower = folded(source.raw(line));
+            unnamed.extend(unnamed_step(&lower).map(|value| Stated { line, value }));
             if let Some(step) = step(&lower) {
                 match facts.step {
                     Some(first) if (first.value / step - 1.0).abs() > 1e-3 => {
@@ -180,6 +237,10 @@ impl Facts {
             let stated = peak(&lower).map(|value| Stated { line, value });
             facts.peak = facts.peak.or(stated);
             facts.component = facts.component.take().or_else(|| component(&text));
+        }
+        let alike = |other: &Stated<f64>| (other.value / unnamed[0].value - 1.0).abs() < 1e-3;
+        if facts.step.is_none() && unnamed.iter().all(alike) {
+            facts.step = unnamed.first().copied();
         }
         Ok(facts)
     }
@@ -223,18 +284,67 @@ fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
         rest = rest.strip_prefix(filler).unwrap_or(rest).trim_start();
     }
     let rest = rest.trim_start_matches([' ', ':', '=']);
-    let (_, printed_text) = leading_text(rest.as_bytes())?;
-    let printed = leading_printed(rest.as_bytes())?;
-    let at = rest.find(&printed_text)? + printed_text.len();
+    let (number, at) = number_with_comma(rest);
+    let printed = leading_printed(number.as_bytes())?;
+    let at = match at {
+        Some(at) => at,
+        None => {
+            let (_, text) = leading_text(rest.as_bytes())?;
+            rest.find(&text)? + text.len()
+        }
+    };
     let behind = rest[at..].trim_start_matches([' ', '(', '[']);
     let word = behind.split([' ', ',', ';', ')', ']', '\t']).next().unwrap_or("");
     Some(Value { in_parentheses, printed, behind: word })
 }
 
+/// Returns a number that begins a text with its comma resolved, and the length of what was resolved: `0,005` has a
+/// decimal comma and `3,200` one for thousands.
+fn number_with_comma(text: &str) -> (String, Option<usize>) {
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != ',').unwrap_or(text.len());
+    let token = text[..end].trim_end_matches(',');
+    let groups: Vec<&str> = token.split(',').collect();
+    let plain = || (text.to_owned(), None);
+    match groups.as_slice() {
+        _ if text[end..].starts_with('.') => plain(),
+        ["0", decimals] if !decimals.is_empty() => (format!("0.{decimals}"), Some(token.len())),
+        [first, rest @ ..] if !rest.is_empty() => {
+            let thousands = (1..=3).contains(&first.len()) && rest.iter().all(|g| g.len() == 3);
+            if thousands { (groups.concat(), Some(token.len())) } else { plain() }
+        }
+        _ => plain(),
+    }
+}
+
+/// Returns a header line in lower case, in UTF-8 or else Latin-1, without the marks of letters: `Pas d'échantillonnage`
+/// gives `pas d'echantillonnage`.
+pub(in crate::format) fn folded(raw: &[u8]) -> String {
+    let text = std::str::from_utf8(raw).map_or_else(|_| latin1(raw), str::to_owned);
+    text.trim().to_lowercase().chars().filter_map(plain_letter).collect()
+}
+
+/// Returns a lower-case letter without its mark; `None` for a mark that stands alone.
+fn plain_letter(c: char) -> Option<char> {
+    Some(match c {
+        '\u{e0}'..='\u{e5}' => 'a',
+        '\u{e7}' => 'c',
+        '\u{e8}'..='\u{eb}' => 'e',
+        '\u{ec}'..='\u{ef}' | '\u{131}' => 'i',
+        '\u{f1}' => 'n',
+        '\u{f2}'..='\u{f6}' => 'o',
+        '\u{f9}'..='\u{fc}' => 'u',
+        '\u{11f}' => 'g',
+        '\u{15f}' => 's',
+        '\u{2019}' => '\'',
+        '\u{300}'..='\u{36f}' => return None,
+        other => other,
+    })
+}
+
 /// Returns the length in seconds of a unit of time.
 pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
-        "s" | "sec" | "secs" | "second" | "seconds" => 1.0,
+        "s" | "sec" | "secs" | "second" | "seconds" | "seg" | "sn" | "sek" => 1.0,
         "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => 1e-3,
         "us" | "\u{b5}s" | "usec" | "microsecond" | "microseconds" => 1e-6,
         "min" | "minute" | "minutes" => 60.0,
@@ -255,15 +365,72 @@ fn step(text: &str) -> Option<f64> {
         positive(number * unit.unwrap_or(1.0))
     });
     let by_rate = || {
-        let stated = RATE_KEYS.iter().find_map(|key| Some(value_behind(text, key)?.printed.value));
-        let rate = stated.or_else(|| {
-            ["sps", "samples/sec", "samples/s", "samples per second", "samples per sec", "pts/sec"]
-                .iter()
-                .find_map(|mark| number_before(text, mark))
+        let stated = RATE_KEYS.iter().find_map(|key| {
+            let value = value_behind(text, key)?;
+            let time =
+                value.in_parentheses.and_then(time_factor).or_else(|| time_factor(value.behind));
+            let divisor = value.behind.strip_prefix('/').and_then(|d| leading_text(d.as_bytes()));
+            let number = value.printed.value;
+            // Some headers state the step under the name of the rate.
+            match (time, divisor) {
+                (Some(factor), _) => Some(number * factor),
+                (None, Some((divisor, _))) => Some(number / divisor),
+                (None, None) if number < 1.0 => Some(number),
+                (None, None) => Some(1.0 / number),
+            }
         });
-        positive(1.0 / rate?)
+        let counted =
+            || RATE_MARKS.iter().find_map(|mark| number_before(text, mark)).map(|rate| 1.0 / rate);
+        positive(stated.or_else(counted)?)
     };
     by_step.or_else(by_rate)
+}
+
+/// Words behind the number of samples in a second.
+const RATE_MARKS: &[&str] = &[
+    "sps",
+    "samples/sec",
+    "samples/second",
+    "samples/s",
+    "samples per second",
+    "samples per sec",
+    "pts/sec",
+    "muestras por segundo",
+    "campioni al secondo",
+    "amostras por segundo",
+];
+
+/// Returns the step (s) of a line that states it without its name: `Sampling: 200 Hz`, `interval 5 ms`, `200 Hz` alone.
+fn unnamed_step(text: &str) -> Option<f64> {
+    let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
+    let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
+    let by_key = SAMPLING_KEYS.iter().find_map(|key| {
+        let value = value_behind(text, key)?;
+        let unit = value.in_parentheses.unwrap_or(value.behind);
+        let number = value.printed.value;
+        match (time_factor(unit), unit) {
+            (Some(factor), _) => size(number * factor),
+            (None, "hz" | "sps") => rate(number),
+            // A bare number may be something else; "delta" is a distance in degrees as well.
+            (None, "") if BARE.contains(key) => rate(number)
+                .filter(|_| *key != "delta")
+                .or_else(|| size(number))
+                .filter(|step| (step.recip() - step.recip().round()).abs() < 1e-6),
+            _ => None,
+        }
+    });
+    let plain = text.trim_start_matches(['#', '%', '!', '/', ' ']);
+    let alone = || rate(plain.strip_suffix("hz")?.trim().parse().ok()?);
+    let beside = || {
+        BESIDE_STEPS.iter().find(|word| text.contains(**word))?;
+        let words: Vec<&str> =
+            text.split([' ', '\t', ',', ';', '(', ')']).filter(|w| !w.is_empty()).collect();
+        let mut steps = words
+            .windows(2)
+            .filter_map(|pair| size(pair[0].parse::<f64>().ok()? * time_factor(pair[1])?));
+        steps.next().filter(|_| steps.next().is_none())
+    };
+    by_key.or_else(alone).or_else(beside)
 }
 
 /// Returns the number right before a word.
@@ -335,8 +502,14 @@ fn peak(text: &str) -> Option<Peak> {
 
 /// `true` if a text mentions acceleration.
 pub(super) fn says_acceleration(lower: &str) -> bool {
-    words(lower).any(|word| word.starts_with("acc") || word.starts_with("acel"))
+    words(lower).any(|word| ACCELERATIONS.iter().any(|start| word.starts_with(start)))
 }
+
+/// First letters of words for an acceleration, a velocity and a displacement, in the languages of the agencies.
+pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
+pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
+pub(super) const DISPLACEMENTS: &[&str] =
+    &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())
@@ -344,7 +517,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// Parses the unit in a line that states it: after "unit", or in parentheses, after "in", a colon or a comma in
 /// a line that mentions acceleration.
-fn unit(lower: &str) -> Option<MotionUnit> {
+pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     // In prose a length is not the unit of a record: "in" is a preposition, and "m" is ambiguous.
     let rate = |text: &str| {
         MotionUnit::parse(text.trim()).filter(|unit| unit.quantity != Quantity::Displacement)
@@ -362,7 +535,7 @@ fn unit(lower: &str) -> Option<MotionUnit> {
     if !says_acceleration(lower) {
         return None;
     }
-    let behind = &lower[lower.find("acc").or_else(|| lower.find("acel"))?..];
+    let behind = &lower[ACCELERATIONS.iter().find_map(|start| lower.find(start))?..];
     let groups = behind.split(['(', '[']).skip(1).filter_map(|text| text.split([')', ']']).next());
     let after_in = behind.split(" in ").skip(1).filter_map(|text| text.split([' ', ',']).next());
     let last = behind.rsplit([':', '=', ',']).next();
@@ -403,7 +576,7 @@ pub(super) fn refuse_other_quantities(
     };
     let mut acceleration = false;
     for line in lines.clone() {
-        let lower = source.text(line).to_ascii_lowercase();
+        let lower = folded(source.raw(line));
         if is_spectrum(&lower) {
             let remedy = "give the file of the time history that this spectrum belongs to";
             return refuse(line, "an acceleration history, not a spectrum", remedy);
@@ -414,9 +587,11 @@ pub(super) fn refuse_other_quantities(
         return Ok(());
     }
     for line in lines {
-        let lower = source.text(line).to_ascii_lowercase();
-        let other = words(&lower)
-            .any(|word| word.starts_with("veloc") || word.starts_with("displ") || word == "counts");
+        let lower = folded(source.raw(line));
+        let other = words(&lower).any(|word| {
+            VELOCITIES.iter().chain(DISPLACEMENTS).any(|start| word.starts_with(start))
+                || word == "counts"
+        });
         if other {
             return refuse(line, "accelerations", "give the acceleration history");
         }
@@ -425,8 +600,9 @@ pub(super) fn refuse_other_quantities(
 }
 
 fn is_spectrum(lower: &str) -> bool {
-    let history = ["compatible", "match", "history", "series", "accelerogram"];
-    let spectral = lower.contains("spectr") || lower.contains("fourier amplitude");
+    let history = ["ompatib", "match", "history", "series", "accelerogram"];
+    let spectral =
+        ["spectr", "spettr", "spektr", "fourier amplitude"].iter().any(|word| lower.contains(word));
     let plain = lower.trim_start_matches(['#', '%', '!', '/', '"', ' ']);
     let begins = [
         "period,",

@@ -4,7 +4,7 @@
 //! columns only if the names are quantities, and the stated step, count and duration must agree with the
 //! numbers.
 
-mod facts;
+pub(in crate::format) mod facts;
 mod names;
 mod rows;
 mod shape;
@@ -100,6 +100,16 @@ fn read_table(
     let speaks = |name: &Name| name.holds == Holds::Motion(Quantity::Acceleration);
     if !names.as_ref().is_some_and(|names| names.iter().any(speaks)) {
         facts::refuse_other_quantities(source, 0..header)?;
+    }
+    if let Some(Name { holds: Holds::Spectrum, .. }) =
+        names.as_ref().and_then(|names| names.first())
+    {
+        return Err(source.not_acceleration(
+            line,
+            "an acceleration history, not a spectrum",
+            quoted(&source.text(line)),
+            "give the file of the time history that this spectrum belongs to",
+        ));
     }
     let time = time_of(source, first, &table, names.as_deref())?;
     let (time_step, names, columns) = if let Some(factor) = time {
@@ -389,8 +399,11 @@ fn require_duration(
         let step = stated / samples as f64;
         (Refusal::Options, format!("give the step by which they do, about {step:.4} s"))
     } else {
-        let remedy =
-            "the file is cut or its header belongs to another; get it again from its source";
+        let remedy = if length < stated {
+            "the file is cut or its header belongs to another; get it again from its source"
+        } else {
+            "the step or the duration of the header is wrong; get the file again from its source"
+        };
         (Refusal::Damaged, remedy.to_owned())
     };
     Err(source.error(

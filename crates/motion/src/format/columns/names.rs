@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::facts::time_factor;
+use super::facts::{ACCELERATIONS, DISPLACEMENTS, VELOCITIES, folded, time_factor};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::format::source::{Source, quoted};
@@ -222,6 +222,8 @@ fn says_quantities(names: &[Name], separated: bool) -> bool {
 fn name(text: &str) -> Name {
     let mut label = text.trim();
     let mut unit = None;
+    // "a_g" is the acceleration of the ground, as "v_g" is its velocity.
+    let ground = matches!(label.to_lowercase().as_bytes(), [_, b'_', b'g']);
     if let Some((before, inner)) = label.split_once(['(', '[', '{'])
         && let Some((inner, after)) = inner.rsplit_once([')', ']', '}'])
         && !before.trim().is_empty()
@@ -233,7 +235,7 @@ fn name(text: &str) -> Name {
             label = if after.trim().is_empty() { before.trim() } else { label };
         }
     }
-    if unit.is_none() {
+    if unit.is_none() && !ground {
         for mark in [", ", ",", " in ", ": ", "_", " "] {
             if let Some((before, last)) = label.rsplit_once(mark)
                 && is_unit(last)
@@ -250,8 +252,19 @@ fn name(text: &str) -> Name {
     Name { label: label.to_owned(), holds: holds(label, unit.as_deref()), unit }
 }
 
+/// Units of rotations, in lower case.
+const ROTATIONS: &[&str] = &["rad", "rad/s", "rad/s2", "deg", "deg/s"];
+
 fn holds(label: &str, unit: Option<&str>) -> Holds {
-    let lower = label.to_lowercase();
+    // Labels come from Latin-1, one character to a byte.
+    let bytes: Option<Vec<u8>> = label.chars().map(|c| u8::try_from(u32::from(c)).ok()).collect();
+    let lower = bytes.map_or_else(|| label.to_lowercase(), |bytes| folded(&bytes));
+    let plain_unit = unit.map(|unit| unit.to_lowercase().replace([' ', '^', '*'], ""));
+    match plain_unit.as_deref() {
+        Some("hz" | "khz") => return Holds::Spectrum,
+        Some(unit) if ROTATIONS.contains(&unit) => return Holds::Other,
+        _ => {}
+    }
     let words: Vec<&str> =
         lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
     let begins = |starts: &[&str]| {
@@ -259,25 +272,28 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
     };
     let is = |exact: &[&str]| words.iter().any(|word| exact.contains(word));
     let unit_of_motion = unit.and_then(MotionUnit::parse).map(|unit| unit.quantity);
-    if begins(&["spectr", "freq", "period", "psa", "psv", "fourier", "damp"])
-        || is(&["sa", "sv", "sd", "psd", "fas", "per", "hz"])
+    if begins(&[
+        "spectr", "spettr", "espectr", "spektr", "freq", "frec", "frek", "period", "psa", "psv",
+        "fourier", "damp",
+    ]) || label == "Se"
+        || is(&["sa", "sv", "sd", "sae", "sve", "sde", "psd", "fas", "per", "hz"])
     {
         return Holds::Spectrum;
     }
-    if begins(&["acc", "acel"]) || is(&["a", "ag", "ax", "ay", "az", "ugdd", "uddg", "ivme"]) {
+    if begins(ACCELERATIONS) || is(&["a", "ag", "ax", "ay", "az", "ugdd", "uddg"]) {
         return Holds::Motion(Quantity::Acceleration);
     }
-    if begins(&["veloc"]) || is(&["vel", "vg", "vx", "vy", "vz", "vels"]) {
+    if begins(VELOCITIES) || is(&["vel", "vg", "vx", "vy", "vz", "vels", "hiz"]) {
         return Holds::Motion(Quantity::Velocity);
     }
-    if begins(&["displ", "despl", "depl"]) || is(&["dis", "disp", "dx", "dy", "dz"]) {
+    if begins(DISPLACEMENTS) || is(&["dis", "disp", "dx", "dy", "dz"]) {
         return Holds::Motion(Quantity::Displacement);
     }
     let time_words = [
         "time", "times", "t", "tiempo", "zaman", "zeit", "temps", "tempo", "sec", "secs",
         "seconds", "msec",
     ];
-    if is(&time_words) {
+    if is(&time_words) || begins(&["timest", "elapsed", "datetime"]) {
         return Holds::Time;
     }
     if Direction::parse(label) != Direction::default() {
@@ -316,7 +332,7 @@ fn by_company(mut names: Vec<Name>) -> Vec<Name> {
     });
     for name in &mut names {
         let letter =
-            name.label.trim_end_matches(|c: char| c.is_ascii_digit() || "_ ()t".contains(c));
+            name.label.trim_end_matches(|c: char| c.is_ascii_digit() || "_ ()tg".contains(c));
         let quantity = match letter {
             "v" | "V" if acceleration && !horizontal => Quantity::Velocity,
             "d" | "D" | "u" if acceleration && !horizontal => Quantity::Displacement,

@@ -11,6 +11,8 @@ use crate::record::Record;
 const MOST_HEADER_LINES: usize = 60;
 /// Larger numbers are errors whatever the unit.
 const LIMIT: f64 = 1e12;
+/// Largest time: milliseconds and microseconds since 1970 are larger than any acceleration.
+const LARGEST_TIME: f64 = 1e17;
 /// Maximum number of columns taken as components; more are one series in long lines.
 const MOST_COLUMNS: usize = 200;
 /// Minimum number of values in a file of one line.
@@ -114,7 +116,7 @@ pub(super) fn table(
     end: usize,
 ) -> Result<Vec<Vec<f64>>, ReadError> {
     let mut row = Vec::new();
-    source.tokens(first, LIMIT, &mut row)?;
+    tokens(source, first, &mut row)?;
     let width = row.len();
     if width == 0 {
         return Err(source.bad_number(first, 0, source.raw(first)));
@@ -129,7 +131,7 @@ pub(super) fn table(
             return Err(source.bad_number(line, 0, source.raw(line)));
         }
         row.clear();
-        source.tokens(line, LIMIT, &mut row)?;
+        tokens(source, line, &mut row)?;
         if row.len() != width {
             if line + 1 == end && row.len() < width && !shape::is_time(&columns[0]) {
                 continue;
@@ -143,10 +145,24 @@ pub(super) fn table(
     Ok(columns)
 }
 
+/// Reads the numbers of a row up to [`LIMIT`], the first of several up to [`LARGEST_TIME`].
+fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), ReadError> {
+    let result = source.tokens(line, LIMIT, row);
+    if result.is_err() {
+        row.clear();
+        let clock = source.tokens(line, LARGEST_TIME, row).is_ok() && row.len() > 1;
+        if !(clock && row[1..].iter().all(|value| value.abs() <= LIMIT)) {
+            return result;
+        }
+    }
+    Ok(())
+}
+
 /// Returns the error for a row of another width: the first line may be the exception, or a cell may be empty.
 fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
     let text = source.text(line);
-    if [",,", ";;", "\t\t", ", ,"].iter().any(|empty| text.contains(empty)) {
+    let at_end = found < width && text.ends_with([',', ';']);
+    if at_end || [",,", ";;", "\t\t", ", ,"].iter().any(|empty| text.contains(empty)) {
         return source.damaged(
             line,
             format!("{width} numbers"),
@@ -162,6 +178,15 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
             format!("{width} numbers in the first row and {found} in the next"),
             "the first row is no part of the table and says what no reader knows; leave it out and state \
              step and unit",
+        );
+    }
+    if found > width {
+        return source.damaged(
+            line,
+            format!("{width} numbers"),
+            format!("{found} numbers in {}", quoted(&text)),
+            "a number may have a comma for thousands or decimals, or the row is of another table; \
+             correct it",
         );
     }
     source.ragged(line, width, found)
