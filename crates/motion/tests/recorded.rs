@@ -398,6 +398,18 @@ fn sensitivities_are_taken_in_the_unit_that_the_metadata_state() {
 }
 
 #[test]
+fn metadata_that_contradict_each_other_are_refused_with_both_sensitivities() {
+    let bytes = seed(b'E', 0, *b"00");
+    let with = |second| {
+        let instruments = [metadata("1000", "m/s**2", ""), metadata(second, "m/s**2", "")].concat();
+        read(&bytes, "a.mseed", &ReadOptions { instruments, ..ReadOptions::default() })
+    };
+    assert!(with("1000.1").is_ok());
+    let error = with("2000").unwrap_err().to_string();
+    assert!(error.contains("found 1000 and 2000 counts") && error.contains("HNE"), "{error}");
+}
+
+#[test]
 fn polarity_and_dip_of_metadata_are_kept() {
     let bytes = seed(b'E', 0, *b"00");
     let with = |value, more| {

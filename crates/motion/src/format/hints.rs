@@ -1,12 +1,15 @@
 //! Options of the caller, with a record of which the reader used.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use super::ReadOptions;
 use crate::instrument::{Instrument, SeedName};
 use crate::record::Quantity;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
+
+/// Largest relative difference of two sensitivities of one channel that counts as rounding.
+const LARGEST_DIFFERENCE: f64 = 0.005;
 
 /// Options of the caller, for readers.
 ///
@@ -17,12 +20,21 @@ pub(super) struct Hints<'a> {
     time_step: Cell<bool>,
     sensitivity: Cell<bool>,
     recorded: Cell<bool>,
+    /// Metadata of one channel that contradict each other.
+    contradiction: RefCell<Option<String>>,
 }
 
 impl<'a> Hints<'a> {
     pub(super) fn new(options: &'a ReadOptions) -> Self {
         let no = || Cell::new(false);
-        Self { options, unit: no(), time_step: no(), sensitivity: no(), recorded: no() }
+        Self {
+            options,
+            unit: no(),
+            time_step: no(),
+            sensitivity: no(),
+            recorded: no(),
+            contradiction: RefCell::default(),
+        }
     }
 
     /// Returns all options.
@@ -60,7 +72,32 @@ impl<'a> Hints<'a> {
     /// Returns the metadata of a channel that begins at `start`.
     pub(super) fn instrument(&self, seed: &SeedName, start: Option<Utc>) -> Option<&'a Instrument> {
         self.sensitivity.set(true);
-        self.options.instruments.iter().find(|known| known.describes(seed, start))
+        let mut fitting =
+            self.options.instruments.iter().filter(|known| known.describes(seed, start));
+        let first = fitting.next()?;
+        // What the caller gives by itself names no station and precedes the metadata.
+        let differs = |other: &&Instrument| {
+            (other.sensitivity / first.sensitivity - 1.0).abs() > LARGEST_DIFFERENCE
+        };
+        if !first.station.is_empty()
+            && let Some(other) = fitting.find(differs)
+        {
+            *self.contradiction.borrow_mut() = Some(format!(
+                "{} and {} counts per m/s2 or m/s for {}.{}.{}.{}",
+                first.sensitivity,
+                other.sensitivity,
+                seed.network,
+                seed.station,
+                seed.location,
+                seed.channel
+            ));
+        }
+        Some(first)
+    }
+
+    /// Returns the words on metadata of one channel that contradict each other, if any did.
+    pub(super) fn contradiction(&self) -> Option<String> {
+        self.contradiction.borrow().clone()
     }
 
     /// States that no metadata match a channel, for the error of a missing sensitivity.

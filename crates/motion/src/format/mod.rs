@@ -97,6 +97,15 @@ impl Format {
     fn read_source(&self, source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
         let hints = Hints::new(options);
         let mut record = (self.read)(source, &hints)?;
+        if let Some(found) = hints.contradiction() {
+            return Err(source.error(
+                (),
+                Refusal::Options,
+                "one sensitivity of each channel in the metadata given",
+                found,
+                "give the StationXML that holds at the time of the record alone",
+            ));
+        }
         record.format = self.name;
         for what in hints.ignored() {
             record.warn(None, format!("{what} given was ignored, as this file does not need it"));

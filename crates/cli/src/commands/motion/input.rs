@@ -372,23 +372,32 @@ fn instruments(path: &Path) -> anyhow::Result<Vec<Instrument>> {
     let files = xml_files(path);
     let mut found = Vec::new();
     for file in &files {
-        found.extend(instruments_of_file(file)?);
+        // Catalogs of events and stations without responses lie among them.
+        found.extend(read_station_xml(file)?);
     }
     if found.is_empty() {
-        bail!("{}: expected files that end with .xml, found none", path.display());
+        bail!(
+            "{}: expected StationXML with a sensitivity, found none in {} files that end with .xml",
+            path.display(),
+            files.len()
+        );
     }
     Ok(found)
 }
 
 /// Reads the channels of a `StationXML` file.
 fn instruments_of_file(path: &Path) -> anyhow::Result<Vec<Instrument>> {
-    let text = bytes(path)?;
-    let found =
-        station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())?;
+    let found = read_station_xml(path)?;
     if found.is_empty() {
         bail!("{}: it states no sensitivity of any channel", path.display());
     }
     Ok(found)
+}
+
+/// Reads the channels of an XML file that have a sensitivity.
+fn read_station_xml(path: &Path) -> anyhow::Result<Vec<Instrument>> {
+    let text = bytes(path)?;
+    station_xml(&String::from_utf8_lossy(&text)).with_context(|| path.display().to_string())
 }
 
 /// Returns files beside one that have the extension of `StationXML`, sorted by name.
