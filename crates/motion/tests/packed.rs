@@ -63,11 +63,19 @@ fn gzipped(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn zipped(files: &[(&str, &[u8])]) -> Vec<u8> {
+    zipped_by(zip::CompressionMethod::Deflated, files)
+}
+
+/// Returns a zip without compression.
+fn stored(files: &[(&str, &[u8])]) -> Vec<u8> {
+    zipped_by(zip::CompressionMethod::Stored, files)
+}
+
+fn zipped_by(method: zip::CompressionMethod, files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut out = zip::ZipWriter::new(Cursor::new(Vec::new()));
-    let deflated = zip::write::SimpleFileOptions::default()
-        .compression_method(zip::CompressionMethod::Deflated);
+    let options = zip::write::SimpleFileOptions::default().compression_method(method);
     for (name, bytes) in files {
-        out.start_file(*name, deflated).unwrap();
+        out.start_file(*name, options).unwrap();
         out.write_all(bytes).unwrap();
     }
     out.finish().unwrap().into_inner()
@@ -103,6 +111,26 @@ fn archives_that_hold_no_single_record_are_refused_in_words() {
     refused(&gzipped(&vec![b'0'; 200 << 20]), "at most 12 MB");
     // A nested archive is not opened.
     refused(&gzipped(&gz), "expected");
+}
+
+#[test]
+fn a_component_that_cannot_be_unpacked_refuses_the_archive() {
+    let mut files = three();
+    let named: Vec<(&str, &[u8])> = files.iter().map(|(n, b)| (n.as_str(), b.as_slice())).collect();
+    assert_eq!(given(&stored(&named), "three.zip").channels.len(), 3);
+    let mut damaged = stored(&named);
+    // The last digit of the second component's data, so that its checksum is wrong.
+    let second = files.swap_remove(1).1;
+    let at = damaged.windows(second.len()).position(|part| part == second).unwrap();
+    damaged[at + second.len() - 2] ^= 1;
+    let error = read(&damaged, "three.zip", &ReadOptions::default()).unwrap_err();
+    assert_eq!(error.refusal, Refusal::Damaged, "{error}");
+    // What is no component may be damaged.
+    let record = (files[0].0.as_str(), files[0].1.as_slice());
+    let mut other = stored(&[record, ("cover.pdf", b"%PDF-1.4 page")]);
+    let at = other.windows(4).position(|part| part == b"page").unwrap();
+    other[at] ^= 1;
+    assert_eq!(given(&other, "one.zip").channels.len(), 1);
 }
 
 fn tarred(files: &[(&str, &[u8])]) -> Vec<u8> {

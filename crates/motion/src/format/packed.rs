@@ -43,6 +43,16 @@ pub(super) fn read(
 fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
     let inside = Source::new(name, bytes);
     check_bytes(&inside)?;
+    let zip = bytes.starts_with(b"PK\x03\x04") && !super::zip::is_numpy(bytes);
+    if zip || bytes.starts_with(&[0x1F, 0x8B]) {
+        return Err(inside.error(
+            (),
+            Refusal::Unrecognized,
+            "a record, or an archive inside one other archive",
+            "an archive packed more often",
+            "unpack it and give what it holds",
+        ));
+    }
     read_any(&inside, options)
 }
 
@@ -88,6 +98,14 @@ fn from_archive(
     let Some((_, mut record)) = found.pop() else {
         return Err(none(source, &names, left_out));
     };
+    // A component that cannot be read is missing, which would change every measure of both horizontals.
+    let ending = |file: &str| file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    let alike = |file: &str| record.file.split(", ").any(|read| ending(read) == ending(file));
+    let lost =
+        |(file, error): &(String, ReadError)| error.refusal == Refusal::Damaged && alike(file);
+    if let Some(at) = left_out.iter().position(lost) {
+        return Err(left_out.swap_remove(at).1);
+    }
     let prefix = format!("{}/", source.name);
     let files: Vec<&str> =
         record.file.split(", ").map(|file| file.strip_prefix(&prefix).unwrap_or(file)).collect();
@@ -184,13 +202,22 @@ fn none(
     names: &[String],
     mut left_out: Vec<(String, ReadError)>,
 ) -> ReadError {
-    if names.iter().any(|name| name == "[Content_Types].xml") {
+    if names.iter().any(|name| name == "[Content_Types].xml" || name == "mimetype") {
         return source.error(
             (),
             Refusal::Unrecognized,
             "a record",
             "an Excel, Word or LibreOffice file",
             "save the sheet as CSV, with time and acceleration in columns, and give that file",
+        );
+    }
+    if names.is_empty() {
+        return source.error(
+            (),
+            Refusal::Unrecognized,
+            "a record",
+            "an archive without files, except hidden ones",
+            "give an archive with the acceleration files of a record",
         );
     }
     let missing = |(_, error): &(String, ReadError)| matches!(error.refusal, Refusal::Missing(_));
