@@ -85,7 +85,12 @@ impl Utc {
 
     /// Parses the first six numbers of a text such as `8/24/14, 10:20:33.0 UTC`; a year of two digits lies
     /// between 1950 and 2049.
+    ///
+    /// A difference from universal time behind the time of day, such as `+03:00`, is taken off; `AM` and `PM` count.
     pub(crate) fn in_header(text: &str, order: DateOrder) -> Option<Self> {
+        let (text, offset) = without_offset(text);
+        let lower = text.to_ascii_lowercase();
+        let half = ["am", "pm"].into_iter().find(|half| lower.trim_end().ends_with(half));
         let mut numbers = text
             .split(|c: char| !c.is_ascii_digit() && c != '.')
             .filter(|part| part.contains(|c: char| c.is_ascii_digit()))
@@ -94,7 +99,10 @@ impl Utc {
         #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
         let whole = |value: f64| value as i64;
         let date = [next()?, next()?, next()?].map(whole);
-        let (hour, minute, seconds) = (whole(next()?), whole(next()?), next().unwrap_or(0.0));
+        let (mut hour, minute, seconds) = (whole(next()?), whole(next()?), next().unwrap_or(0.0));
+        if let Some(half) = half.filter(|_| (1..=12).contains(&hour)) {
+            hour = hour % 12 + if half == "pm" { 12 } else { 0 };
+        }
         let [first, second, third] = date;
         let (mut year, month, day) = match order {
             _ if first >= 1000 => (first, second, third),
@@ -104,8 +112,24 @@ impl Utc {
         if (0..100).contains(&year) {
             year += if year < 50 { 2000 } else { 1900 };
         }
-        Self::new(year, month, day, hour, minute, seconds)
+        Self::new(year, month, day, hour, minute, seconds).map(|local| local.later(-offset))
     }
+}
+
+/// Splits a difference from universal time (s), such as `+03:00`, off the end of a time of day.
+fn without_offset(text: &str) -> (&str, f64) {
+    let split = || {
+        let at = text.rfind(['+', '-'])?;
+        let (before, sign) =
+            (text.get(..at)?, if text[at..].starts_with('-') { -1.0 } else { 1.0 });
+        let digits: Vec<&str> = text[at + 1..].trim().splitn(2, ':').collect();
+        let [hours, minutes] = digits.as_slice() else { return None };
+        let two = |part: &str| (part.len() == 2).then(|| part.parse::<u32>().ok()).flatten();
+        // A date has dashes, too, but no time of day before them.
+        let offset = f64::from(two(hours)? * 3600 + two(minutes)? * 60);
+        before.contains(':').then_some((before, sign * offset))
+    };
+    split().unwrap_or((text, 0.0))
 }
 
 fn is_leap(year: i64) -> bool {
@@ -196,6 +220,11 @@ mod tests {
         assert_eq!(us("08/24/2014, 10:20:33.000 UTC (Q=2)"), napa);
         assert_eq!(us("2014/08/24 10:20:33.0 UTC (Q=5)"), napa);
         assert_eq!(Utc::in_header("24/08/2014 10:20:33.000000 (GMT)", DateOrder::DayFirst), napa);
+        assert_eq!(us("2014-08-24T12:20:33+02:00"), napa);
+        assert_eq!(us("2014-08-24 06:20:33 -04:00"), napa);
+        assert_eq!(us("8/24/2014 10:20:33 AM"), napa);
+        assert_eq!(us("8/24/2014 12:20:33 AM"), Utc::new(2014, 8, 24, 0, 20, 33.0));
+        assert_eq!(us("8/24/2014 10:20:33 PM"), Utc::new(2014, 8, 24, 22, 20, 33.0));
         for nothing in ["", "To be determined", "13/45/14, 10:20:33", "2014 02 30 1 1 1", "1 2 3"] {
             assert_eq!(us(nothing), None, "{nothing}");
         }
