@@ -107,7 +107,10 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     assert!(told.starts_with("6 records measured (5 of them before)"), "{told}");
 
     let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
-    refused(&other.map(str::to_owned), "holds the table of another command");
+    refused(
+        &other.map(str::to_owned),
+        "holds the table of another command, of other options or of another version: name",
+    );
     refused(&["info", text(&records)].map(str::to_owned), "--out DIR");
 
     // Files of others are not overwritten, nor is a folder shared.

@@ -88,11 +88,12 @@ impl Journal {
             let found = serde_json::from_slice::<serde_json::Value>(&line).ok();
             // A truncated head, as a killed process leaves it, is ours as well.
             if at == 0 && !head.as_bytes().starts_with(&line) {
-                let settings = found.as_ref().and_then(|first| first["settings"].as_str());
-                let whose = settings.map_or_else(
-                    || "a rows.jsonl that is none of this program".to_owned(),
-                    |settings| format!("the table of another command ({settings})"),
-                );
+                let ours = found.as_ref().is_some_and(|first| first["settings"].is_string());
+                let whose = if ours {
+                    "the table of another command, of other options or of another version"
+                } else {
+                    "a rows.jsonl that is none of this program"
+                };
                 bail!(
                     "{} holds {whose}: name another folder, or remove rows.jsonl there",
                     out.display()
