@@ -174,3 +174,52 @@ fn steps_counts_and_lengths_that_no_strong_motion_has_are_told() {
         assert!(told(&record).contains(word), "{}", told(&record));
     }
 }
+
+fn text(file: &str) -> String {
+    String::from_utf8(bytes(file)).unwrap()
+}
+
+#[test]
+fn layouts_of_other_programs_read_as_the_same_numbers() {
+    let csmnc = text("csmnc/example.dat");
+    let at = csmnc.find("0.000000 20.17").unwrap();
+    let (header, values) = csmnc.split_at(at);
+    let one_a_line: Vec<&str> = values.split_whitespace().collect();
+    let changed = given(format!("{header}{}\n", one_a_line.join("\n")).as_bytes());
+    assert_eq!(changed.channels, given(csmnc.as_bytes()).channels);
+
+    let rows: String = (0..60).map(|k| format!("{:.4}\n", (0.3 * f64::from(k)).sin())).collect();
+    let header = "Station: NOW\nNPTS: 60\nDT: 0.005\nunit: cm/s2\n";
+    let record = given(format!("{header}{rows}").as_bytes());
+    assert_eq!(record.channels[0].acceleration.len(), 60);
+    assert!((record.channels[0].time_step - 0.005).abs() < 1e-12);
+
+    let bbp = text("bbp/example.000");
+    let stated = given(bbp.replacen("made", "cm/s/s", 1).as_bytes());
+    let unit = "cm/s2".parse().ok();
+    let with = read(bbp.as_bytes(), "file", &ReadOptions { unit, ..ReadOptions::default() });
+    assert_eq!(stated.channels[0].acceleration, with.unwrap().channels[0].acceleration);
+}
+
+#[test]
+fn reasons_name_what_is_wrong() {
+    let reason = |text: &str| {
+        read(text.as_bytes(), "file", &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let rows = |time: &dyn Fn(u32) -> String| -> String {
+        (0..60).map(|k| format!("{},{}.5\n", time(k), k % 7)).collect()
+    };
+    let second = |k: u32| format!("{}.{:02}", k / 100, k % 100);
+    let table = |rows: &str| format!("time (s),acc (cm/s2)\n{rows}");
+    let dated = table(&rows(&|k| format!("2020-01-01T00:00:0{}", second(k))));
+    assert!(reason(&dated).contains("a date or a time of day"), "{}", reason(&dated));
+    let plain = table(&rows(&second));
+    let empty = plain.replace("0.09,2.5", "0.09,");
+    assert!(reason(&empty).contains("empty"), "{}", reason(&empty));
+    let comma = plain.replace("0.09,2.5", "0.09,1,002.5");
+    assert!(reason(&comma).contains("comma"), "{}", reason(&comma));
+    let geocsv = format!("# dataset: GeoCSV 2.0\n# delimiter: ,\n{plain}");
+    assert!(reason(&geocsv).contains("GeoCSV (EarthScope)"), "{}", reason(&geocsv));
+    let longer = format!("{}0.5 0.5 0.5 0.5 0.5\n", text("sac-text/example.sac"));
+    assert!(reason(&longer).contains("lines were added"), "{}", reason(&longer));
+}

@@ -4,14 +4,14 @@
 //! Accelerations and velocities have the same layout, and the files state neither quantity nor unit: the unit is
 //! an option of the caller. Files of four columns with a time (`.bbp`) are plain columns.
 
-use super::source::{LARGEST_ACCELERATION, Source, parse_number};
+use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};
 use crate::direction::{Direction, Orientation};
 use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::differentiated;
 use crate::math;
 use crate::record::{Channel, Quantity, Record, Stage};
-use crate::units::AccelerationUnit;
+use crate::units::{AccelerationUnit, MotionUnit};
 
 pub(crate) const FORMAT: Format =
     Format { name: "bbp", title: "Broadband Platform text (SCEC)", sniff, read };
@@ -43,18 +43,32 @@ fn sniff(source: &Source<'_>) -> bool {
 fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     source.require_text()?;
     let (count, time_step) = count_and_step(source).ok_or_else(|| {
-        source.header(1, "count, step and six more numbers", super::quoted(&source.text(1)))
+        source.header(1, "count, step and six more numbers", quoted(&source.text(1)))
     })?;
     let mut values = source.all_tokens(2, source.lines.len(), 1e12)?;
     let mut record = Record::new(FORMAT.name, source.name, Stage::Unknown);
     let used = super::check_count(source, &mut record, 1, count, values.len())?;
     values.truncate(used);
+    let stated = stated_unit(source);
     let velocity = hints.recorded() == Some(Quantity::Velocity);
-    // Velocities of the platform are in cm/s.
-    let factor = if velocity {
-        AccelerationUnit::Gal.factor()
-    } else {
-        hints.unit().map(AccelerationUnit::factor).ok_or_else(|| missing_unit(source, &values))?
+    let factor = match stated {
+        Some(MotionUnit { quantity: Quantity::Acceleration, factor }) => factor,
+        Some(MotionUnit { quantity: Quantity::Velocity, factor }) if velocity => factor,
+        Some(_) => {
+            return Err(source.not_acceleration(
+                0,
+                "accelerations",
+                quoted(&source.text(0)),
+                "give the accelerations of the same station, or state that velocities are to be \
+                 differentiated",
+            ));
+        }
+        // Velocities of the platform are in cm/s.
+        None if velocity => AccelerationUnit::Gal.factor(),
+        None => hints
+            .unit()
+            .map(AccelerationUnit::factor)
+            .ok_or_else(|| missing_unit(source, &values))?,
     };
     for (index, value) in values.iter_mut().enumerate() {
         *value *= factor;
@@ -86,11 +100,19 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
+/// Returns the unit that the title states behind station and component, as some programs write it.
+fn stated_unit(source: &Source<'_>) -> Option<MotionUnit> {
+    let text = source.text(0).to_lowercase();
+    let words = text.split([' ', '\t', '(', ')', '[', ']', ',']).filter(|word| !word.is_empty());
+    // A length alone may be a word of the title, such as "in".
+    words.skip(2).filter_map(MotionUnit::parse).find(|u| u.quantity != Quantity::Displacement)
+}
+
 fn missing_unit(source: &Source<'_>, values: &[f64]) -> ReadError {
     source.error(
         (),
         Refusal::Missing(Given::Unit),
-        "a unit of acceleration (Broadband Platform text states none)",
+        "a unit of acceleration (this Broadband Platform text states none)",
         format!("numbers up to {:.4} without one", math::peak(values)),
         "state the unit of accelerations, mostly cm/s2, or that velocities in cm/s are to be \
          differentiated",

@@ -55,13 +55,17 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let time_step = number(count_line, "INTERVALS OF", "a step (s)")?;
     let peak_line = need("PEAK VALUE")?;
     check_duration(source, peak_line, count, time_step)?;
-    let first = (peak_line + 1..source.lines.len())
-        .find(|&line| {
-            let mut row = Vec::new();
-            let numbers = source.tokens(line, f64::INFINITY, &mut row).is_ok();
-            // A line of the header may be a single number, such as that of the record.
-            numbers && (row.len() > 1 || (row.len() == 1 && line + 1 == source.lines.len()))
-        })
+    let numbers = |line: usize| {
+        let mut row = Vec::new();
+        source.tokens(line, f64::INFINITY, &mut row).map_or(0, |()| row.len())
+    };
+    let below = peak_line + 1..source.lines.len();
+    // A line of the header may be a single number, such as that of the record; values one to a line are as many as
+    // stated.
+    let first = below
+        .clone()
+        .find(|&line| numbers(line) > 1)
+        .or_else(|| below.clone().rev().take_while(|&line| numbers(line) == 1).take(count).last())
         .ok_or_else(|| source.cut(format!("{count} values"), "none"))?;
     let limit = LARGEST_ACCELERATION / unit.factor();
     let mut values = source.all_tokens(first, source.lines.len(), limit)?;

@@ -155,6 +155,7 @@ const KNOWN_OTHERS: &[Format] = &[
     refused::HDF5,
     refused::WEB_PAGE,
     refused::XML,
+    refused::GEOCSV,
     refused::USGS_BLOCKS,
     refused::SLAMMER,
     refused::COSMOS_SPECTRA,
@@ -209,6 +210,19 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
 fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(source))
     else {
+        if let Some(line) = refused::clock_times(source) {
+            return Err(source.error(
+                line,
+                Refusal::Unrecognized,
+                "times in seconds",
+                format!(
+                    "{}, a row that begins with a date or a time of day",
+                    quoted(&source.text(line))
+                ),
+                "write the seconds since the first sample in place of dates and times of day, or \
+                 values alone below a line with the step",
+            ));
+        }
         let first_line = || format!("\"{}\" as first line", shorten(&source.text(0)));
         return Err(source.error(
             (),

@@ -6,11 +6,12 @@
 //! 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings surveyed over 2416
 //! files.
 
+use super::columns::facts;
 use super::source::{LARGEST_ACCELERATION, Source, leading_number, leading_text, quoted};
 use super::{Format, Hints};
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};
-use crate::record::{Channel, Record, Stage};
+use crate::record::{Channel, Quantity, Record, Stage};
 use crate::units::AccelerationUnit;
 use crate::write::{NO_EVENT, NO_STATION};
 
@@ -27,7 +28,9 @@ struct Counts {
 }
 
 fn sniff(source: &Source<'_>) -> bool {
-    (0..HEADER_LINES.min(source.lines.len())).any(|line| source.has(line, "NPTS"))
+    // Other headers state count and step on lines of their own.
+    (0..HEADER_LINES.min(source.lines.len()))
+        .any(|line| source.has(line, "NPTS") && source.has(line, "DT"))
 }
 
 fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
@@ -123,7 +126,9 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
 
 /// Parses `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
-    let line = (0..HEADER_LINES).find(|&line| source.has(line, "NPTS")).unwrap_or(0);
+    let line = (0..HEADER_LINES)
+        .find(|&line| source.has(line, "NPTS") && source.has(line, "DT"))
+        .unwrap_or(0);
     let after = source.number_after(line, "NPTS").zip(source.number_after(line, "DT"));
     let before = leading_text(source.raw(line)).and_then(|(count, text)| {
         let rest = source.find(line, &text)? + text.len();
@@ -174,7 +179,14 @@ fn find_unit(
             });
         }
     }
-    hints.unit().ok_or_else(|| {
+    // Headers of other programs state it in their own words.
+    let elsewhere = (0..=last).find_map(|line| facts::unit(&facts::folded(source.raw(line))));
+    let known = AccelerationUnit::ALL.into_iter().find(|known| {
+        elsewhere.is_some_and(|unit| {
+            unit.quantity == Quantity::Acceleration && unit.factor == known.factor()
+        })
+    });
+    known.or_else(|| hints.unit()).ok_or_else(|| {
         source.error(
             (),
             Refusal::Missing(Given::Unit),

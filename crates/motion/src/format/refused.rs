@@ -89,6 +89,33 @@ fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }
 
+/// Returns the first of two rows in succession that begin with a date or a time of day and end with a number.
+pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
+    let clock = |text: &str| {
+        let numbers = |text: &str, marks: &[char]| {
+            let mut parts = text.split(marks);
+            parts.clone().count() >= 3
+                && parts.all(|part| part.starts_with(|c: char| c.is_ascii_digit()))
+        };
+        let date = text.split('T').next().unwrap_or_default();
+        numbers(text, &[':']) || numbers(date, &['-', '/'])
+    };
+    let dated = |line: usize| {
+        let text = source.text(line);
+        let fields: Vec<&str> = text
+            .split([',', ';', '\t', ' '])
+            .map(|f| f.trim_matches('"'))
+            .filter(|f| !f.is_empty())
+            .collect();
+        let [first, .., last] = fields.as_slice() else { return false };
+        clock(first) && parse_number(last.as_bytes()).is_some()
+    };
+    (0..source.lines.len().min(MOST_HEADER_LINES)).find(|&line| dated(line) && dated(line + 1))
+}
+
+/// Number of lines searched for rows.
+const MOST_HEADER_LINES: usize = 100;
+
 /// Declares a format that is recognized by its first bytes and refused by its name.
 macro_rules! refused_by_name {
     ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {
@@ -137,6 +164,13 @@ refused_by_name!(
     "miniSEED 3",
     |source| source.bytes.starts_with(b"MS\x03"),
     "convert it to miniSEED 2 with mseedconvert and give that file"
+);
+refused_by_name!(
+    GEOCSV,
+    "geocsv",
+    "GeoCSV (EarthScope)",
+    |source| (0..4).any(|line| source.has(line, "dataset: GeoCSV")),
+    "download the same data as miniSEED, or as the text SLIST or TSPAIR, and give that file"
 );
 refused_by_name!(
     GSE1,

@@ -45,6 +45,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             let remedy = "give a time series; spectra and pairs of time and value are not read";
             return Err(source.not_acceleration((), stated, found, remedy));
         }
+        if values.len() > points {
+            let remedy = "the header belongs to another file, or lines were added; get it again from \
+                          its source";
+            return Err(source.damaged((), stated, found, remedy));
+        }
         return Err(source.cut(stated, found));
     }
     let mut bytes = Vec::with_capacity(632 + 4 * points);
