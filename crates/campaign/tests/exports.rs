@@ -113,7 +113,7 @@ fn scatter_of_losses_is_feasible_wherever_openquake_interpolates_and_means_are_o
                     let ours = losses.fallen(0.01 * x) / 6.0;
                     // What is allowed, with the ends of the pieces in which it is tested.
                     let off = (m - ours).abs();
-                    assert!(off < 3e-3 * ours + 2e-5, "{name} at {x} cm/s: {m} and {ours}");
+                    assert!(off < 3e-3 * ours + 2e-7, "{name} at {x} cm/s: {m} and {ours}");
                 }
             }
             // At the levels themselves the scatter is that of the cases, but for its bound.
@@ -176,16 +176,16 @@ fn ours(decision: &Decision, intensity: f64) -> Vec<f64> {
     fits.map(|fit| fit.curve.probability(intensity)).collect()
 }
 
-/// A Python that has a module: the one that `BARRELSTACK_PYTHON` names, else `python3`.
+/// A Python that has a module: the one that `BARRELSTACK_PYTHON` names, which then must have it, else `python3`.
 fn python(module: &str) -> Option<String> {
-    let name = std::env::var("BARRELSTACK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let named = std::env::var("BARRELSTACK_PYTHON").ok();
+    let name = named.clone().unwrap_or_else(|| "python3".to_owned());
     let import = Command::new(&name).args(["-c", &format!("import {module}")]).output();
-    if import.is_ok_and(|done| done.status.success()) {
+    if import.as_ref().is_ok_and(|done| done.status.success()) {
         return Some(name);
     }
-    skipped(&format!(
-        "{name} has no module {module}: install it, and name its Python in BARRELSTACK_PYTHON"
-    ));
+    assert!(named.is_none(), "{name} cannot import {module}: {import:?}");
+    skipped(&format!("python3 has no module {module}; `cargo xtask python heavy` installs it"));
     None
 }
 
@@ -220,7 +220,7 @@ for demand in demands:
 ";
 
 #[test]
-#[ignore = "needs Pelicun; run by hand: BARRELSTACK_PYTHON=… cargo test --test exports -- --ignored"]
+#[ignore = "needs Pelicun; `cargo xtask python heavy` runs it"]
 fn pelicun_computes_the_damage_that_we_compute() {
     let Some(python) = python("pelicun.assessment") else { return };
     let (decision, found) = exported(&gradual(), "stack");
@@ -305,7 +305,7 @@ fn openquake(
 }
 
 #[test]
-#[ignore = "needs OpenQuake; run by hand: BARRELSTACK_PYTHON=… cargo test --test exports -- --ignored"]
+#[ignore = "needs OpenQuake; `cargo xtask python heavy` runs it"]
 fn openquake_computes_the_damage_that_we_compute() {
     let Some(python) = python("openquake.calculators.base") else { return };
     let (decision, found) = exported(&gradual(), "stack");
@@ -330,7 +330,7 @@ fn openquake_computes_the_damage_that_we_compute() {
 }
 
 #[test]
-#[ignore = "needs OpenQuake; run by hand: BARRELSTACK_PYTHON=… cargo test --test exports -- --ignored"]
+#[ignore = "needs OpenQuake; `cargo xtask python heavy` runs it"]
 fn openquake_computes_the_losses_that_we_compute() {
     let Some(python) = python("openquake.calculators.base") else { return };
     // All or nothing scatters as much as a ratio can.

@@ -101,7 +101,7 @@ const MOST_BETWEEN: f64 = 0.999;
 
 /// Largest relative difference of a mean that is interpolated linearly from ours, which is linear in the logarithm, and
 /// the absolute one that is allowed near nothing.
-const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-5];
+const MEAN_TOLERANCE: [f64; 2] = [2e-3, 1e-7];
 
 /// A level of a vulnerability function.
 #[derive(Clone, Copy, Debug, PartialEq)]
