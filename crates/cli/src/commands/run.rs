@@ -118,7 +118,8 @@ pub(super) fn answered(
 ) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer = variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
+    let mut answer =
+        variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
     answer.decides.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     Ok(answer)
 }

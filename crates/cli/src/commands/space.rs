@@ -101,7 +101,8 @@ pub(super) fn render(
 fn answered(scenario: &Scenario, selection: Asked, show: bool) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
-    let mut answer = variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
+    let mut answer =
+        variants::answer(scenario, selection, &mut |reached| progress.advance(reached))?;
     answer.summary.run.wall_seconds = Some(start.elapsed().as_secs_f64());
     Ok(answer)
 }

@@ -286,12 +286,11 @@ fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     let rest = rest.trim_start_matches([' ', ':', '=']);
     let (number, at) = number_with_comma(rest);
     let printed = leading_printed(number.as_bytes())?;
-    let at = match at {
-        Some(at) => at,
-        None => {
-            let (_, text) = leading_text(rest.as_bytes())?;
-            rest.find(&text)? + text.len()
-        }
+    let at = if let Some(at) = at {
+        at
+    } else {
+        let (_, text) = leading_text(rest.as_bytes())?;
+        rest.find(&text)? + text.len()
     };
     let behind = rest[at..].trim_start_matches([' ', '(', '[']);
     let word = behind.split([' ', ',', ';', ')', ']', '\t']).next().unwrap_or("");

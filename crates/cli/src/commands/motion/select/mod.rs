@@ -123,7 +123,8 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     }
     let (rows, left_out) = args.limits.rows(&found.table);
     let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
-    let mut statement = left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
+    let mut statement =
+        left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
     let [least, largest] = args.scale.ends();
     let choosing = Choosing {
         count: args.count.unwrap_or(USUAL_COUNT),
