@@ -7,6 +7,8 @@ use crate::error::MotionError;
 
 const MICROSECOND: f64 = 1e-6;
 const DAY: i64 = 86_400_000_000;
+/// Whole hours by which a local time differs from universal time at most.
+const LARGEST_OFFSET: u32 = 14;
 
 /// An instant of universal time (UTC), to the microsecond; leap seconds are not counted.
 ///
@@ -122,11 +124,19 @@ fn without_offset(text: &str) -> (&str, f64) {
         let at = text.rfind(['+', '-'])?;
         let (before, sign) =
             (text.get(..at)?, if text[at..].starts_with('-') { -1.0 } else { 1.0 });
-        let digits: Vec<&str> = text[at + 1..].trim().splitn(2, ':').collect();
-        let [hours, minutes] = digits.as_slice() else { return None };
-        let two = |part: &str| (part.len() == 2).then(|| part.parse::<u32>().ok()).flatten();
+        // `+03:00`, `+0300` and `+03`, also in parentheses or behind `UTC`.
+        let digits = text[at + 1..].trim().trim_end_matches(')').replace(':', "");
+        let number = digits.bytes().all(|c| c.is_ascii_digit()).then_some(digits)?;
+        let (hours, minutes) = match number.len() {
+            2 => (number.parse::<u32>().ok()?, 0),
+            4 => (number[..2].parse().ok()?, number[2..].parse().ok()?),
+            _ => return None,
+        };
+        if hours > LARGEST_OFFSET || minutes >= 60 {
+            return None;
+        }
         // A date has dashes, too, but no time of day before them.
-        let offset = f64::from(two(hours)? * 3600 + two(minutes)? * 60);
+        let offset = f64::from(hours * 3600 + minutes * 60);
         before.contains(':').then_some((before, sign * offset))
     };
     split().unwrap_or((text, 0.0))
@@ -215,13 +225,15 @@ mod tests {
         assert_eq!(Utc::new(2000, 1, 1, 0, 0, 0.0).unwrap().microseconds, 946_684_800_000_000);
         let napa = Utc::new(2014, 8, 24, 10, 20, 33.0);
         assert_eq!(napa, Utc::ordinal(2014, 236, 10, 20, 33.0));
-        let us = |text| Utc::in_header(text, DateOrder::MonthFirst);
+        let us = |text: &str| Utc::in_header(text, DateOrder::MonthFirst);
         assert_eq!(us(" 8/24/14, 10:20:33.0 UTC (GPS)"), napa);
         assert_eq!(us("08/24/2014, 10:20:33.000 UTC (Q=2)"), napa);
         assert_eq!(us("2014/08/24 10:20:33.0 UTC (Q=5)"), napa);
         assert_eq!(Utc::in_header("24/08/2014 10:20:33.000000 (GMT)", DateOrder::DayFirst), napa);
         assert_eq!(us("2014-08-24T12:20:33+02:00"), napa);
-        assert_eq!(us("2014-08-24 06:20:33 -04:00"), napa);
+        for local in ["06:20:33 -04:00", "06:20:33-0400", "06:20:33 -04", "13:20:33 (UTC+0300)"] {
+            assert_eq!(us(&format!("2014-08-24 {local}")), napa, "{local}");
+        }
         assert_eq!(us("8/24/2014 10:20:33 AM"), napa);
         assert_eq!(us("8/24/2014 12:20:33 AM"), Utc::new(2014, 8, 24, 0, 20, 33.0));
         assert_eq!(us("8/24/2014 10:20:33 PM"), Utc::new(2014, 8, 24, 22, 20, 33.0));

@@ -6,6 +6,9 @@ use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::{Quantity, Record};
 
+/// Number of lines among which rows that begin with a date are looked for.
+const LINES_BEFORE_DATES: usize = 100;
+
 pub(crate) const HDF5: Format = Format {
     name: "hdf5",
     title: "HDF5 and ASDF containers (refused)",
@@ -110,11 +113,8 @@ pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
         let [first, .., last] = fields.as_slice() else { return false };
         clock(first) && parse_number(last.as_bytes()).is_some()
     };
-    (0..source.lines.len().min(MOST_HEADER_LINES)).find(|&line| dated(line) && dated(line + 1))
+    (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| dated(line) && dated(line + 1))
 }
-
-/// Number of lines searched for rows.
-const MOST_HEADER_LINES: usize = 100;
 
 /// Declares a format that is recognized by its first bytes and refused by its name.
 macro_rules! refused_by_name {

@@ -1,5 +1,9 @@
 //! Data stated in the words of a header: step, count, duration, unit, peak, component.
 
+use super::words::{
+    ACCELERATIONS, BARE, BESIDE_STEPS, COMPONENT_KEYS, COUNT_KEYS, DISPLACEMENTS, DURATION_KEYS,
+    OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS, VELOCITIES,
+};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::format::source::{Source, latin1, leading_printed, leading_text, quoted};
@@ -40,156 +44,9 @@ pub(super) struct Facts {
     pub(super) component: Option<String>,
 }
 
-const STEP_KEYS: &[&str] = &[
-    "dt",
-    "delta t",
-    "delta-t",
-    "delta_t",
-    "deltat",
-    "time step",
-    "timestep",
-    "time-step",
-    "time_step",
-    "time increment",
-    "time interval",
-    "time intervals",
-    "sampling interval",
-    "sample interval",
-    "sampling period",
-    "sample period",
-    "sampling time",
-    "sampling step",
-    "intervals of",
-    "equally spaced at",
-    "passo di campionamento",
-    "intervallo di campionamento",
-    "intervalo de muestreo",
-    "ornekleme araligi",
-    "pas de temps",
-    "pas d'echantillonnage",
-    "zeitschritt",
-    "abtastintervall",
-    "intervalo de amostragem",
-    "intervalo de tiempo",
-    "paso de tiempo",
-    "passo temporale",
-    "time between samples",
-    "interval of sampling",
-];
-const RATE_KEYS: &[&str] = &[
-    "sampling rate",
-    "sample rate",
-    "sampling_rate",
-    "samplerate",
-    "sampling frequency",
-    "sampling freq",
-    "sample frequency",
-    "fs",
-    "frequenza di campionamento",
-    "frecuencia de muestreo",
-    "tasa de muestreo",
-    "taxa de amostragem",
-    "frequencia de amostragem",
-    "frequence d'echantillonnage",
-    "abtastrate",
-    "abtastfrequenz",
-    "ornekleme frekansi",
-    "ornekleme hizi",
-    "samples per second",
-    "samples per sec",
-    "samples/second",
-    "samples/sec",
-    "f_s",
-];
-/// Words of a sampling interval or rate, of which the unit or the size of the number says which.
-const SAMPLING_KEYS: &[&str] = &[
-    "sampling",
-    "sampled at",
-    "resampled to",
-    "rate",
-    "muestreo",
-    "campionamento",
-    "amostragem",
-    "abtastung",
-    "delta",
-    "step",
-    "interval",
-    "intervalo",
-    "intervallo",
-    "increment",
-];
-/// Words of [`SAMPLING_KEYS`] that need no unit beside the number.
-const BARE: &[&str] =
-    &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
-/// Words beside a number with a unit of time that make it the step.
-const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 /// Largest step (s) and smallest rate (Hz) of statements that do not name the quantity.
 const LARGEST_UNNAMED_STEP: f64 = 0.1;
 const SMALLEST_UNNAMED_RATE: f64 = 20.0;
-const COUNT_KEYS: &[&str] = &[
-    "npts",
-    "ndata",
-    "nsamp",
-    "nsamples",
-    "no. of points",
-    "no of points",
-    "no. of data",
-    "no. of samples",
-    "number of points",
-    "number of samples",
-    "number of data",
-    "number of data points",
-    "number of values",
-    "number of acceleration values",
-    "number of acceleration points",
-    "num samples",
-    "num_samples",
-    "samples",
-    "points",
-    "data points",
-    "numero dati",
-    "numero di campioni",
-    "numero de datos",
-    "numero de muestras",
-    "numero de amostras",
-    "nombre de points",
-    "nombre d'echantillons",
-    "anzahl der werte",
-    "anzahl werte",
-    "veri sayisi",
-    "muestras",
-];
-const DURATION_KEYS: [&str; 5] =
-    ["duration", "record length", "length of record", "total time", "length"];
-const PEAK_KEYS: [&str; 10] = [
-    "pga",
-    "peak ground acceleration",
-    "peak acceleration",
-    "peak acc",
-    "peak value",
-    "max. acc.",
-    "max. acc",
-    "max acc",
-    "maximum acceleration",
-    "max acceleration",
-];
-const COMPONENT_KEYS: [&str; 7] =
-    ["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
-/// Words before a key that change its meaning.
-const OTHER_MEANING: [&str; 12] = [
-    "original",
-    "orig",
-    "raw",
-    "significant",
-    "bracketed",
-    "effective",
-    "uniform",
-    "strong",
-    "event",
-    "pre-event",
-    "post-event",
-    "instrument",
-];
 
 impl Facts {
     /// Reads header lines, except those with names of columns.
@@ -385,20 +242,6 @@ fn step(text: &str) -> Option<f64> {
     by_step.or_else(by_rate)
 }
 
-/// Words behind the number of samples in a second.
-const RATE_MARKS: &[&str] = &[
-    "sps",
-    "samples/sec",
-    "samples/second",
-    "samples/s",
-    "samples per second",
-    "samples per sec",
-    "pts/sec",
-    "muestras por segundo",
-    "campioni al secondo",
-    "amostras por segundo",
-];
-
 /// Returns the step (s) of a line that states it without its name: `Sampling: 200 Hz`, `interval 5 ms`, `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
@@ -503,12 +346,6 @@ fn peak(text: &str) -> Option<Peak> {
 pub(super) fn says_acceleration(lower: &str) -> bool {
     words(lower).any(|word| ACCELERATIONS.iter().any(|start| word.starts_with(start)))
 }
-
-/// First letters of words for an acceleration, a velocity and a displacement, in the languages of the agencies.
-pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
-pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
-pub(super) const DISPLACEMENTS: &[&str] =
-    &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())

@@ -8,6 +8,7 @@ pub(in crate::format) mod facts;
 mod names;
 mod rows;
 mod shape;
+mod words;
 
 use crate::direction::Direction;
 use crate::error::{Given, ReadError, Refusal};

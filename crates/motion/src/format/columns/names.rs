@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use super::facts::{ACCELERATIONS, DISPLACEMENTS, VELOCITIES, folded, time_factor};
+use super::facts::{folded, time_factor};
+use super::words::{ACCELERATIONS, DISPLACEMENTS, VELOCITIES};
 use crate::direction::Direction;
 use crate::error::ReadError;
 use crate::format::source::{Source, quoted};

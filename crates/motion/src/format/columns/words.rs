@@ -1,0 +1,184 @@
+//! Words of headers, in the languages of the agencies: lower case, without accents.
+
+/// Names of the time between samples.
+pub(super) const STEP_KEYS: &[&str] = &[
+    "dt",
+    "delta t",
+    "delta-t",
+    "delta_t",
+    "deltat",
+    "time step",
+    "timestep",
+    "time-step",
+    "time_step",
+    "time increment",
+    "time interval",
+    "time intervals",
+    "sampling interval",
+    "sample interval",
+    "sampling period",
+    "sample period",
+    "sampling time",
+    "sampling step",
+    "intervals of",
+    "equally spaced at",
+    "passo di campionamento",
+    "intervallo di campionamento",
+    "intervalo de muestreo",
+    "ornekleme araligi",
+    "pas de temps",
+    "pas d'echantillonnage",
+    "zeitschritt",
+    "abtastintervall",
+    "intervalo de amostragem",
+    "intervalo de tiempo",
+    "paso de tiempo",
+    "passo temporale",
+    "time between samples",
+    "interval of sampling",
+];
+
+/// Names of the number of samples in a second.
+pub(super) const RATE_KEYS: &[&str] = &[
+    "sampling rate",
+    "sample rate",
+    "sampling_rate",
+    "samplerate",
+    "sampling frequency",
+    "sampling freq",
+    "sample frequency",
+    "fs",
+    "frequenza di campionamento",
+    "frecuencia de muestreo",
+    "tasa de muestreo",
+    "taxa de amostragem",
+    "frequencia de amostragem",
+    "frequence d'echantillonnage",
+    "abtastrate",
+    "abtastfrequenz",
+    "ornekleme frekansi",
+    "ornekleme hizi",
+    "samples per second",
+    "samples per sec",
+    "samples/second",
+    "samples/sec",
+    "f_s",
+];
+
+/// Words of a sampling interval or rate, of which the unit or the size of the number says which.
+pub(super) const SAMPLING_KEYS: &[&str] = &[
+    "sampling",
+    "sampled at",
+    "resampled to",
+    "rate",
+    "muestreo",
+    "campionamento",
+    "amostragem",
+    "abtastung",
+    "delta",
+    "step",
+    "interval",
+    "intervalo",
+    "intervallo",
+    "increment",
+];
+
+/// Words of [`SAMPLING_KEYS`] that need no unit beside the number.
+pub(super) const BARE: &[&str] =
+    &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
+
+/// Words beside a number with a unit of time that make it the step.
+pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
+
+/// Names of the number of samples.
+pub(super) const COUNT_KEYS: &[&str] = &[
+    "npts",
+    "ndata",
+    "nsamp",
+    "nsamples",
+    "no. of points",
+    "no of points",
+    "no. of data",
+    "no. of samples",
+    "number of points",
+    "number of samples",
+    "number of data",
+    "number of data points",
+    "number of values",
+    "number of acceleration values",
+    "number of acceleration points",
+    "num samples",
+    "num_samples",
+    "samples",
+    "points",
+    "data points",
+    "numero dati",
+    "numero di campioni",
+    "numero de datos",
+    "numero de muestras",
+    "numero de amostras",
+    "nombre de points",
+    "nombre d'echantillons",
+    "anzahl der werte",
+    "anzahl werte",
+    "veri sayisi",
+    "muestras",
+];
+
+/// Names of the length of a record.
+pub(super) const DURATION_KEYS: &[&str] =
+    &["duration", "record length", "length of record", "total time", "length"];
+
+/// Names of the peak acceleration.
+pub(super) const PEAK_KEYS: &[&str] = &[
+    "pga",
+    "peak ground acceleration",
+    "peak acceleration",
+    "peak acc",
+    "peak value",
+    "max. acc.",
+    "max. acc",
+    "max acc",
+    "maximum acceleration",
+    "max acceleration",
+];
+
+/// Names of the component.
+pub(super) const COMPONENT_KEYS: &[&str] =
+    &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
+
+/// Words before a key that change its meaning.
+pub(super) const OTHER_MEANING: &[&str] = &[
+    "original",
+    "orig",
+    "raw",
+    "significant",
+    "bracketed",
+    "effective",
+    "uniform",
+    "strong",
+    "event",
+    "pre-event",
+    "post-event",
+    "instrument",
+];
+
+/// Words behind the number of samples in a second.
+pub(super) const RATE_MARKS: &[&str] = &[
+    "sps",
+    "samples/sec",
+    "samples/second",
+    "samples/s",
+    "samples per second",
+    "samples per sec",
+    "pts/sec",
+    "muestras por segundo",
+    "campioni al secondo",
+    "amostras por segundo",
+];
+
+/// First letters of words for an acceleration, a velocity and a displacement.
+pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
+pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
+pub(super) const DISPLACEMENTS: &[&str] =
+    &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
