@@ -47,7 +47,7 @@ pub fn document(answer: &Answer) -> Document {
         blocks.extend([heading("In all variants"), Block::Table(table)]);
     }
     if let Some(found) = &summary.remedy {
-        blocks.extend([heading("What would have kept it up"), Block::Table(found.table())]);
+        blocks.extend([heading("What would have kept it up"), Block::Table(found.table(false))]);
     }
     let free = run.stack.is_free();
     blocks.push(heading(if free { "Sequence" } else { "Collapse sequence" }));

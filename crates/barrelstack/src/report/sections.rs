@@ -27,7 +27,7 @@ pub(super) fn all(
     scene: &Arc<Scene>,
 ) -> Vec<Block> {
     let mut blocks = vec![stage(run, summary, other, scene)];
-    let remedy = summary.remedy.iter().map(|found| Block::Table(found.table())).collect();
+    let remedy = summary.remedy.iter().map(|found| Block::Table(found.table(true))).collect();
     section(&mut blocks, 2, "What would have kept it up", remedy);
     section(&mut blocks, 2, "In all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));

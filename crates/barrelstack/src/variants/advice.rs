@@ -89,13 +89,15 @@ impl Remedy {
         format!("{} kN", listed(tried.map(|pretension| (1e-3 * pretension).to_string())))
     }
 
-    /// Tabulates every change that was tried.
-    pub fn table(&self) -> Table {
+    /// Tabulates every change that was tried, in planes or in space.
+    pub fn table(&self, in_planes: bool) -> Table {
+        let [stand, tried] =
+            if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
-            "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all stand \
-             in every plane. One that more fail than may is dropped after the block of variants by which they have, so \
-             its share is not known. Intervals hold together, with 95 %, for all {} changes that may be tried, in every \
-             plane. Straps do not slip on what they tie.",
+            "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all \
+             stand{stand}. One that more fail than may is dropped after the block of variants by which they have, so \
+             its share is not known. Intervals hold together, with 95 %, for all {} changes that may be tried{tried}. \
+             Straps do not slip on what they tie.",
             100.0 * self.required_share,
             self.candidates
         );
