@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use barrelstack::compare::{self, CompareError, Side, differences};
 use barrelstack::scenario::Source;
-use barrelstack::variants::{Asked, answer};
+use barrelstack::variants::{RunChoice, answer};
 use barrelstack::{Scenario, Summary};
 use barrelstack_report::{Block, Document, FigureKind, Plot, Table, figures, markdown};
 
@@ -205,7 +205,7 @@ fn all_panes_show_one_variant_under_one_motion_and_the_headline_is_the_effect() 
         ];
         let scenario = scenario("demo-napa", &changes);
         let go = &mut |_| ControlFlow::Continue(());
-        (name.to_owned(), answer(&scenario, Asked::Typical, go).unwrap())
+        (name.to_owned(), answer(&scenario, RunChoice::Typical, go).unwrap())
     };
     let answers =
         vec![answered("five levels", "stack.levels=5"), answered("two levels", "stack.levels=2")];
@@ -242,7 +242,7 @@ fn a_headline_of_both_planes_has_one_colon() {
         ];
         let scenario = scenario("demo-napa", &changes);
         let go = &mut |_| ControlFlow::Continue(());
-        (name.to_owned(), answer(&scenario, Asked::Typical, go).unwrap())
+        (name.to_owned(), answer(&scenario, RunChoice::Typical, go).unwrap())
     };
     let answers =
         vec![answered("five levels", "stack.levels=5"), answered("four levels", "stack.levels=4")];

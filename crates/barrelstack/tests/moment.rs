@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use barrelstack::ensemble::RATE;
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{answer_document, scene};
-use barrelstack::variants::{Asked, answer};
+use barrelstack::variants::{RunChoice, answer};
 use barrelstack::{Run, Scenario};
 use barrelstack_report::Block;
 
@@ -93,7 +93,8 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
             "run.duration='6 s'",
         ],
     );
-    let answer = answer(&scenario, Asked::Number(3), &mut |_| ControlFlow::Continue(())).unwrap();
+    let answer =
+        answer(&scenario, RunChoice::Number(3), &mut |_| ControlFlow::Continue(())).unwrap();
     let shown = &answer.decides;
     let trail = &shown.variants.as_ref().unwrap().results[3].trail;
     assert_eq!((trail.top.len(), trail.barrels.len()), (2, 4));

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use barrelstack::Scenario;
-use barrelstack::variants::{self, Answer, Asked, Remedy, Tried, answer};
+use barrelstack::variants::{self, Answer, Remedy, RunChoice, Tried, answer};
 
 fn scenario(changes: &[&str]) -> Scenario {
     // Short, with few variants; of three levels one or two may stand.
@@ -23,7 +23,7 @@ fn scenario(changes: &[&str]) -> Scenario {
 }
 
 fn answered(scenario: &Scenario) -> Answer {
-    answer(scenario, Asked::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
+    answer(scenario, RunChoice::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
 fn remedy(answer: &Answer) -> Option<Remedy> {

@@ -10,7 +10,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::report::answer_document;
 use barrelstack::scenario::{BodyOverride, MotionSource, Scale, Scene, StackBody, View};
 use barrelstack::variants::{
-    Advance, Answer, Asked, Plane, Spread, Variants, answer, planes, run, words,
+    Advance, Answer, Plane, RunChoice, Spread, Variants, answer, planes, run, words,
 };
 use barrelstack_report::{capital, markdown};
 
@@ -35,7 +35,7 @@ fn found(planes: &[Plane]) -> Vec<Variants> {
     run(planes, &|_, _| ControlFlow::Continue(())).unwrap().unwrap()
 }
 
-fn answered(scenario: &Scenario, asked: Asked) -> Answer {
+fn answered(scenario: &Scenario, asked: RunChoice) -> Answer {
     answer(scenario, asked, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
@@ -46,14 +46,14 @@ fn a_variant_that_is_shown_is_the_one_that_was_counted() {
     let results = &all[0].results;
     assert_eq!(results.len(), 9);
     for number in [0, 5, all[0].spread.typical] {
-        let shown = answered(&scenario, Asked::Number(number)).decides;
+        let shown = answered(&scenario, RunChoice::Number(number)).decides;
         let counted = &results[number as usize];
         assert_eq!(shown.summary.variant, number);
         assert_eq!(Ok(&shown.run.outcome), counted.outcome.as_ref());
         assert_eq!(Some(shown.run.end_time), counted.end_time);
         assert_eq!(shown.variants.unwrap().spread, all[0].spread);
     }
-    let typical = answered(&scenario, Asked::Typical).decides.summary;
+    let typical = answered(&scenario, RunChoice::Typical).decides.summary;
     assert_eq!(typical.variant, all[0].spread.typical);
 }
 
@@ -85,7 +85,7 @@ fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
         imperfections.variants = 20;
     }
     let (mut first, mut done) = (Vec::new(), Vec::new());
-    let all = answer(&scenario, Asked::Typical, &mut |now| {
+    let all = answer(&scenario, RunChoice::Typical, &mut |now| {
         match now {
             Advance::First { variants, headline } => first.push((variants, headline)),
             Advance::Variants { done: so_far, of } => done.push((so_far, of)),
@@ -102,7 +102,7 @@ fn the_first_verdict_is_that_of_the_first_eight_variants_whatever_ends_first() {
     // With eight variants there is nothing left to wait for.
     let scenario = two_levels(&[]);
     let mut early = 0;
-    let _ = answer(&scenario, Asked::Typical, &mut |now| {
+    let _ = answer(&scenario, RunChoice::Typical, &mut |now| {
         early += u32::from(matches!(now, Advance::First { .. }));
         ControlFlow::Continue(())
     });
@@ -172,7 +172,7 @@ fn what_falls_under_its_own_weight_counts_as_fallen_and_is_said_first() {
             "run.duration=0.5 s",
         ],
     );
-    let answer = answer(&scenario, Asked::Typical, &mut |_| ControlFlow::Continue(())).unwrap();
+    let answer = answer(&scenario, RunChoice::Typical, &mut |_| ControlFlow::Continue(())).unwrap();
     let spread = answer.decides.summary.ensemble.clone().unwrap();
     assert!(spread.cannot_stand > 0 && spread.cannot_stand == spread.collapsed, "{spread:?}");
     assert_eq!((spread.variants, spread.broken, spread.run()), (8, 0, 8));
@@ -237,8 +237,9 @@ fn one_plane_is_asked_for_where_one_is_run() {
 
 #[test]
 fn what_is_stopped_says_nothing_of_shares() {
-    let stopped =
-        answer(&two_levels(&[]), Asked::Typical, &mut |_| ControlFlow::Break(())).unwrap().decides;
+    let stopped = answer(&two_levels(&[]), RunChoice::Typical, &mut |_| ControlFlow::Break(()))
+        .unwrap()
+        .decides;
     assert_eq!(stopped.summary.outcome.kind, "interrupted");
     assert!(stopped.summary.ensemble.is_none() && stopped.variants.is_none());
     assert!(
@@ -259,7 +260,7 @@ fn the_plane_that_decides_is_the_worse() {
         "run.stop_after_collapse=0.2 s",
         "imperfections.variants=4",
     ];
-    let found = answered(&scenario("candia-8-barrels", &both), Asked::Typical);
+    let found = answered(&scenario("candia-8-barrels", &both), RunChoice::Typical);
     let other = found.other.unwrap();
     let share = |spread: &Option<Spread>| spread.as_ref().unwrap().share.unwrap();
     let [worse, better] = [share(&found.decides.summary.ensemble), share(&other.summary.ensemble)];
@@ -295,7 +296,7 @@ fn the_share_does_not_hang_on_the_step() {
 fn a_page_of_both_planes_has_the_inputs_as_given_and_a_part_for_engineers_of_each() {
     let changes = ["stack.levels=1", "run.duration=0.5 s", "imperfections.variants=1"];
     let scenario = scenario("demo-napa", &changes);
-    let answer = answered(&scenario, Asked::Typical);
+    let answer = answered(&scenario, RunChoice::Typical);
     let (own, other) = (&answer.decides, answer.other.as_ref().unwrap());
     // Inputs and fingerprint are those of the scenario, not those of the plane that decides.
     for shown in [own, other] {

@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use barrelstack::compare;
-use barrelstack::variants::{Advance, Asked, answer};
+use barrelstack::variants::{Advance, RunChoice, answer};
 use barrelstack_report::{Block, Document};
 
 use crate::decision::{DecisionError, SiteHazard};
@@ -186,7 +186,7 @@ impl Ranking {
         let protected = best.protection.on(own)?;
         let mut answers = Vec::new();
         for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
-            let answer = answer(scenario, Asked::Typical, tell)?;
+            let answer = answer(scenario, RunChoice::Typical, tell)?;
             if answer.is_stopped() {
                 return Ok(false);
             }

@@ -12,7 +12,7 @@ use barrelstack_input::system;
 use crate::printer;
 
 /// `true` if the user requested a stop; global, since a program can have one handler only.
-static ASKED: AtomicBool = AtomicBool::new(false);
+static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// `true` if some work polls the request.
 static LISTENS: AtomicBool = AtomicBool::new(false);
@@ -95,7 +95,7 @@ static JSON: AtomicBool = AtomicBool::new(false);
 /// Handles a signal.
 fn ask() {
     let json = JSON.load(Ordering::Relaxed);
-    if ASKED.swap(true, Ordering::Relaxed) || !LISTENS.load(Ordering::Relaxed) {
+    if REQUESTED.swap(true, Ordering::Relaxed) || !LISTENS.load(Ordering::Relaxed) {
         end(json);
     }
     // The handler's own thread has to be free for the second signal.
@@ -178,7 +178,7 @@ impl Interrupt {
     /// `true` if the user requested a stop.
     #[expect(clippy::unused_self, reason = "who asks has to listen")]
     pub(crate) fn is_requested(&self) -> bool {
-        let requested = ASKED.load(Ordering::Relaxed);
+        let requested = REQUESTED.load(Ordering::Relaxed);
         if requested {
             STOPPED.store(true, Ordering::Relaxed);
         }
@@ -192,7 +192,7 @@ impl Interrupt {
         let here = place.work == WORKS.load(Ordering::Relaxed)
             && things.contains(&place.things)
             && done >= place.done;
-        if here && !ASKED.load(Ordering::Relaxed) {
+        if here && !REQUESTED.load(Ordering::Relaxed) {
             ask();
         }
     }

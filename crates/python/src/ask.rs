@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use barrelstack::RunFailure;
 use barrelstack::compare::{Comparison, aligned, check, document, labels, sides};
-use barrelstack::variants::{self, Asked};
+use barrelstack::variants::{self, RunChoice};
 use barrelstack_campaign::decision::SiteHazard;
 use barrelstack_campaign::heights::{
     HeightsError, Request as HeightsRequest, heights as all_heights,
@@ -48,7 +48,7 @@ pub(crate) fn compare(
     let compared = listening(py, progress, |hear| {
         let mut answers = Vec::new();
         for (at, (name, scenario)) in all.iter().enumerate() {
-            let answer = variants::answer(scenario, Asked::Typical, &mut |now| told(hear, now));
+            let answer = variants::answer(scenario, RunChoice::Typical, &mut |now| told(hear, now));
             answers.push((name.clone(), answer.map_err(|failure| (failure, at))?));
             if hear.stopped() {
                 break;

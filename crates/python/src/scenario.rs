@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use barrelstack::ground::from_disk;
 use barrelstack::scenario::{Scene, builtin, reference as fields_of, schema as schema_of};
-use barrelstack::variants::{self, Advance, Answer, Asked, Shown};
+use barrelstack::variants::{self, Advance, Answer, RunChoice, Shown};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::watch::Pace;
 use barrelstack::{RunFailure, Summary};
@@ -228,13 +228,13 @@ impl Scenario {
 }
 
 /// Returns the selection of the variant to show, among a number of variants.
-fn asked(variant: Option<u32>, count: u32) -> PyResult<Asked> {
+fn asked(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
             "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated"
         ))),
-        Some(number) => Ok(Asked::Number(number)),
-        None => Ok(Asked::Typical),
+        Some(number) => Ok(RunChoice::Number(number)),
+        None => Ok(RunChoice::Typical),
     }
 }
 

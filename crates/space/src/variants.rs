@@ -12,7 +12,7 @@ use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
 use barrelstack::summary::Unfinished;
 use barrelstack::variants::{
-    Advance, Asked, Failed, Observer, Plane, Remedy, Spread, Trial, fails, planes, remedy_by,
+    Advance, Failed, Observer, Plane, Remedy, RunChoice, Spread, Trial, fails, planes, remedy_by,
 };
 use barrelstack::watch::Ending;
 use barrelstack::{RunFailure, Scenario, pool};
@@ -272,7 +272,7 @@ fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
 /// As [`run_all`], and if the run that is shown cannot be built or does not stand.
 pub fn answer(
     scenario: &Scenario,
-    asked: Asked,
+    choice: RunChoice,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
     let scenario = &scenario.with_event()?;
@@ -283,7 +283,7 @@ pub fn answer(
         // Another thread has panicked; this work is no longer needed.
         Err(_) => ControlFlow::Break(()),
     };
-    let varied = !matches!(asked, Asked::Alone(_)) && plane.count() > 0;
+    let varied = !matches!(choice, RunChoice::Alone(_)) && plane.count() > 0;
     let cases = if varied {
         run_all(&plane.scenario, &|done, of| tell(Advance::Variants { done, of }))?
     } else {
@@ -294,14 +294,14 @@ pub fn answer(
     let unfinished = (done < results.len()).then_some(Unfinished { done, of: results.len() });
     let whole = !cases.is_empty() && unfinished.is_none();
     let spread = whole.then(|| Spread::of(&plane, &results)).flatten();
-    let number = match (asked, &spread) {
-        (Asked::Number(number) | Asked::Alone(number), _) => number,
-        (Asked::Typical, Some(spread))
+    let number = match (choice, &spread) {
+        (RunChoice::Number(number) | RunChoice::Alone(number), _) => number,
+        (RunChoice::Typical, Some(spread))
             if results.first().is_some_and(|one| one.outcome.is_ok()) =>
         {
             spread.typical
         }
-        (Asked::Typical, _) => 0,
+        (RunChoice::Typical, _) => 0,
     };
     let variant = plane.variant(number);
     let ground = Ground::of(&plane.scenario)?;

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::View;
-use barrelstack::variants::{Asked, planes};
+use barrelstack::variants::{RunChoice, planes};
 use barrelstack_dynamics::Vec3;
 use barrelstack_space::run::{run, stand};
 use barrelstack_space::variants::remedy;
@@ -96,7 +96,7 @@ fn a_stack_that_is_its_own_mirror_image_does_the_same_when_mirrored() {
 fn an_answer_counts_variants_and_directions() {
     let mut told = 0;
     let scenario = demo(&["imperfections.variants=4", "run.stop_after_collapse='0.5 s'"]);
-    let answer = answer(&scenario, Asked::Typical, &mut |_| {
+    let answer = answer(&scenario, RunChoice::Typical, &mut |_| {
         told += 1;
         ControlFlow::Continue(())
     })
@@ -140,7 +140,7 @@ fn a_change_that_would_have_kept_a_stack_up_stands_in_as_many_variants_when_it_i
         let changes: Vec<String> =
             kept.map(|one| (*one).to_owned()).chain(more.iter().cloned()).collect();
         let scenario = Scenario::builtin("demo-napa", &changes).unwrap();
-        answer(&scenario, Asked::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
+        answer(&scenario, RunChoice::Number(0), &mut |_| ControlFlow::Continue(())).unwrap()
     };
     let own = answered(&[]);
     let found = remedy(&own, &|_| ControlFlow::Continue(())).unwrap().unwrap();

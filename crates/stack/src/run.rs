@@ -15,8 +15,7 @@ use crate::ground::{Ground, from_disk};
 use crate::outcome::{Outcome, judge};
 use crate::scenario::{self, Scenario, Scene, Until};
 use crate::stand::{Standing, stand};
-use crate::step::critical_time_step;
-use crate::step::restitution_warning;
+use crate::step::{critical_time_step, restitution_warning};
 use crate::stick::SoftStick;
 use crate::watch::{
     ElementFate, End, Ending, Eye, Fates, Glance, Pace, Recording, Stresses, Thresholds, Watch,

@@ -43,7 +43,9 @@ use std::fmt::Display;
 use std::ops::ControlFlow;
 
 use barrelstack::scenario::builtin;
-use barrelstack::variants::{Advance, Answer, Asked, Plane, answer, answer_of, planes, run_some};
+use barrelstack::variants::{
+    Advance, Answer, Plane, RunChoice, answer, answer_of, planes, run_some,
+};
 use barrelstack::{RunFailure, Scenario, export, report};
 use barrelstack_report::{Fragment, fragment};
 use serde::{Deserialize, Serialize};
@@ -188,19 +190,19 @@ pub fn answered(
         Ask::Look => json(&look::Looked::of(scenario, &planes()?).map_err(placed)?),
         Ask::Show => {
             let number = request.numbers.first().copied().unwrap_or(0);
-            let shown = answer(scenario, Asked::Alone(number), &mut told).map_err(placed)?;
+            let shown = answer(scenario, RunChoice::Alone(number), &mut told).map_err(placed)?;
             json(&Shown::of(&shown, number))
         }
         Ask::Variants => some(&planes()?, &request.numbers, observer),
         Ask::Verdict => json(&Verdict::of(&planes()?, request)?),
         Ask::Report => {
-            let found = answer(scenario, Asked::Typical, &mut told).map_err(placed)?;
+            let found = answer(scenario, RunChoice::Typical, &mut told).map_err(placed)?;
             let document = report::answer_document(&found, None);
             Ok(barrelstack_report::html(&document).into_bytes())
         }
         Ask::Files => {
             let found = if request.numbers.is_empty() {
-                answer(scenario, Asked::Typical, &mut told)
+                answer(scenario, RunChoice::Typical, &mut told)
             } else {
                 let results = verdict::results(&planes()?, request, trails)?;
                 answer_of(scenario, results, &mut told)
@@ -211,7 +213,7 @@ pub fn answered(
             Ok(enveloped(&json(&head)?, &rest))
         }
         Ask::Summary | Ask::Scenarios | Ask::Catalog | Ask::Records => {
-            let found = answer(scenario, Asked::Typical, &mut told).map_err(placed)?;
+            let found = answer(scenario, RunChoice::Typical, &mut told).map_err(placed)?;
             Ok((found.decides.summary.to_json() + "\n").into_bytes())
         }
     }

@@ -38,7 +38,7 @@ pub enum Advance {
 
 /// Selection of the run to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum RunChoice {
     /// The medoid of all runs.
     Typical,
     /// The variant of this number; 0 is the nominal case.
@@ -91,7 +91,7 @@ impl Answer {
             Some(shown.variants.as_ref()?.results.clone())
         };
         let results = planes(&self.scenario)?.iter().map(|plane| of(plane.view())).collect();
-        answered(&self.scenario, Asked::Number(number), results, observer)
+        answered(&self.scenario, RunChoice::Number(number), results, observer)
     }
 }
 
@@ -145,10 +145,10 @@ pub struct Shown {
 /// As [`Scenario::run`].
 pub fn answer(
     scenario: &Scenario,
-    asked: Asked,
+    choice: RunChoice,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
-    answered(scenario, asked, None, observer)
+    answered(scenario, choice, None, observer)
 }
 
 /// Computes an [`answer`] that shows the medoid, from results of variants that were run elsewhere
@@ -161,12 +161,12 @@ pub fn answer_of(
     results: Vec<Vec<CaseResult>>,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
-    answered(scenario, Asked::Typical, Some(results), observer)
+    answered(scenario, RunChoice::Typical, Some(results), observer)
 }
 
 fn answered(
     scenario: &Scenario,
-    asked: Asked,
+    choice: RunChoice,
     known: Option<Vec<Vec<CaseResult>>>,
     observer: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
 ) -> Result<Answer, RunFailure> {
@@ -178,7 +178,7 @@ fn answered(
         // Another thread has panicked: cancel.
         Err(_) => ControlFlow::Break(()),
     };
-    let alone = matches!(asked, Asked::Alone(_));
+    let alone = matches!(choice, RunChoice::Alone(_));
     let varied = !alone && planes.iter().any(|plane| plane.count() > 0);
     // Fail early: check the nominal case and its memory before running variants.
     for plane in planes.iter().filter(|_| varied) {
@@ -205,7 +205,7 @@ fn answered(
     let tasks: Vec<(&Plane, u32)> = planes
         .iter()
         .zip(&all)
-        .map(|(plane, (variants, _))| (plane, number(asked, variants.as_ref())))
+        .map(|(plane, (variants, _))| (plane, number(choice, variants.as_ref())))
         .collect();
     let mut shown = Vec::new();
     let runs = seen(scenario, &tasks, &tell)?;
@@ -269,14 +269,14 @@ fn in_order(
 
 /// Returns the number of the run to show; the nominal case if that does not stand, so that the reason is
 /// reported.
-fn number(asked: Asked, variants: Option<&Variants>) -> u32 {
+fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
     let stated = variants.and_then(|variants| variants.results.first());
-    match (asked, variants) {
-        (Asked::Number(number) | Asked::Alone(number), _) => number,
-        (Asked::Typical, Some(variants)) if stated.is_some_and(|one| one.outcome.is_ok()) => {
+    match (choice, variants) {
+        (RunChoice::Number(number) | RunChoice::Alone(number), _) => number,
+        (RunChoice::Typical, Some(variants)) if stated.is_some_and(|one| one.outcome.is_ok()) => {
             variants.spread.typical
         }
-        (Asked::Typical, _) => 0,
+        (RunChoice::Typical, _) => 0,
     }
 }
 

@@ -36,7 +36,7 @@ use crate::outcome::Outcome;
 use crate::scenario::{MotionSource, MotionSpec, Scenario, Scene, Until, View};
 use crate::watch::after_collapse;
 
-pub use answer::{Advance, Answer, Asked, Shown, answer, answer_of};
+pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
 pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
 pub use spread::{LEVEL, Range, Spread, fails};

@@ -8,7 +8,7 @@ use barrelstack::assemble::AssembleError;
 use barrelstack::compare::{self, Comparison, Difference, differences};
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
-use barrelstack::variants::{Answer, Asked};
+use barrelstack::variants::{Answer, RunChoice};
 use barrelstack_report::listed;
 
 use crate::args::{ScenarioArgs, VariantArgs};
@@ -91,7 +91,7 @@ pub(crate) fn compare(args: &CompareArgs) -> anyhow::Result<ExitCode> {
     let folder = Folder::prepare(&args.out, args.overwrite)?;
     let mut answers = Vec::new();
     for ((name, scenario), (_, one)) in scenarios.iter().zip(&requested) {
-        let answer = super::run::answered(scenario, Asked::Typical, !args.quiet)
+        let answer = super::run::answered(scenario, RunChoice::Typical, !args.quiet)
             .map_err(|error| super::placed(error, scenario, one))?;
         let stopped = answer.is_stopped();
         if stopped && !answers.is_empty() {

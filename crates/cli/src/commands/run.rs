@@ -8,7 +8,7 @@ use anyhow::{anyhow, bail};
 use barrelstack::export::{ExportError, Folder};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::Scene;
-use barrelstack::variants::{self, Answer, Asked, Shown};
+use barrelstack::variants::{self, Answer, RunChoice, Shown};
 use barrelstack::verify::{Verification, verify};
 use barrelstack::{Run, RunFailure, Scenario, Summary};
 use barrelstack_input::system;
@@ -87,7 +87,7 @@ fn engine(path: &Path) -> anyhow::Result<String> {
 }
 
 /// Returns the run to show; sets the number of variants as requested.
-pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<Asked> {
+pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Result<RunChoice> {
     let count = match &mut scenario.scene {
         Scene::Stack { imperfections, .. } => {
             imperfections.variants = args.variants.unwrap_or(imperfections.variants);
@@ -105,15 +105,15 @@ pub(super) fn selected(scenario: &mut Scenario, args: VariantArgs) -> anyhow::Re
             "--variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated; \
              --variants {number} makes more"
         ),
-        Some(number) => Ok(Asked::Number(number)),
-        None => Ok(Asked::Typical),
+        Some(number) => Ok(RunChoice::Number(number)),
+        None => Ok(RunChoice::Typical),
     }
 }
 
 /// Runs a scenario and its variants with a progress bar and Ctrl-C.
 pub(super) fn answered(
     scenario: &Scenario,
-    selection: Asked,
+    selection: RunChoice,
     show: bool,
 ) -> Result<Answer, RunFailure> {
     let start = Instant::now();

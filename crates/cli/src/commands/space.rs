@@ -7,7 +7,7 @@ use anyhow::bail;
 use barrelstack::export::Folder;
 use barrelstack::outcome::Outcome;
 use barrelstack::render::{Part, RenderFolder};
-use barrelstack::variants::{Asked, Remedy};
+use barrelstack::variants::{Remedy, RunChoice};
 use barrelstack::{RunFailure, Scenario};
 use barrelstack_report::paraview_of_solids;
 use barrelstack_space::mesh::solids;
@@ -22,7 +22,7 @@ use crate::progress::Progress;
 pub(super) fn run(
     args: &RunArgs,
     scenario: &Scenario,
-    selection: Asked,
+    selection: RunChoice,
     folder: Option<&Folder>,
 ) -> anyhow::Result<ExitCode> {
     for (given, option) in [
@@ -70,7 +70,7 @@ pub(super) fn run(
 pub(super) fn render(
     args: &RenderArgs,
     scenario: &Scenario,
-    selection: Asked,
+    selection: RunChoice,
 ) -> anyhow::Result<ExitCode> {
     if let Some(part) = args.lacking_in_space() {
         bail!(
@@ -98,7 +98,7 @@ pub(super) fn render(
 }
 
 /// Runs a scenario and its variants with a progress bar and Ctrl-C.
-fn answered(scenario: &Scenario, selection: Asked, show: bool) -> Result<Answer, RunFailure> {
+fn answered(scenario: &Scenario, selection: RunChoice, show: bool) -> Result<Answer, RunFailure> {
     let start = Instant::now();
     let progress = Progress::new(show);
     let mut answer =
