@@ -207,3 +207,32 @@ pub(crate) fn root() -> PathBuf {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     own.parent().unwrap_or(own).to_path_buf()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::root;
+
+    /// A file beside a `tests/main.rs` that is no module of it would not be run.
+    #[test]
+    #[allow(clippy::unwrap_used, reason = "a test fails by panic")]
+    fn every_file_of_tests_is_run() {
+        let mut programs = 0;
+        for folder in fs::read_dir(root().join("crates")).unwrap() {
+            let folder = folder.unwrap().path();
+            let Ok(modules) = fs::read_to_string(folder.join("tests/main.rs")) else { continue };
+            let package = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+            programs += 1;
+            for entry in fs::read_dir(folder.join("tests")).unwrap() {
+                let path = entry.unwrap().path();
+                let name = path.file_stem().unwrap().to_str().unwrap();
+                let is_test = path.extension().is_some_and(|extension| extension == "rs");
+                let stated = modules.contains(&format!("\nmod {name};\n"))
+                    || package.contains(&format!("[[test]]\nname = \"{name}\"\n"));
+                assert!(!is_test || name == "main" || stated, "{} is not run", path.display());
+            }
+        }
+        assert!(programs >= 8, "{programs}");
+    }
+}

@@ -1,11 +1,10 @@
 //! Errors of the three accuracies against steps that are ten times shorter than the standard ones.
 //!
 //! ```sh
-//! cargo test --release -p barrelstack --test accuracy -- --ignored --nocapture
+//! cargo test --release -p barrelstack --test all accuracy -- --ignored --nocapture
 //! ```
 
 #![allow(clippy::print_stdout, reason = "the table of errors")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use std::sync::Arc;
 

@@ -1,7 +1,5 @@
 //! Comparisons: their differences, refusals and page.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::ops::ControlFlow;
 
 use barrelstack::compare::{self, CompareError, Side, differences};

@@ -1,5 +1,4 @@
 //! Devices on a stack: no effect out of reach, their effects, and stacks that they do not fit.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use barrelstack::assemble::PartKind;

@@ -1,7 +1,5 @@
 //! Documents name only existing paths, and libraries no options of the command.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {

@@ -1,15 +1,12 @@
 //! Cases in lanes have the same bits as alone.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was compared, and in which lanes")]
 
-mod common;
-
+use crate::common::Random;
 use barrelstack::ensemble::{Audience, CaseResult, Prepared, simulate_in};
 use barrelstack::outcome::Outcome;
 use barrelstack::watch::Joint;
 use barrelstack::{Run, Scenario, Summary};
 use barrelstack_dynamics::lanes::Width;
-use common::Random;
 
 /// Number of random cases.
 const CASES: u64 = 1000;

@@ -1,5 +1,4 @@
 //! Free scenes with force elements, against closed forms.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "how near the closed forms are")]
 
 use barrelstack::{Run, Scenario, Summary};

@@ -1,5 +1,4 @@
 //! Free scenes of solid bodies: several parts, exact boundaries, nodes at chosen places.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "what was refused")]
 
 use std::fmt::Write as _;

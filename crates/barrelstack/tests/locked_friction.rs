@@ -1,5 +1,4 @@
 //! Dependence of locked friction on the settling history, and its effects.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "the table that validation/README.md shows")]
 
 use std::collections::BTreeMap;

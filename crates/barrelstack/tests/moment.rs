@@ -1,5 +1,4 @@
 //! The initial instant of a player and its overlays: properties of the run and of its variants.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 
 use std::ops::ControlFlow;
 

@@ -4,11 +4,9 @@
 //! impacts; so the bands are those in which a faithful model must fall, not its decimals.
 //! The six-barrel cases need a record that may not be redistributed; without it they are reported as skipped.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
-mod common;
-
+use crate::common;
 use std::path::Path;
 use std::sync::LazyLock;
 

@@ -1,7 +1,5 @@
 //! The period of rocking: the formula, the measurement, and a block that rocks.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::f64::consts::TAU;
 
 use barrelstack::Scenario;

@@ -1,5 +1,4 @@
 //! Racks along their barrels: on posts, and with rails that raise one end of every barrel.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use std::collections::BTreeSet;

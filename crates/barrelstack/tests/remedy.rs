@@ -1,7 +1,5 @@
 //! The remedy of a stack: whether it suffices, and its wording.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,5 +1,4 @@
 //! Rendering: the files of a run hold its recording, and none of an earlier one.
-#![allow(clippy::unwrap_used, reason = "a file that cannot be read fails the test")]
 
 use std::path::Path;
 

@@ -1,5 +1,4 @@
 //! A run ends when all moving bodies have come to rest, and not later.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "how long cases ran, and how many barrels fell")]
 
 use std::ops::ControlFlow;

@@ -1,7 +1,5 @@
 //! Mass and moments of inertia of catalog barrels.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack::scenario::{Barrel, Fill, Scenario, View, catalog};
 
 fn barrel(name: &str, fill: &str) -> Barrel {

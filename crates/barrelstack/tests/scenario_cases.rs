@@ -4,8 +4,6 @@
 //! has one override a line, and it ends with either an `error` block, the whole error, or a
 //! `resolved` block, lines that the resolved text must contain.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::fs;
 use std::path::PathBuf;
 

@@ -1,7 +1,5 @@
 //! Bytes that are not a scenario, missing files, and truncated scenarios: one error, never a panic.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::fs;
 use std::path::Path;
 

@@ -1,7 +1,5 @@
 //! Quantities: exact conversion, dimensions, errors, and no panic on any text.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack::scenario::{Dimension, Quantity, QuantityError};
 use proptest::prelude::*;
 

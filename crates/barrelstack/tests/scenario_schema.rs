@@ -1,7 +1,5 @@
 //! The JSON Schema and the reference agree with what the reader accepts.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack::scenario::field::{Default, Field, Kind, Section};
 use barrelstack::scenario::{ROOT, Scenario, builtin, reference, schema};
 use serde_json::{Value, json};

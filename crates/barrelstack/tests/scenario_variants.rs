@@ -1,7 +1,5 @@
 //! Every variant of every table is read, written and read back.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::f64::consts::PI;
 
 use barrelstack_motion::IntensityMeasure;

@@ -1,5 +1,4 @@
 //! The division of a seat changes the distribution of its pressure, not its stiffness, damping or friction.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "the table of refinement")]
 
 use barrelstack::Scenario;

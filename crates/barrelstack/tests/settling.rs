@@ -1,12 +1,10 @@
 //! Every stack that stands comes to rest, whatever its dampers, and every other one is refused.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![expect(clippy::print_stdout, reason = "what was tried, and what it cost")]
-
-mod common;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+use crate::common::Random;
 use barrelstack::Scenario;
 use barrelstack::assemble::{Assembly, assemble};
 use barrelstack_dynamics::forces::contact_force;
@@ -17,7 +15,6 @@ use barrelstack_dynamics::{
     Body, Contact, FrictionLaw, Method, Model, Motion, NormalLaw, Planar, Pose, Scratch,
     SettleError, Settled, Simulation, State, Still, Vec2, evaluate, look, settle, simulate,
 };
-use common::Random;
 
 /// A stack of 2 to 12 levels of any barrels on any racks in either view, with stiffnesses of a tenth to
 /// ten times the paper's, dampings up to ten times or restitutions of 0.05 to 0.95, and any friction.

@@ -1,5 +1,4 @@
 //! Straps on a stack: their effect, their forces, and independence of step and scale.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use barrelstack::outcome::Outcome;

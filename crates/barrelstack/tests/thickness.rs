@@ -1,5 +1,4 @@
 //! No body is so thin, or falls so fast, that another could pass through it within a step.
-#![allow(clippy::unwrap_used, reason = "a stack that cannot be built fails its test")]
 #![expect(clippy::print_stdout, reason = "how near the nearest comes")]
 
 use barrelstack::Scenario;

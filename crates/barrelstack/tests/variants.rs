@@ -1,6 +1,5 @@
 //! A stack and its variants: their draws, their results, and the wording of these.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "the shares at every step")]
 
 use std::ops::ControlFlow;

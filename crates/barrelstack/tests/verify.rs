@@ -1,7 +1,5 @@
 //! Verifications: of a robust run, of one at the threshold, and of one that cannot be repeated in full.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::ops::ControlFlow;
 
 use barrelstack::verify::{DISTURBED, Robust, Verification, verify};

@@ -1,19 +1,15 @@
 //! Damaged folders: damage in any file of a study is reported or repaired, and links lead nothing out of the folder.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::common::HEAD;
 use barrelstack_campaign::Study;
 use barrelstack_campaign::decision::{Request, decide_folder};
 use barrelstack_campaign::study::{Collected, Progress, RunOptions, StudyError, collect};
 use barrelstack_motion::Random;
-use common::HEAD;
 
 /// Six cases in three chunks, of milliseconds each.
 fn study() -> Study {

@@ -1,13 +1,9 @@
 //! Decisions from tables with known answers.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
+use crate::common::{capacity, number, ordinary, study};
 use barrelstack_campaign::decision::{DecisionError, LimitState, Request, SiteHazard, decide};
 use barrelstack_campaign::study::{Collected, Role, StudyTable, Values};
 use barrelstack_report::html;
-use common::{capacity, number, ordinary, study};
 
 #[test]
 fn the_fragility_of_known_capacities_is_found_and_the_curve_is_not_doubted() {

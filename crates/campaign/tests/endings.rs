@@ -1,9 +1,6 @@
 //! A study follows every case to its end, or states everywhere that it did not.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
+use crate::common;
 use barrelstack_report::html;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -1,19 +1,16 @@
 //! What other programs read: the files themselves, and `OpenQuake` and Pelicun run on them.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "numbers of other programs are read with --nocapture")]
-
-mod common;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
 
+use crate::common::{capacity, ordinary, skipped, study};
 use barrelstack_campaign::decision::{Decision, Exported, Request, decide, export};
 use barrelstack_campaign::study::Collected;
 use barrelstack_fragility::Lognormal;
-use common::{capacity, ordinary, skipped, study};
 
 /// The harder beyond its capacity a stack is shaken, the more of it falls.
 fn gradual() -> Collected {

@@ -1,8 +1,6 @@
 //! Stacks that do not stand: those that fall under their own weight count as collapsed, and those in both planes are
 //! refused with the stacks of each.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack::Scenario;
 use barrelstack::variants::planes;
 use barrelstack_campaign::Study;

@@ -1,16 +1,12 @@
 //! A study that grows runs its new cases only, and has the same table as one of that size from the start.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 
+use crate::common::HEAD;
 use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{ChunkRun, Progress, RunOptions, Study, StudyError, holder};
-use common::HEAD;
 
 /// Two barrels on two levels, shaken briefly.
 fn text(count: u32, motions: &str, intensity: &str, design: &str) -> String {

@@ -1,7 +1,6 @@
 //! Two designs of a study, one fragility: incremental dynamic analysis and multiple stripes on the six
 //! barrels of the paper, under the same motions.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "the measured values are shown")]
 
 use std::ops::ControlFlow;

@@ -1,7 +1,5 @@
 //! Ranking of protections: all have the same motions, an interruption loses nothing, and untried ones are reported.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack_report::html;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;

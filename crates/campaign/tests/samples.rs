@@ -1,14 +1,10 @@
 //! Ten thousand samples: a page that can be mailed, bins instead of a wall, and an order that is tested.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
+use crate::common::{integer, made, number, text};
 use barrelstack_campaign::decision::{Decision, Request, decide};
 use barrelstack_campaign::study::Role;
 use barrelstack_motion::Random;
 use barrelstack_report::html;
-use common::{integer, made, number, text};
 
 /// Samples of a study without bodies: 24 records, levels from 0.1 to 1 m/s, and the chance of collapse at a level.
 fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {

@@ -1,7 +1,5 @@
 //! The RockScore: the least of all states and directions, the same after an interruption, refused without a rack.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack_report::html;
 use std::ops::ControlFlow;
 use std::path::Path;

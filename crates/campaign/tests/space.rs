@@ -1,19 +1,15 @@
 //! Studies of stacks in space: each case is one run whatever the number of threads, with columns for directions.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use crate::common::HEAD;
 use barrelstack::motion::AccelerationUnit;
 use barrelstack::{Record, Scenario};
 use barrelstack_campaign::study::{Progress, RunOptions, Study, StudyError, StudyTable};
 use barrelstack_space::variants::Case;
 use barrelstack_space::{Heading, run::run};
-use common::HEAD;
 
 /// A short run in space, after [`HEAD`].
 const RUN: &str = "\

@@ -1,19 +1,15 @@
 //! Designs and tables of studies: their cases, the stability of their rows, and independence of threads.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use crate::common::HEAD;
 use barrelstack::ensemble::Width;
 use barrelstack_campaign::study::{
     ChunkRun, Collected, Progress, Role, RunOptions, Study, StudyError, StudyTable, Tally, Value,
 };
-use common::HEAD;
 
 /// A short run, after [`HEAD`]: a case of a few milliseconds.
 const RUN: &str = "duration = \"0.4 s\"\nstop_after_collapse = \"0.01 s\"\n";

@@ -1,6 +1,5 @@
 //! Study files with one mistake each: one error, at its place, with a remedy.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
 
 use barrelstack_campaign::study::Study;

@@ -1,15 +1,11 @@
 //! The command for people and scripts: printed output, written files, exit status.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{barrelstack, names, program, refused, stderr, stdout};
+use crate::common::{barrelstack, names, program, refused, stderr, stdout};
 use serde_json::Value;
 
 /// A run with a few variants that takes a fraction of a second.

@@ -1,15 +1,13 @@
 //! The commands of the page "From a laptop to a cluster", run as written there.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-mod common;
-
+use crate::common;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::{HEAD, there};
+use crate::common::{HEAD, there};
 
 /// Six chunks of short cases after [`HEAD`], in place of the example of the page.
 const STUDY: &str = "\

@@ -1,13 +1,9 @@
 //! `compare`, and `run --verify` with a folder: printed output and written files.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{barrelstack, names, refused, stderr, stdout};
+use crate::common::{barrelstack, names, refused, stderr, stdout};
 use serde_json::Value;
 
 const SHORT: &str = "--set=run.stop_after_collapse=0.1 s";

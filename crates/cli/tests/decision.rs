@@ -1,12 +1,8 @@
 //! The page of a study and `barrelstack study report`, end to end.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 
-use common::{HEAD, barrelstack, stderr, stdout};
+use crate::common::{HEAD, barrelstack, stderr, stdout};
 
 /// Returns the error for a mistake.
 fn refused(arguments: &[&str]) -> String {

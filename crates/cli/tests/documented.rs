@@ -6,21 +6,19 @@
 
 #![cfg(unix)]
 #![allow(
-    clippy::unwrap_used,
     clippy::print_stdout,
     clippy::format_push_string,
     reason = "a test fails by panic, in its helpers too, and shows what it ran"
 )]
 
-mod common;
-
+use crate::common;
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{HEAD, barrelstack};
+use crate::common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
 const AWAIT: Duration = Duration::from_secs(2);

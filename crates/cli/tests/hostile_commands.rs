@@ -2,19 +2,14 @@
 //! and the remedy, in bounded time and memory.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-#[path = "common/cases.rs"]
-mod cases;
-mod common;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use cases::Cases;
-use common::stderr;
+use crate::cases::Cases;
+use crate::common::stderr;
 
 /// Returns a scene of one block by this name.
 fn block(name: &str) -> String {

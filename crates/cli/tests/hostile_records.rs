@@ -1,13 +1,10 @@
 //! Invalid record files: each gets one error at its place with the remedy, and nothing is written.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
+use crate::common;
 use std::fmt::Write as _;
 use std::fs;
 
-use common::{barrelstack, refused};
+use crate::common::{barrelstack, refused};
 
 /// Refuses a file as the record of the eight-barrel case, with all of the words in its error.
 fn refuse(what: &str, name: &str, bytes: &[u8], words: &[&str]) {

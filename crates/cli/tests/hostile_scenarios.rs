@@ -1,12 +1,8 @@
 //! Invalid scenario files: each gets one error at its place with the remedy, and nothing is written.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 
-use common::{barrelstack, refused};
+use crate::common::{barrelstack, refused};
 
 /// Eight barrels with a change.
 fn stack(change: &str) -> Vec<u8> {

@@ -1,16 +1,14 @@
 //! Ctrl-C and SIGTERM: every command stops, gives no verdict on unfinished work, keeps finished work, and reports it.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
-mod common;
-
+use crate::common;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{HEAD, barrelstack, names, program};
+use crate::common::{HEAD, barrelstack, names, program};
 
 /// Work of hours.
 const LONG: [&str; 3] =

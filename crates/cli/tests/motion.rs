@@ -1,13 +1,9 @@
 //! The motion commands: printed output, written files, refusals.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{barrelstack, names, refused, skipped, stderr, stdout};
+use crate::common::{barrelstack, names, refused, skipped, stderr, stdout};
 use serde_json::Value;
 
 /// Runs `motion`, which must succeed, and returns standard output.

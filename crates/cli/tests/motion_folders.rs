@@ -1,15 +1,11 @@
 //! Whole folders of records: the table, refusals, repetition of changed records, and a set for a study.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use crate::common::{barrelstack, stderr, stdout};
 use barrelstack_motion::Random;
-use common::{barrelstack, stderr, stdout};
 
 /// Runs `motion`, which must succeed, and returns standard output.
 fn motion(arguments: &[&str]) -> String {

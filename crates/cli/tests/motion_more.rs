@@ -1,14 +1,10 @@
 //! Scaling to both horizontals, joining of parts, other dampings, and scenarios with counts.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{barrelstack, stderr, stdout};
+use crate::common::{barrelstack, stderr, stdout};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {

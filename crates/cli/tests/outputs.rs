@@ -1,15 +1,12 @@
 //! Outputs of every command: nothing that was read is replaced, nothing is lost without an error, and a full disk leaves
 //! no part of a file.
 #![cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use common::{HEAD, STUDY, barrelstack, names, program, stderr, stdout};
+use crate::common::{HEAD, STUDY, barrelstack, names, program, stderr, stdout};
 
 /// Commands that write, with OUT for where; `m.txt` and `s.toml` are a motion and a study beside it.
 const WRITERS: [&[&str]; 15] = [

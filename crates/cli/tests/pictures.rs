@@ -1,12 +1,8 @@
 //! Figures, films and pictures in the terminal, end to end.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 
-use common::{barrelstack, names, refused, stderr, stdout};
+use crate::common::{barrelstack, names, refused, stderr, stdout};
 
 /// A stack that collapses before its end, in a fraction of a second.
 const FALLEN: [&str; 4] =

@@ -1,16 +1,12 @@
 //! Every document for programs satisfies the schema that the program prints for it, in every outcome.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::Duration;
 
-use common::{HEAD, STUDY, barrelstack, program, stderr, stdout};
+use crate::common::{HEAD, STUDY, barrelstack, program, stderr, stdout};
 use serde_json::Value;
 
 /// A step near the critical one under dampers too strong for it, without settling, which would show it.

@@ -1,12 +1,8 @@
 //! `barrelstack run` of a stack in space: its files, its text, and its refusals.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 
-use common::{barrelstack, stderr, stdout};
+use crate::common::{barrelstack, stderr, stdout};
 use serde_json::Value;
 
 const SOLID: [&str; 6] = [

@@ -1,15 +1,11 @@
 //! `barrelstack study` under users, clusters and power failures.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-use common::{HEAD, STUDY, barrelstack, names, program, refused, stderr, stdout, there};
+use crate::common::{HEAD, STUDY, barrelstack, names, program, refused, stderr, stdout, there};
 
 fn study(folder: &Path) -> String {
     let file = folder.join("study.toml");

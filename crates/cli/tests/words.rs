@@ -1,14 +1,10 @@
 //! Text for people: names, labels, advice, and no paths of the machine.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use common::{barrelstack, stderr, stdout};
+use crate::common::{barrelstack, stderr, stdout};
 use serde_json::Value;
 
 /// Returns a record of a second in the format of the PEER database.

@@ -1,5 +1,4 @@
 //! Every normal law: signs, continuity, stored energy, limits, and restitution.
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 use crate::common;
 

@@ -1,5 +1,4 @@
 //! Runs are bit-identical, and non-finite numbers are reported.
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 use std::ops::ControlFlow;
 

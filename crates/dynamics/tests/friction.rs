@@ -1,5 +1,4 @@
 //! Dry friction: sticking contacts do not creep, sliding contacts follow Coulomb's law.
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 use crate::common;
 

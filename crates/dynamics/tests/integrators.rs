@@ -1,5 +1,4 @@
 //! One suite for every method: order, energy, times, tolerance, and impacts.
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 use std::ops::ControlFlow;
 

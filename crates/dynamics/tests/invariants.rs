@@ -1,7 +1,5 @@
 //! Invariants of every scene: balance of momentum and energy, symmetry, similitude.
 
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
-
 use crate::common;
 
 use std::ops::ControlFlow;

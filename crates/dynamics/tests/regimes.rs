@@ -1,5 +1,4 @@
 //! Initial motion of a block on shaking ground.
-#![allow(clippy::unwrap_used, reason = "a scene that cannot be made fails its test")]
 
 use crate::common::{DOWN, GRAVITY, Scene, block, coulomb, floor, interface, pose};
 use barrelstack_dynamics::NormalLaw;

@@ -1,6 +1,5 @@
 //! Effect of the elastic stick on reversing slip, compared with rigid friction.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
 use std::f64::consts::TAU;

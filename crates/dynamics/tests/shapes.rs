@@ -1,7 +1,5 @@
 //! Every shape against its boundary drawn independently: distance, normal, nodes, section, outline.
 
-#![allow(clippy::unwrap_used, reason = "a shape that cannot be made fails its test")]
-
 use crate::common;
 
 use std::f64::consts::{PI, TAU};

@@ -1,7 +1,5 @@
 //! Equilibrium under gravity: forces, overhangs, rest, and unstable bodies.
 
-#![allow(clippy::unwrap_used, reason = "a body that cannot be made fails its test")]
-
 use crate::common;
 
 use crate::common::{

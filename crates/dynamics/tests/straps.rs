@@ -1,9 +1,5 @@
 //! Straps against closed forms: tension only, tearing, and energy balance.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
 use crate::common;
 

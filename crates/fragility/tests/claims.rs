@@ -1,10 +1,9 @@
 //! Coverage of intervals and rate of false claims without an effect: simulated, side by side with the previous rules.
 //!
-//! `cargo test --release -p barrelstack-fragility --test claims -- --nocapture` prints the tables of
+//! `cargo test --release -p barrelstack-fragility --test all claims -- --nocapture` prints the tables of
 //! `validation/statistics.md`.
 
 #![expect(clippy::print_stdout, reason = "the measured shares, shown with --nocapture")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
 use barrelstack_fragility::{
     Interval, at_most, mean_difference, sobol_indices, student_quantile, wilson,

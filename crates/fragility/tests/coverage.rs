@@ -1,12 +1,10 @@
 //! Coverage of 95 % bands over a thousand synthetic campaigns.
 
-mod drawing;
-
+use crate::drawing::draw;
 use barrelstack_fragility::{
     Dispersion, Evidence, Lognormal, evidence, grouped_mean, leave_one_out, profile_band, simulate,
 };
 use barrelstack_motion::Random;
-use drawing::draw;
 
 const TRUTH: Lognormal = Lognormal { median: 0.45, dispersion: 0.45 };
 const AT: [f64; 5] = [0.2, 0.3, 0.45, 0.6, 0.9];

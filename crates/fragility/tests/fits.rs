@@ -1,13 +1,11 @@
 //! Fits against independent answers, invariances, and errors.
 
-mod common;
-
+use crate::common::eight_stripes;
 use barrelstack_fragility::{
     Capacity, Dispersion, Evidence, FitError, Stripe, evidence, fit, moments, normal, profile_band,
     profile_median, stripes,
 };
 use barrelstack_motion::Random;
-use common::eight_stripes;
 use proptest::prelude::*;
 
 fn near(found: f64, exact: f64, tolerance: f64) {

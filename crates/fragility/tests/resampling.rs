@@ -1,16 +1,13 @@
 //! Resampling and tests of fit and order, with seeded random numbers.
 
-mod common;
-mod drawing;
-
+use crate::common::eight_stripes;
+use crate::drawing::draw;
 use barrelstack_fragility::{
     Capacity, Dispersion, Evidence, FitError, Lognormal, Returned, Stripe, demand_against,
     evidence, failure_against, fit, goodness, goodness_by_simulation, leave_one_out, monotony,
     normality, returns, simulate, stripes,
 };
 use barrelstack_motion::Random;
-use common::eight_stripes;
-use drawing::draw;
 
 fn counts(of: &[(f64, u32, u32)]) -> Vec<Stripe> {
     of.iter().map(|&(intensity, cases, failures)| Stripe { intensity, cases, failures }).collect()

@@ -1,7 +1,5 @@
 //! Grouping of files, and an agency's table of them.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
-
 use std::path::Path;
 
 use barrelstack_motion::{

@@ -2,17 +2,12 @@
 //! headers do not change the peak silently.
 
 #![allow(
-    clippy::unwrap_used,
     clippy::format_collect,
-    unreachable_pub,
     reason = "a test fails by unwrap; what is shown of a failure is built as text"
 )]
 
-#[path = "headers/mod.rs"]
-mod headers;
-
+use crate::headers::{Verdict, mutated, table};
 use barrelstack_motion::Random;
-use headers::{Verdict, mutated, table};
 
 /// Number of random tables; the example `headers` runs a million.
 const TABLES: u64 = 3000;

@@ -1,7 +1,6 @@
 //! Names, units and initial velocities in headers of plain columns.
 
 #![allow(
-    clippy::unwrap_used,
     clippy::format_collect,
     clippy::format_push_string,
     reason = "a test fails by unwrap; small tables are built as text"

@@ -3,22 +3,15 @@
 //! A fixed number from a fixed seed, so that a failure repeats; `cargo xtask fuzz` runs any number, with limits of
 //! time and memory.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
-mod fuzz;
-#[path = "fuzz/large.rs"]
-#[expect(dead_code, reason = "absurd large files are for the long run")]
-mod large;
-
+use crate::fuzz;
+use crate::fuzz::{Reader, must_hold, mutate, options, samples, samples_of};
+use crate::large;
 use barrelstack_motion::{
     AccelerationUnit, Component, Direction, FORMATS, Horizontals, IntensityMeasure, Random,
     ReadOptions, read,
 };
-use fuzz::{Reader, must_hold, mutate, options, samples, samples_of};
 
 /// Number of mutated files per sample.
 const MUTATIONS: u32 = 400;

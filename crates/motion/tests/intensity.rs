@@ -1,10 +1,6 @@
 //! Intensity measures of motions with closed forms.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
 use barrelstack_motion::{
     FourierSpectrum, Horizontals, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled,

@@ -1,15 +1,9 @@
 //! Displacement, velocity and acceleration are derivatives of one another in every kind of motion.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
-mod consistency;
-
+use crate::consistency::{derivatives_of_one_another, scattered};
 use barrelstack_motion::{Delayed, GroundMotion, History, IntensityMeasure, Pulse, Sampled};
-use consistency::{derivatives_of_one_another, scattered};
 
 fn pulses() -> Vec<Pulse> {
     vec![

@@ -1,11 +1,7 @@
 //! Excess content of agencies' files is left out and reported; missing content is an error; uneven times are not taken
 //! as even.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::format_collect,
-    reason = "a test fails by unwrap; small tables are built as text"
-)]
+#![allow(clippy::format_collect, reason = "a test fails by unwrap; small tables are built as text")]
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,11 +1,7 @@
 //! Two components matched together: their response over all directions follows the target, by an independent grid of
 //! periods.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and reports by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use barrelstack_motion::{
     Horizontals, Matching, Record, TargetSpectrum, bundled, rotated_spectrum,

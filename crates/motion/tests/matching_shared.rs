@@ -2,14 +2,9 @@
 //!
 //! The records may not be bundled; without their folder the test is reported as skipped.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
-mod shared;
-
+use crate::shared;
 use std::time::Instant;
 
 use barrelstack_motion::{

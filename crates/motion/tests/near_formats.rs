@@ -1,7 +1,6 @@
 //! Messages for 50 formats and near-formats, as in the table of `docs/formats.md`.
 
 #![allow(
-    clippy::unwrap_used,
     clippy::format_collect,
     clippy::format_push_string,
     reason = "a test fails by unwrap; a table is built as text"

@@ -1,7 +1,5 @@
 //! Archives: NPZ reads back, and one record inside gzip or zip reads as without packing.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
-
 use std::io::{Cursor, Write as _};
 use std::path::Path;
 

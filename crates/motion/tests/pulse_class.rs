@@ -1,13 +1,8 @@
 //! Pulse classes against published ones and against an independent program.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
-mod shared;
-
+use crate::shared;
 use barrelstack_motion::{
     ClassifiedPulse, History, IntensityMeasure, Processing, Pulse, ReadOptions, Sampled, bundled,
     classify_component, classify_pair, read,

@@ -1,9 +1,6 @@
 //! Time and place of recording are kept, and channels of one record begin together.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
-
-mod shared;
-
+use crate::shared;
 use std::path::Path;
 
 use barrelstack_motion::{

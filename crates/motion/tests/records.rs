@@ -1,20 +1,14 @@
 //! From a record to a motion: processing, selection, rotation, joining and the bundled record.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
-
-mod consistency;
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
 use std::fmt::Write as _;
 
+use crate::consistency::derivatives_of_one_another;
 use barrelstack_motion::{
     Channel, Component, Direction, History, MeanRemoval, Pads, Processing, ReadOptions, Record,
     STANDARD_GRAVITY, Sampled, Stage, bundled, read,
 };
-use consistency::derivatives_of_one_another;
 
 fn sampled(history: &History) -> &Sampled {
     match history {

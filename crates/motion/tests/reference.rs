@@ -3,18 +3,12 @@
 //! The records may not be bundled; the tests run if the folder `../shared/ground-motions` is beside the workspace,
 //! and are reported as skipped otherwise.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
-mod shared;
-
+use crate::shared::shared;
 use barrelstack_motion::{
     IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, dominant_pulse, read, response,
 };
-use shared::shared;
 
 /// PGA (g), PGV (m/s), PGD (m), Arias (m/s), CAV (m/s), D5-95 (s), then PSA (g) at 5 % for periods.
 struct Row {

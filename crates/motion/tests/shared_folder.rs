@@ -2,24 +2,17 @@
 //!
 //! Most of those files may not be bundled; without the folder the test is reported as skipped.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
-)]
-
-mod consistency;
-mod shared;
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::consistency::derivatives_of_one_another;
+use crate::shared::shared;
 use barrelstack_motion::{
     AccelerationUnit, Channel, Component, History, Orientation, Processing, ReadError, ReadOptions,
     Record, Refusal, STANDARD_GRAVITY, Stage, read,
 };
-use consistency::derivatives_of_one_another;
-use shared::shared;
 
 fn folder() -> Option<PathBuf> {
     shared("")
@@ -147,11 +140,11 @@ fn the_table_of_results_is_current() {
     assert!(
         written == table_of_results(&folder),
         "FORMATS.md is not what the readers give; regenerate it with \
-         cargo test -p barrelstack-motion --test shared_folder -- --ignored"
+         cargo test -p barrelstack-motion --test all shared_folder -- --ignored"
     );
 }
 
-/// Rewrites `FORMATS.md` from the folder: `cargo test -p barrelstack-motion --test shared_folder
+/// Rewrites `FORMATS.md` from the folder: `cargo test -p barrelstack-motion --test all shared_folder
 /// -- --ignored`.
 #[test]
 #[ignore = "writes FORMATS.md into the source tree"]
@@ -176,7 +169,7 @@ fn table_of_results(folder: &Path) -> String {
         "# Formats read\n\nEvery file of the shared folder `ground-motions`, as read by this crate.\n\
          PGV and PGD are by plain integration, trapezoids throughout; of a raw record they are drift.\n\
          A peak stated in the header stands behind the measured one, with its largest difference.\n\
-         Regenerate with `cargo test -p barrelstack-motion --test shared_folder -- --ignored`.\n\n\
+         Regenerate with `cargo test -p barrelstack-motion --test all shared_folder -- --ignored`.\n\n\
          | file | format | stage | channel | azimuth (°) | start (UTC) | step (s) | samples | PGA (g) | PGV (cm/s) | PGD (cm) | stated peaks |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );

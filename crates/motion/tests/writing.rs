@@ -1,7 +1,5 @@
 //! Written files read back, whatever their texts.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by unwrap")]
-
 use barrelstack_motion::write::{self, archive, at2, csv, npz};
 use barrelstack_motion::{Channel, Direction, ReadOptions, Record, Stage, read};
 

@@ -1,13 +1,9 @@
 //! Scenes in three dimensions: what the page gets of them.
 
-#![allow(clippy::unwrap_used, reason = "a page that cannot be read fails the test")]
-
-mod common;
-
+use crate::common::{document, payload, player, scene, unpack};
 use barrelstack_report::{
     Depth, DepthBody, DepthPoses, DepthTie, Moment, POSE_QUANTUM, Pose3, Role, Scene, Volume, html,
 };
-use common::{document, payload, player, scene, unpack};
 
 fn barrel(name: &str) -> DepthBody {
     let profile = vec![[-0.475, 0.29], [0.0, 0.345], [0.475, 0.29]];

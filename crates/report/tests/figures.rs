@@ -1,14 +1,12 @@
 //! Figures as SVG and CSV: well formed whatever the data, with gaps where numbers are missing.
 
-mod common;
-
 use std::sync::Arc;
 
+use crate::common::{HOSTILE, document, player, scene};
 use barrelstack_report::{
     Axis, Band, BoundarySample, Envelope, Figure, FigureKind, Mark, Panel, Plot, Polyline, Scene,
     Series, SeriesStyle, Strip, Tie, attachments,
 };
-use common::{HOSTILE, document, player, scene};
 
 fn figure(kind: FigureKind) -> Figure {
     Figure { id: "figure 1".into(), caption: HOSTILE.into(), kind }

@@ -1,14 +1,12 @@
 //! Pages: no text becomes markup, no page makes network requests, empty blocks are harmless.
 
-mod common;
-
 use std::sync::Arc;
 
+use crate::common::{HOSTILE, document, payload, player, scene};
 use barrelstack_report::{
     Axis, Block, Cell, Figure, FigureKind, Frames, Plot, Scene, Series, Shell, Strip, Table, Tone,
     Trial, Word, html, html_with, markdown,
 };
-use common::{HOSTILE, document, payload, player, scene};
 
 /// Returns a page without the contents of its scripts and styles.
 fn markup(page: &str) -> String {

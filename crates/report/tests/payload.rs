@@ -1,9 +1,7 @@
 //! The data of a page reproduce the scene, decoded here as by the scripts of the page.
 
-mod common;
-
+use crate::common::{document, payload, player, scene, unpack};
 use barrelstack_report::{POSE_QUANTUM, TIME_QUANTUM, html};
-use common::{document, payload, player, scene, unpack};
 
 #[test]
 fn frames_read_back_within_half_a_quantum() {

@@ -1,14 +1,11 @@
 //! Pixels, PDF and films reproduce the drawing, as checked by decoders.
-#![allow(clippy::unwrap_used, reason = "a file that cannot be read fails the test")]
-
-mod common;
 
 use std::sync::Arc;
 
+use crate::common::{HOSTILE, document, player, scene};
 use barrelstack_report::{
     Animation, Block, Cell, Document, Figure, FigureKind, Film, Paper, Strip, Table, document_pdf,
 };
-use common::{HOSTILE, document, player, scene};
 
 fn strip() -> Figure {
     Figure {

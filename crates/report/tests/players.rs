@@ -1,16 +1,12 @@
 //! Several scenes in step: data in the page, static pictures, Markdown.
 
-#![allow(clippy::unwrap_used, reason = "a page that cannot be read fails the test")]
-
-mod common;
-
 use std::sync::Arc;
 
+use crate::common::{HOSTILE, document, payload, scene};
 use barrelstack_report::{
     Block, Event, EventKind, Ghosts, History, Moment, Pane, Players, Scene, Tone, attachments,
     html, markdown,
 };
-use common::{HOSTILE, document, payload, scene};
 
 fn players(scenes: Vec<Scene>) -> Players {
     let panes = scenes.into_iter().enumerate().map(|(at, scene)| Pane {

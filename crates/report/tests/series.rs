@@ -1,11 +1,10 @@
 //! Series of files: ParaView files and numbered pictures reproduce the scene.
 
-mod common;
-
+use crate::common;
 use std::sync::Arc;
 
+use crate::common::scene;
 use barrelstack_report::{Attachment, Film, Role, Scene, paraview};
-use common::scene;
 
 fn text<'a>(files: &'a [Attachment], name: &str) -> &'a str {
     let file = files.iter().find(|f| f.name == name).unwrap_or_else(|| panic!("no {name}"));

@@ -1,7 +1,5 @@
 //! The series of bodies in space for ParaView, read by a parser of its own.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use std::io::Read as _;
 
 use barrelstack_report::{Role, SolidBody, Solids, paraview_of_solids};

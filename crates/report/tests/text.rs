@@ -1,11 +1,9 @@
 //! Tables, Markdown and tick labels: every number once, every text harmless.
 
-mod common;
-
+use crate::common::{HOSTILE, document, player, scene};
 use barrelstack_report::{
     Block, Cell, Figure, FigureKind, Plot, Table, html, linear_ticks, log_ticks, markdown,
 };
-use common::{HOSTILE, document, player, scene};
 
 fn table() -> Table {
     let mut table = Table::new("Peak | values", &[("quantity", ""), ("a|b", "cm"), ("note", "")]);

@@ -5,11 +5,9 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use barrelstack_space::run::run;
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 /// Returns the FNV-1a hash of the bits of all frames.
 fn hash(frames: &[Vec<[f64; 7]>]) -> u64 {

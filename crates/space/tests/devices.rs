@@ -3,15 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack::device::{DEVICES, Setting};
 use barrelstack_dynamics::{Element, Spatial, evaluate};
 use barrelstack_space::run::{Run, Standing, run, stand};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 fn demo(changes: &[&str]) -> Scenario {
     let all: Vec<String> =

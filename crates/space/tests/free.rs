@@ -1,7 +1,5 @@
 //! Free scenes in space from a file, against closed forms.
 
-#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
-
 use barrelstack::Scenario;
 use barrelstack_dynamics::{Linear as _, Spatial, Vec3, space::Space as _};
 use barrelstack_space::{Run, run};

@@ -3,8 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use barrelstack::motion::AccelerationUnit;
 use barrelstack::{Record, Scenario};
 use barrelstack_dynamics::{Drive as _, Vec3};
@@ -13,7 +11,7 @@ use barrelstack_space::drawing::ground_histories;
 use barrelstack_space::run::{Run, run};
 use barrelstack_space::{Ground, Summary};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 /// Returns a ground velocity (m/s) that is a pulse to the east and half of it to the north, and the warnings; `first`
 /// is the component across the barrels.

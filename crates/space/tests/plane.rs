@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use std::ops::ControlFlow;
 
 use barrelstack::assemble::PartKind;
 use barrelstack_space::{Ground, run};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 /// Returns the displacement (m) of the top barrels in the plane, its largest difference in space over the run and
 /// over the first three seconds, and the displacement out of the plane.

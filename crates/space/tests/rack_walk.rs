@@ -1,10 +1,8 @@
 //! How far a rack walks on soft seats: the rigid limit, and the smallest model beside the program.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod two_seats;
-
+use crate::two_seats::{Cycle, GRAVITY, TwoSeats, newmark};
 use barrelstack::Scenario;
-use two_seats::{Cycle, GRAVITY, TwoSeats, newmark};
 
 const CYCLE: Cycle = Cycle { amplitude: 0.5 * GRAVITY, period: 0.6 };
 

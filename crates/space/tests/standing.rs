@@ -2,15 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use barrelstack::Scenario;
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Method, Simulation, Still, evaluate, simulate};
 use barrelstack_space::run::{Standing, stand};
 use barrelstack_space::{Stack, run};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 fn demo(changes: &[&str]) -> Scenario {
     let all: Vec<String> =

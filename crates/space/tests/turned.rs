@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use barrelstack_dynamics::{
     Drive, Method, Model, Quaternion, Scratch, Simulation, Spatial, State, Vec3, simulate,
 };
 use barrelstack_space::{Ground, Stack};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 /// Ground motion rotated about the vertical.
 struct Turned(Ground, Quaternion);

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
-mod common;
-
 use std::ops::ControlFlow;
 
 use barrelstack::Scenario;
@@ -15,7 +13,7 @@ use barrelstack_space::run::{run, stand};
 use barrelstack_space::variants::remedy;
 use barrelstack_space::{Heading, answer};
 
-use common::soft_demo;
+use crate::common::soft_demo;
 
 fn demo(changes: &[&str]) -> Scenario {
     seen("spatial", changes)

@@ -1,7 +1,5 @@
 //! Studies of a few milliseconds a case, and tables made by hand.
 
-#![allow(dead_code, reason = "each suite uses a part")]
-
 use std::io::Write as _;
 
 use barrelstack_campaign::study::{

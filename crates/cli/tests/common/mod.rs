@@ -1,6 +1,5 @@
 //! Runs the built program as a user does.
 
-#![allow(dead_code, reason = "each suite uses a part")]
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
 
 use std::ffi::OsStr;

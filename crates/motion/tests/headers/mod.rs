@@ -21,7 +21,7 @@ enum Style {
 }
 
 /// A table with the record that it represents.
-pub struct Table {
+pub(crate) struct Table {
     header: String,
     rows: String,
     step: f64,
@@ -33,7 +33,7 @@ pub struct Table {
 }
 
 /// Result for a table.
-pub enum Verdict {
+pub(crate) enum Verdict {
     Right,
     Refused,
     Wrong(String),
@@ -54,7 +54,7 @@ const STEPS: [f64; 6] = [0.005, 0.01, 0.02, 0.004, 0.0025, 0.003_906_25];
 
 /// Generates a random table.
 #[allow(clippy::too_many_lines, reason = "one table, from top to bottom")]
-pub fn table(random: &mut Random) -> Table {
+pub(crate) fn table(random: &mut Random) -> Table {
     let step = *pick(random, &STEPS);
     let samples = 60 + below(random, 30);
     let (unit, factor) = *pick(random, &UNITS);
@@ -211,12 +211,12 @@ const PROSE: [&str; 8] = [
 
 impl Table {
     /// Returns the file.
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         format!("{}{}", self.header, self.rows)
     }
 
     /// Compares the record read from a text with that of the table.
-    pub fn verdict(&self, text: &str) -> Verdict {
+    pub(crate) fn verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;
         };
@@ -242,7 +242,7 @@ impl Table {
 
     /// Checks that the peak of a record read from a damaged text is that of the table within 1 %, or that a warning
     /// contradicts the stated one.
-    pub fn peak_verdict(&self, text: &str) -> Verdict {
+    pub(crate) fn peak_verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;
         };
@@ -261,7 +261,7 @@ impl Table {
 }
 
 /// Returns the file with one to three changes to its header.
-pub fn mutated(table: &Table, random: &mut Random) -> String {
+pub(crate) fn mutated(table: &Table, random: &mut Random) -> String {
     let mut header = table.header.clone().into_bytes();
     for _ in 0..=below(random, 3) {
         let at = below(random, header.len().max(1));

@@ -1,6 +1,4 @@
 //! Scenes and documents that the tests share, and a reader of the data of a page.
-#![allow(dead_code, reason = "every test file uses a part of this one")]
-#![allow(clippy::unwrap_used, reason = "a page that cannot be read fails the test")]
 
 use std::sync::Arc;
 

@@ -1,6 +1,4 @@
 //! The demo with the soft seats of the paper's contact nodes, on which stacks fall in a few seconds.
-#![allow(dead_code, reason = "each test uses a part of it")]
-
 use barrelstack::Scenario;
 
 /// Constants of one contact node of the paper for every seat, and the friction of its cases.

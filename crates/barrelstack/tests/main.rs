@@ -1,0 +1,37 @@
+//! Stacks as a user states them: verdicts, variants, comparisons, pages and files, and the numbers that they rest on.
+//!
+//! One program, since each would compile and link what it tests anew.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod accuracy;
+mod common;
+mod compare;
+mod devices;
+mod documents;
+mod ensemble;
+mod free_elements;
+mod free_solids;
+mod locked_friction;
+mod moment;
+mod paper;
+mod period;
+mod racks_along;
+mod remedy;
+mod render;
+mod rest;
+mod scenario_barrel;
+mod scenario_builtin;
+mod scenario_cases;
+mod scenario_hostile;
+mod scenario_quantity;
+mod scenario_schema;
+mod scenario_variants;
+mod seats;
+mod settling;
+mod similitude;
+mod straps;
+mod stress;
+mod thickness;
+mod variants;
+mod verify;

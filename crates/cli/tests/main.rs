@@ -1,0 +1,28 @@
+//! The program as a user runs it: commands, messages, files, interrupts.
+//!
+//! One program, since each would compile and link what it tests anew.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+#[cfg(unix)]
+#[path = "common/cases.rs"]
+mod cases;
+mod cli;
+mod cluster;
+mod common;
+mod compare;
+mod decision;
+mod documented;
+mod hostile_commands;
+mod hostile_records;
+mod hostile_scenarios;
+mod interrupt;
+mod motion;
+mod motion_folders;
+mod motion_more;
+mod outputs;
+mod pictures;
+mod schemas;
+mod space;
+mod study;
+mod words;

@@ -1,0 +1,34 @@
+//! Records and motions: every format, every damage, and the measures that are taken of them.
+//!
+//! One program, since each would compile and link what it tests anew.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
+
+mod collection;
+mod column_headers;
+mod columns;
+mod consistency;
+mod corners;
+mod formats;
+mod fuzz;
+mod fuzz_readers;
+mod headers;
+mod intensity;
+mod kinematics;
+#[path = "fuzz/large.rs"]
+#[expect(dead_code, reason = "absurd large files are for the long run")]
+mod large;
+mod leniency;
+mod matching;
+mod matching_pair;
+mod matching_shared;
+mod near_formats;
+mod packed;
+mod pulse_class;
+mod recorded;
+mod records;
+mod reference;
+mod shared;
+mod shared_folder;
+mod synthesis;
+mod writing;
