@@ -1,4 +1,4 @@
-//! Safe heights: collapse of stacks of two to six levels, in both directions, against the strength of shaking.
+//! Safe heights: collapse of stacks of two levels and more, in both directions, against the strength of shaking.
 //!
 //! Stacks on one kind of rack are shaken by the bundled record of South Napa, by synthetic motions and by the
 //! user's own records, all scaled to the same levels of peak ground velocity; friction is drawn anew for each run.
@@ -24,7 +24,7 @@ use crate::system;
 
 pub use crate::scenario::View;
 pub use json::HeightsDocument;
-pub use plan::{HEIGHTS, VELOCITIES};
+pub use plan::{LARGEST, SMALLEST, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
 
 /// Request for a study of heights.
@@ -40,6 +40,8 @@ pub struct Request {
     pub synthetic: u32,
     /// Seed of everything that is drawn.
     pub seed: u32,
+    /// Levels of the highest stacks, from [`SMALLEST`] to [`LARGEST`].
+    pub highest: u32,
 }
 
 impl Default for Request {
@@ -50,7 +52,15 @@ impl Default for Request {
             records: Vec::new(),
             synthetic: 22,
             seed: 1,
+            highest: LARGEST,
         }
+    }
+}
+
+impl Request {
+    /// Returns the levels of the stacks, from two on.
+    pub fn heights(&self) -> impl Iterator<Item = u32> + use<> {
+        SMALLEST..=self.highest
     }
 }
 
@@ -214,8 +224,10 @@ pub fn heights(
         found.push((*view, *recorded, study.run(&place, options, &report)?));
         before += study.cases();
     }
-    let stacks: Vec<(u32, View)> =
-        View::ALL.into_iter().flat_map(|view| HEIGHTS.map(|levels| (levels, view))).collect();
+    let stacks: Vec<(u32, View)> = View::ALL
+        .into_iter()
+        .flat_map(|view| request.heights().map(move |levels| (levels, view)))
+        .collect();
     let margins = margin::margins(request, &stacks, &|| tell(all, all))?;
     let mut found = gather(request, &found)?;
     for height in &mut found.heights {
@@ -242,7 +254,7 @@ fn gather(request: &Request, found: &[(View, bool, Collected)]) -> Result<Height
             continue;
         }
         motions = cases.records.len();
-        for levels in HEIGHTS {
+        for levels in request.heights() {
             let of = cases.only(|case| levels_of(collected, case.row) == Some(levels));
             heights.push(height(&of, levels, *view));
         }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use barrelstack_campaign::heights::{HEIGHTS, HeightsError, Request, VELOCITIES, View, heights};
+use barrelstack_campaign::heights::{HeightsError, Request, VELOCITIES, View, heights};
 use barrelstack_campaign::study::{RunOptions, StudyError};
 
 fn stopped_at_once(request: &Request) -> (Result<(), HeightsError>, u64) {
@@ -22,8 +22,10 @@ fn every_height_direction_motion_and_level_is_a_run() {
     let (result, runs) = stopped_at_once(&request);
     assert!(matches!(result, Err(HeightsError::Study(StudyError::Stopped))), "{result:?}");
     // Two components of the bundled record and three synthetic motions; the record unscaled beside them.
-    let stacks = HEIGHTS.len() * View::ALL.len();
+    let stacks = 5 * View::ALL.len();
     assert_eq!(usize::try_from(runs).unwrap(), stacks * (VELOCITIES.len() * 5 + 2));
+    let (_, fewer) = stopped_at_once(&Request { highest: 2, ..request });
+    assert_eq!(5 * fewer, runs);
 }
 
 #[test]

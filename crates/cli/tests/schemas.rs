@@ -193,7 +193,9 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     let outcome = |value: &Value| value["outcome"]["kind"].as_str().unwrap().to_owned();
     let stands = ["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s"];
     assert_eq!(outcome(&seen.run(&stands, 0)), "stable");
-    let weak = ["run", "demo-napa", "--set=stack.view=longitudinal", "--variants=8"];
+    // Two levels under a sine that no height survives.
+    let strong = "motion={ sine = { amplitude = \"12 cm\", period = \"0.8 s\", cycles = 3 } }";
+    let weak = ["run", "demo-napa", "--set=stack.levels=2", "--set", strong, "--variants=8"];
     let fallen = seen.run(&[&weak, &short[..]].concat(), 0);
     assert_eq!(outcome(&fallen), "collapse");
     assert!(!fallen["remedy"]["tried"].as_array().unwrap().is_empty());
@@ -309,9 +311,10 @@ fn what_takes_a_minute_has_its_schema() {
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "heights");
     let mut seen = Seen::default();
-    let arguments = ["heights", "--synthetic=0", "--barrel=burgundy-228", "--quiet", "--out", &out];
-    let value = seen.run(&arguments, 0);
+    let few = ["--synthetic=0", "--highest=2", "--barrel=burgundy-228", "--quiet", "--out", &out];
+    let value = seen.run(&[&["heights"][..], &few].concat(), 0);
     assert_eq!(value["barrel"], "burgundy-228");
+    assert_eq!(value["heights"].as_array().unwrap().len(), 2);
     let file = fs::read_to_string(folder.path().join("heights/heights.json")).unwrap();
     seen.document("heights.json", &file);
     let out = path(folder.path(), "protect");

@@ -2,15 +2,42 @@
 
 use barrelstack_report::{Block, Cell, Table};
 
-use super::plan::{HEIGHTS, VELOCITIES};
+use super::page::span;
+use super::plan::VELOCITIES;
 use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::scenario::View;
 
+/// Levels of the lowest stacks that are set beside what was found.
+const FOUND: u32 = 4;
+
 /// Compares the results with observations at Napa.
 pub(super) fn napa(all: &Heights) -> Vec<Block> {
+    let beside = (all.request.highest >= FOUND).then(|| Block::Table(beside_the_field(all)));
+    let mut blocks = Vec::from_iter(beside);
+    blocks.push(Block::Table(recorded(all)));
+    blocks.push(Block::List(vec![
+        "In the field: peak accelerations above 0.5 g and velocities above 50 cm/s near Napa (USGS 2015); half of the \
+         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most of what \
+         collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as reported by Wines & Vines 2017)."
+            .into(),
+        "That is a weak check. No share by height was ever published, the shaking at the stores was not recorded, and \
+         stacks there stood in rows that knock each other down, which is not modeled here and fells more."
+            .into(),
+        "Each of our runs shakes one plane. A real stack is shaken across and along at once and has both chances to fall: \
+         between the larger of the two and their sum."
+            .into(),
+    ]));
+    blocks
+}
+
+/// Tabulates shares of high stacks beside those of Napa.
+fn beside_the_field(all: &Heights) -> Table {
     let mut table = Table::new(
-        "Stacks of four to six levels: ours at the strength of shaking of Napa, and what was found there.",
+        format!(
+            "Stacks of {}: ours at the strength of shaking of Napa, and what was found there.",
+            span(FOUND, all.request.highest)
+        ),
         &[("", ""), ("ours", ""), ("found at Napa", "")],
     );
     let range = |of: fn(&AtLevel) -> f64| {
@@ -18,7 +45,7 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
             .into_iter()
             .filter(|velocity| (0.4..=0.75).contains(velocity))
             .flat_map(|velocity| {
-                let high = all.heights.iter().filter(|height| height.levels >= 4);
+                let high = all.heights.iter().filter(|height| height.levels >= FOUND);
                 high.filter_map(move |height| height.at(velocity))
             })
             .map(|at| of(&at))
@@ -48,37 +75,18 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
         fallen,
         "half of 18,000 barrels of one store",
     ));
-    let mut blocks = vec![Block::Table(table), Block::Table(recorded(all))];
-    blocks.push(Block::List(vec![
-        "In the field: peak accelerations above 0.5 g and velocities above 50 cm/s near Napa (USGS 2015); half of the \
-         18,000 barrels of one store fell, and in one of its rooms almost every stack (Wines & Vines 2014). Most of what \
-         collapsed in the county stood on portable racks for two barrels (FEMA P-1024, as reported by Wines & Vines 2017)."
-            .into(),
-        "That is a weak check. No share by height was ever published, the shaking at the stores was not recorded, and \
-         stacks there stood in rows that knock each other down, which is not modeled here and fells more."
-            .into(),
-        "Each of our runs shakes one plane. A real stack is shaken across and along at once and has both chances to fall: \
-         between the larger of the two and their sum."
-            .into(),
-    ]));
-    blocks
+    table
 }
 
 /// Tabulates runs under the bundled record, unscaled.
 fn recorded(all: &Heights) -> Table {
+    let names: Vec<String> =
+        all.request.heights().map(|levels| format!("{levels} levels")).collect();
+    let mut columns = vec![("component", ""), ("PGV", "cm/s"), ("PGA", "g"), ("shaken", "")];
+    columns.extend(names.iter().map(|name| (name.as_str(), "")));
     let mut table = Table::new(
         "South Napa 2014 as recorded at Napa College, unscaled: what becomes of each stack (friction of the catalog).",
-        &[
-            ("component", ""),
-            ("PGV", "cm/s"),
-            ("PGA", "g"),
-            ("shaken", ""),
-            ("2 levels", ""),
-            ("3 levels", ""),
-            ("4 levels", ""),
-            ("5 levels", ""),
-            ("6 levels", ""),
-        ],
+        &columns,
     );
     let mut rows: Vec<(&str, View)> = Vec::new();
     for run in &all.recorded {
@@ -99,7 +107,7 @@ fn recorded(all: &Heights) -> Table {
             Cell::Number(any.acceleration / barrelstack_motion::STANDARD_GRAVITY, 3),
             Cell::text(view.words()),
         ];
-        row.extend(HEIGHTS.map(|levels| match of(Some(levels)) {
+        row.extend(all.request.heights().map(|levels| match of(Some(levels)) {
             Some(run) if run.collapsed => {
                 Cell::text(format!("falls ({} of the barrels)", percent(run.fallen)))
             }

@@ -5,14 +5,14 @@ use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
 
-use super::plan::{HEIGHTS, VELOCITIES};
+use super::plan::{LARGEST, SMALLEST, VELOCITIES};
 use super::{AtLevel, Height, Heights, field};
 use crate::decision::{
     LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
     text,
 };
-use crate::scenario::View;
-use crate::scenario::catalog;
+use crate::scenario::title::{counted, number};
+use crate::scenario::{View, catalog};
 
 /// Largest share of collapse that is called low, and the largest upper bound of the probability with it: a probability
 /// above that is called low in at most one of 20 tries, whatever the number of motions.
@@ -60,6 +60,15 @@ fn felt(velocity: f64) -> &'static str {
     }
 }
 
+/// Names stacks of some heights: "two levels", "two to six levels".
+pub(super) fn span(from: u32, to: u32) -> String {
+    if from == to {
+        counted(from, "level")
+    } else {
+        format!("{} to {}", number(from), counted(to, "level"))
+    }
+}
+
 fn shaking(velocity: f64) -> String {
     format!("{:.0} cm/s", 100.0 * velocity)
 }
@@ -91,8 +100,8 @@ fn rating(at: &AtLevel) -> Rating {
 
 /// Returns the highest stack that is rated low at a level of PGV (m/s) together with all lower ones.
 fn highest_low(all: &Heights, velocity: f64) -> Option<u32> {
-    HEIGHTS
-        .into_iter()
+    all.request
+        .heights()
         .take_while(|levels| {
             worse(all, *levels, velocity).is_some_and(|at| rating(&at) == Rating::Good)
         })
@@ -139,7 +148,7 @@ fn headline(all: &Heights) -> String {
 /// Names the directions in which two levels are not low in risk at a level of PGV (m/s): ", along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |view: &View| {
-        let at = all.of(HEIGHTS[0], *view).and_then(|height| height.at(velocity));
+        let at = all.of(SMALLEST, *view).and_then(|height| height.at(velocity));
         at.is_none_or(|at| rating(&at) == Rating::Good)
     };
     let not: Vec<&str> = View::ALL.into_iter().filter(|view| !low(view)).map(View::words).collect();
@@ -149,7 +158,7 @@ fn weaker(all: &Heights, velocity: f64) -> String {
 /// Describes the worst of all stacks of up to some levels at a level of PGV (m/s), all of which were counted:
 /// "in 24 motions none fell: at most 12 % (95 %)".
 fn found(all: &Heights, levels: u32, velocity: f64) -> String {
-    let heights = HEIGHTS.into_iter().take_while(|height| *height <= levels);
+    let heights = all.request.heights().take_while(|height| *height <= levels);
     let worst = heights
         .filter_map(|height| worse(all, height, velocity))
         .max_by(|a, b| a.interval.high.total_cmp(&b.interval.high));
@@ -168,8 +177,11 @@ fn bound(high: f64) -> String {
 
 fn sentences(all: &Heights) -> Vec<String> {
     let mut said = vec![format!(
-        "Stacks of two to six levels on {} racks were shaken {} times, across and along the barrels, by {} motions.",
-        all.request.rack, all.runs, all.motions
+        "Stacks of {} on {} racks were shaken {} times, across and along the barrels, by {} motions.",
+        span(SMALLEST, all.request.highest),
+        all.request.rack,
+        all.runs,
+        all.motions
     )];
     let share = |levels: u32| {
         let velocity = VELOCITIES.into_iter().find(|v| *v >= 0.5)?;
@@ -246,14 +258,15 @@ fn blocks(all: &Heights) -> Vec<Block> {
 }
 
 /// Builds a table with one row per level of shaking and one column per height.
-fn by_height(caption: String, cell: impl Fn(u32, f64) -> Cell) -> Table {
-    let names = HEIGHTS.map(|levels| format!("{levels} levels"));
+fn by_height(all: &Heights, caption: String, cell: impl Fn(u32, f64) -> Cell) -> Table {
+    let names: Vec<String> =
+        all.request.heights().map(|levels| format!("{levels} levels")).collect();
     let mut columns = vec![("shaking, by PGV", ""), ("felt as", "")];
     columns.extend(names.iter().map(|name| (name.as_str(), "")));
     let mut table = Table::new(caption, &columns);
     for velocity in VELOCITIES {
         let mut row = vec![Cell::text(shaking(velocity)), Cell::text(felt(velocity))];
-        row.extend(HEIGHTS.map(|levels| cell(levels, velocity)));
+        row.extend(all.request.heights().map(|levels| cell(levels, velocity)));
         table.rows.push(row);
     }
     table
@@ -281,6 +294,7 @@ fn judged(at: &AtLevel) -> Cell {
 fn card(all: &Heights) -> Table {
     let rack = &all.request.rack;
     by_height(
+        all,
         format!(
             "Chance that a stack on {rack} racks collapses, by height and strength of shaking."
         ),
@@ -290,6 +304,7 @@ fn card(all: &Heights) -> Table {
 
 fn direction(all: &Heights, view: View) -> Table {
     by_height(
+        all,
         format!("Collapse under shaking {}: collapsed stacks of those run.", view.words()),
         |levels, velocity| {
             let found = all.of(levels, view).and_then(|height| height.at(velocity));
@@ -327,7 +342,7 @@ fn static_margins(all: &Heights) -> Table {
 }
 
 fn level_axis() -> Axis {
-    Axis { range: Some([1.6, 6.4]), ..Axis::new("levels", "") }
+    Axis { range: Some([1.6, f64::from(LARGEST) + 0.4]), ..Axis::new("levels", "") }
 }
 
 /// Plots the probability against height at three levels of shaking, with intervals.
@@ -336,8 +351,9 @@ fn chart(all: &Heights) -> Figure {
     for (index, at) in [1, 3, 5].into_iter().enumerate() {
         // Side by side, so that the bars do not overlap.
         let shift = 0.07 * (index as f64 - 1.0);
-        let found: Vec<(f64, f64, Interval)> = HEIGHTS
-            .into_iter()
+        let found: Vec<(f64, f64, Interval)> = all
+            .request
+            .heights()
             .filter_map(|levels| {
                 let found = worse(all, levels, VELOCITIES[at])?;
                 Some((f64::from(levels) + shift, found.stripe.fraction(), found.interval))

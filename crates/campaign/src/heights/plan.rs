@@ -8,8 +8,10 @@ use crate::scenario::{Scenario, View, catalog};
 use crate::study::StudyError;
 use crate::unknown::factors;
 
-/// Levels of the stacks.
-pub const HEIGHTS: [u32; 5] = [2, 3, 4, 5, 6];
+/// Levels of the lowest stacks.
+pub const SMALLEST: u32 = 2;
+/// Levels of the highest stacks that may be requested.
+pub const LARGEST: u32 = 6;
 
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];
@@ -22,7 +24,7 @@ pub(super) fn name(view: View, recorded: bool) -> String {
 /// Returns the text of a study: every height under every motion at every level, or under the bundled record unscaled.
 pub(super) fn text(request: &Request, view: View, recorded: bool) -> Result<String, HeightsError> {
     let (columns, rack) = columns_and_rack(request, view)?;
-    let levels: Vec<String> = HEIGHTS.iter().map(u32::to_string).collect();
+    let levels: Vec<String> = request.heights().map(|levels| levels.to_string()).collect();
     let mut text = format!(
         "schema = 1\n\
          title = \"How high: {} racks shaken {}\"\n\

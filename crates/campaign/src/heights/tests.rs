@@ -46,11 +46,12 @@ fn made(failures: impl Fn(u32, View, f64) -> u32) -> Heights {
         fallen: vec![0.0; VELOCITIES.len()],
         static_margin: (view == View::Longitudinal).then(|| 9.806_65 * 0.6 / f64::from(levels)),
     };
-    let heights =
-        View::ALL.into_iter().flat_map(|view| HEIGHTS.map(|levels| height(levels, view))).collect();
+    let request = Request::default();
+    let of = |view| request.heights().map(move |levels| (levels, view));
+    let heights = View::ALL.into_iter().flat_map(of).map(|(levels, view)| height(levels, view));
     Heights {
-        request: Request::default(),
-        heights,
+        heights: heights.collect(),
+        request,
         recorded: Vec::new(),
         motions: 24,
         runs: 1440,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::heights::{
-    HEIGHTS, Heights, HeightsError, Request, VELOCITIES, View, heights,
+    Heights, HeightsError, LARGEST, Request, SMALLEST, VELOCITIES, View, heights,
 };
 use barrelstack_campaign::study::StudyError;
 
@@ -20,6 +20,9 @@ pub(crate) struct HeightsArgs {
     /// Barrel of the catalog.
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
+    /// Levels of the highest stack.
+    #[arg(long, value_name = "LEVELS", default_value_t = LARGEST, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=i64::from(LARGEST)))]
+    highest: u32,
     /// File of a further motion, such as that of your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
     record: Vec<PathBuf>,
@@ -44,6 +47,7 @@ pub(crate) fn run(args: &HeightsArgs) -> anyhow::Result<ExitCode> {
         records: args.record.clone(),
         synthetic: args.synthetic,
         seed: args.seed,
+        highest: args.highest,
     };
     let (options, progress) = args.page.begin(&args.out)?;
     let result =
@@ -62,10 +66,11 @@ fn lines(found: &Heights) -> Vec<String> {
     let mut lines = vec![found.document.verdict.headline.clone(), String::new()];
     for view in View::ALL {
         lines.push(format!("  collapsed, shaken {}", view.words()));
-        let heads = HEIGHTS.map(|levels| format!("{:>9}", format!("{levels} levels")));
-        lines.push(format!("  {:>10}{}", "shaking", heads.concat()));
+        let heads =
+            found.request.heights().map(|levels| format!("{:>9}", format!("{levels} levels")));
+        lines.push(format!("  {:>10}{}", "shaking", heads.collect::<String>()));
         for velocity in VELOCITIES {
-            let cells = HEIGHTS.map(|levels| {
+            let cells = found.request.heights().map(|levels| {
                 let at = found.of(levels, view).and_then(|height| height.at(velocity));
                 let share = at.map_or_else(String::new, |at| {
                     format!("{:.0} %", 100.0 * at.stripe.fraction())
@@ -75,7 +80,7 @@ fn lines(found: &Heights) -> Vec<String> {
             lines.push(format!(
                 "  {:>10}{}",
                 format!("{:.0} cm/s", 100.0 * velocity),
-                cells.concat()
+                cells.collect::<String>()
             ));
         }
         lines.push(String::new());
