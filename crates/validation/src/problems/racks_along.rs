@@ -50,8 +50,9 @@ fn towers() -> Vec<String> {
         "stack.rack=rack-on-rack",
         "stack.levels=3",
         "interface.rack-ground.stiffness=\"5000 MN/m\"",
-        // Softer contacts let the stack rotate on the two corners of a post.
-        "interface.rack-rack.stiffness=\"500 MN/m\"",
+        // Before it rises, the stack rotates on the two corners of its outer posts, so that it leans over its edge:
+        // with 500 MN/m it rises at a push 0.7 % lower, with 2 GN/m at one 0.2 % lower.
+        "interface.rack-rack.stiffness=\"2000 MN/m\"",
         "stack.override=[{ kind = \"rack\", level = 1, mass = \"50000 kg\" }]",
         "interface.barrel-rack.friction.coefficient=5.0",
     ]
