@@ -278,7 +278,7 @@ impl Summary {
     /// ```
     pub fn to_json(&self) -> String {
         // Only maps with non-text keys could fail, and there are none.
-        serde_json::to_string_pretty(self).unwrap_or_default()
+        described::to_json(self).unwrap_or_default()
     }
 }
 

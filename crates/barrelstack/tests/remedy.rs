@@ -146,15 +146,15 @@ fn sentences_say_what_suffices_and_what_does_not() {
             None,
             &both,
             "Three levels would have stood in all 64 variants; straps tightened to 4 kN would not suffice. At most 9 % of \
-             such stacks would fall (95 % confidence, the choice among 9 changes counted).",
+             stacks with three levels would fall (95 % confidence, the choice among 9 changes counted).",
         ),
         (
             None,
             Some(straps(0)),
             &both,
             "Five levels strapped together at 4 kN would have stood in all 64 variants; fewer levels without them \
-             would not suffice. At most 9 % of such stacks would fall (95 % confidence, the choice among 9 changes \
-             counted).",
+             would not suffice. At most 9 % of stacks with five levels strapped together at 4 kN would fall (95 % \
+             confidence, the choice among 9 changes counted).",
         ),
         (
             None,

@@ -180,6 +180,9 @@ pub enum HeightsError {
     /// The barrel is not in the catalog.
     #[error("there is no barrel `{0}`; those are {1}")]
     Barrel(String, String),
+    /// The highest stack has too few levels, or too many.
+    #[error("the highest stack cannot have {0} levels; state {SMALLEST} to {LARGEST}")]
+    Levels(u32),
     /// A study cannot be run.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -196,13 +199,16 @@ pub enum HeightsError {
 /// `tell` receives the numbers of finished and of all runs, and may cancel.
 ///
 /// # Errors
-/// When the rack is unknown, a record cannot be read, or a folder cannot be written.
+/// When the rack or the height is unknown, a record cannot be read, or a folder cannot be written.
 pub fn heights(
     request: &Request,
     folder: &Path,
     options: &RunOptions,
     tell: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Heights, HeightsError> {
+    if !(SMALLEST..=LARGEST).contains(&request.highest) {
+        return Err(HeightsError::Levels(request.highest));
+    }
     let mut studies: Vec<(View, bool, Study)> = Vec::new();
     for view in View::ALL {
         for recorded in [false, true] {

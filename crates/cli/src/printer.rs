@@ -61,7 +61,7 @@ fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
 
 /// Prints a document for programs.
 pub(crate) fn document(document: &impl Serialize) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(document)? + "\n";
+    let text = described::to_json(document)? + "\n";
     PRINTED.store(true, Ordering::Relaxed);
     let mut whole = String::with_capacity(text.len());
     for c in text.chars() {

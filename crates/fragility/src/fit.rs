@@ -56,11 +56,10 @@ pub enum FitError {
         /// The lowest intensity.
         smallest: f64,
     },
-    /// A single capacity explains all cases.
+    /// Failures and survivals have at most one intensity in common.
     #[error(
-        "failures and survivals do not overlap: a single capacity between {above} and {below} \
-         explains every case, and the dispersion cannot be found; add cases between these \
-         intensities, or give the dispersion"
+        "no case survived above {above} and none failed below {below}, so the dispersion cannot be \
+         found; add cases around these intensities, or give the dispersion"
     )]
     Separated {
         /// Every survival is at or below this intensity.

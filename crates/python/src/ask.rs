@@ -74,9 +74,10 @@ pub(crate) fn heights(
     records: Vec<PathBuf>,
     synthetic: u32,
     seed: u32,
+    highest: u32,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
-    let request = HeightsRequest { rack, barrel, records, synthetic, seed };
+    let request = HeightsRequest { rack, barrel, records, synthetic, seed, highest };
     let found = listening(py, progress, |hear| {
         all_heights(&request, &folder, &RunOptions::default(), &|done, of| {
             hear.tell(done as f64, of as f64, "runs")
@@ -86,6 +87,7 @@ pub(crate) fn heights(
         HeightsError::Study(error) => errors::study(error),
         other @ (HeightsError::Rack(..)
         | HeightsError::Barrel(..)
+        | HeightsError::Levels(_)
         | HeightsError::Stack(_)
         | HeightsError::Decision(_)) => errors::told(other),
     })?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use barrelstack::export::Folder;
-use barrelstack_report::{Document, Paper, document_pdf, html};
+use barrelstack_report::{Document, Paper, described, document_pdf, html};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -21,7 +21,7 @@ pub(crate) struct Page {
 impl Page {
     /// Creates a page with the numbers that the command prints as JSON.
     pub(crate) fn of<N: serde::Serialize>(numbers: &N, document: Document) -> PyResult<Self> {
-        let numbers = serde_json::to_string(numbers).map_err(errors::general)?;
+        let numbers = described::to_json(numbers).map_err(errors::general)?;
         Ok(Self { numbers, document })
     }
 }

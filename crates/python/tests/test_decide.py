@@ -88,8 +88,8 @@ def test_a_free_scene_has_no_score(tmp_path: Path) -> None:
 
 @pytest.mark.heavy
 def test_heights_are_those_of_the_command(command: str, tmp_path: Path) -> None:
-    told = by_command(command, "heights", "--synthetic", "0", "--out", str(tmp_path / "theirs"), "--quiet")
-    found = heights(tmp_path / "ours", synthetic=0)
+    told = by_command(command, "heights", "--synthetic=0", "--highest=2", "--out", str(tmp_path / "theirs"), "--quiet")
+    found = heights(tmp_path / "ours", synthetic=0, highest=2)
     assert found.document == told
     assert len(found.table) == sum(len(height["at"]) for height in told["heights"])
 
@@ -97,6 +97,8 @@ def test_heights_are_those_of_the_command(command: str, tmp_path: Path) -> None:
 def test_an_unknown_rack_has_no_heights(tmp_path: Path) -> None:
     with pytest.raises(barrelstack.StudyError, match="no rack `three-barrel`"):
         heights(tmp_path / "none", rack="three-barrel")
+    with pytest.raises(barrelstack.StudyError, match="cannot have 7 levels; state 2 to 6"):
+        heights(tmp_path / "none", highest=7)
 
 
 def test_the_cases_of_the_paper_are_a_table_and_end_on_ctrl_c() -> None:

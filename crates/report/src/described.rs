@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use crate::escape::one_line;
@@ -73,6 +74,23 @@ impl<K: Ord, T: Described> Described for BTreeMap<K, T> {
     fn schema(objects: &mut Objects) -> Value {
         json!({ "type": "object", "additionalProperties": T::schema(objects) })
     }
+}
+
+/// Returns a document as indented JSON text, in which no zero has a sign: the sum of no numbers is a negative one.
+///
+/// # Errors
+/// For maps whose keys are no texts.
+pub fn to_json(document: &impl Serialize) -> serde_json::Result<String> {
+    let text = serde_json::to_string_pretty(document)?;
+    // A number ends its line, a text ends with its quote.
+    let plain = |line: &str| match line.strip_suffix("-0.0").or_else(|| line.strip_suffix("-0.0,"))
+    {
+        Some(before) if before.is_empty() || before.ends_with(' ') => {
+            format!("{before}{}", line[before.len()..].replacen('-', "", 1))
+        }
+        _ => line.to_owned(),
+    };
+    Ok(text.lines().map(plain).collect::<Vec<_>>().join("\n"))
 }
 
 /// A field of an object, as declared with [`described!`](crate::described!).
@@ -284,7 +302,7 @@ macro_rules! described {
 mod tests {
     use serde_json::json;
 
-    use super::{dictionary, document};
+    use super::{dictionary, document, to_json};
 
     described! {
         /// A thing.
@@ -306,6 +324,19 @@ mod tests {
             /// Its kind.
             kind: &'static str ["a", "b"] = name,
         }
+    }
+
+    #[test]
+    fn no_zero_has_a_sign_and_no_text_is_changed() {
+        let none = Vec::<f64>::new().iter().sum::<f64>();
+        assert!(none.is_sign_negative());
+        let written =
+            to_json(&json!({ "a": none, "b": [none, -1.0, -0.05], "c": "x -0.0" })).unwrap();
+        assert!(!written.contains(": -0.0\n") && written.contains("x -0.0"), "{written}");
+        let read: serde_json::Value = serde_json::from_str(&written).unwrap();
+        assert!(read["a"].as_f64().unwrap().is_sign_positive(), "{written}");
+        assert!(read["b"][0].as_f64().unwrap().is_sign_positive(), "{written}");
+        assert_eq!(read["b"][2], json!(-0.05));
     }
 
     #[test]

@@ -250,7 +250,7 @@ impl Summary {
     /// Returns the summary as indented JSON text.
     pub fn to_json(&self) -> String {
         // Serialization can only fail for maps with non-text keys, and there are none.
-        serde_json::to_string_pretty(self).unwrap_or_default()
+        described::to_json(self).unwrap_or_default()
     }
 }
 

@@ -156,8 +156,22 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
         let second = letter(at + 1);
         let sentence = move |pair: &Paired| {
             // Rounded, and a zero without its sign.
-            let points = |share: f64| format!("{}", (100.0 * share).round() + 0.0);
-            let [low, high] = pair.interval;
+            let points = |share: f64| (100.0 * share).round() + 0.0;
+            let [low, high] = pair.interval.map(points);
+            let change = match points(pair.reduction) {
+                0.0 => format!(
+                    "the share of {second} is the same to a point (95 % interval of its reduction {low} to {high}"
+                ),
+                less if less > 0.0 => format!(
+                    "the share of {second} is {less} points lower (95 % interval {low} to {high}"
+                ),
+                more => format!(
+                    "the share of {second} is {} points higher (95 % interval {} to {}",
+                    -more,
+                    0.0 - high,
+                    0.0 - low
+                ),
+            };
             let lost = match pair.without_verdict {
                 0 => String::new(),
                 some => format!(" Of {some} more variants one of the two has no verdict."),
@@ -165,15 +179,12 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             let clear = if pair.is_clear() { "" } else { ", so they do not prove a difference" };
             format!(
                 "Of the same {} variants under the same motions{} {} collapse in both, {} with A only and {} with \
-                 {second} only: the share of {second} is {} points lower (95 % interval {} to {}{clear}).{lost}",
+                 {second} only: {change}{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),
                 pair.both,
                 pair.only_first,
                 pair.only_second,
-                points(pair.reduction),
-                points(low),
-                points(high),
             )
         };
         Paired::of(first, other).iter().map(sentence).collect::<Vec<_>>()

@@ -92,7 +92,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Until the first loss of seat of each stack; what the whole run adds is in the summary of each.",
+        "Until the first loss of seat of each stack; its own report has those of the whole run beside them.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

@@ -71,7 +71,7 @@ const DIGITS: usize = 6;
 /// Tabulates the stated inputs, and, collapsed, all values.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
-    let mut settings = run.stated.settings();
+    let mut settings = run.stated.stated_settings();
     settings.retain(|setting| {
         let inside = setting.path.strip_prefix("stack.").and_then(|path| path.split('.').next());
         setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
@@ -113,6 +113,20 @@ fn dimensions(run: &Run) -> Option<Block> {
 #[cfg(test)]
 mod tests {
     use super::readable;
+    use crate::scenario::{Scenario, Source};
+
+    #[test]
+    fn what_was_written_is_given_and_nothing_else() {
+        let text = "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nbundled = \"napa-college-2014\"\n";
+        let change = "interface.barrel-rack.stiffness=9 MN/m".to_owned();
+        let scenario = Scenario::parse("two.toml", text, &[change]).unwrap();
+        let settings = scenario.stated_settings();
+        let given = settings.iter().filter(|one| one.source == Source::Given);
+        let paths: Vec<&str> = given.map(|one| one.path.as_str()).collect();
+        let written =
+            ["stack.levels", "stack.columns", "interface.barrel-rack.stiffness", "motion.bundled"];
+        assert_eq!(paths, written);
+    }
 
     #[test]
     fn long_numbers_are_rounded_and_everything_else_is_left_alone() {

@@ -71,7 +71,7 @@ impl Remedy {
                 _ => return String::new(),
             },
             (Some(one), None) | (None, Some(one)) => match at_most(one) {
-                Some(most) => format!("{most} of such stacks"),
+                Some(most) => format!("{most} of stacks with {}", name(one)),
                 None => return String::new(),
             },
             (None, None) => return String::new(),

@@ -75,7 +75,10 @@ pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String
         ),
         FitError::Separated { above, below } => match (told(*above), told(*below)) {
             (above, below) if above == below => {
-                format!("a single capacity of {above} explains every case; add cases around it")
+                format!(
+                    "no case failed below {above} and none survived above it, so the dispersion cannot be found; add cases \
+                     around it"
+                )
             }
             (above, below) => format!(
                 "a single capacity between {above} and {below} explains every case; add cases between them"

@@ -151,7 +151,7 @@ fn chart(sheet: &Sheet) -> Figure {
 }
 
 fn inputs(sheet: &Sheet) -> Table {
-    let settings = sheet.scenario.settings().into_iter();
+    let settings = sheet.scenario.stated_settings().into_iter();
     Table::of(
         "Inputs that differ from their defaults. Quantities are in SI units.",
         settings.filter(|setting| setting.source == Source::Given),

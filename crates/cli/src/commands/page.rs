@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use barrelstack_campaign::study::RunOptions;
-use barrelstack_report::{Document, html, markdown};
+use barrelstack_report::{Document, described, html, markdown};
 use serde::Serialize;
 
 use crate::interrupt::keeps;
@@ -70,7 +70,7 @@ pub(super) fn write_both(
     page: &Document,
     document: &impl Serialize,
 ) -> anyhow::Result<()> {
-    let json = serde_json::to_string_pretty(document)? + "\n";
+    let json = described::to_json(document)? + "\n";
     write(out, page, &[(name, json.as_bytes())])
 }
 

@@ -110,9 +110,10 @@ def heights(
     records: Iterable[Path] = (),
     synthetic: int = 22,
     seed: int = 1,
+    highest: int = 6,
     progress: Progress = None,
 ) -> Heights:
-    """Computes safe heights: stacks of two to six levels in both directions under the same motions.
+    """Computes safe heights: stacks of two levels and more in both directions under the same motions.
 
     Parameters
     ----------
@@ -126,6 +127,8 @@ def heights(
         Synthetic motions beside the bundled record.
     seed
         Seed of motions and friction.
+    highest
+        Levels of the highest stack, from 2 to 6.
     progress
         As for :meth:`Scenario.run`.
 
@@ -148,7 +151,7 @@ def heights(
     """
     with told(progress, "heights") as hear:
         files = [os.fspath(path) for path in records]
-        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, hear))
+        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, highest, hear))
 
 
 class Protections(Page):

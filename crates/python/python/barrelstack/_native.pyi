@@ -329,6 +329,7 @@ def heights(
     records: list[str],
     synthetic: int,
     seed: int,
+    highest: int,
     progress: _Told | None,
 ) -> Page: ...
 def protect(

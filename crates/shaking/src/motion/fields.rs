@@ -125,7 +125,8 @@ table! {
     /// Scaling of all components by one factor; one of the fields.
     pub static SCALE = "scale";
     /// Factor; a negative one turns the motion around.
-    factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }), Default::Nothing;
+    factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
+        Default::Derived("1 where nothing else scales the motion");
     /// Peak horizontal acceleration to reach.
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
     /// Peak horizontal velocity to reach.

@@ -40,15 +40,15 @@ section! {
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.02)), Default::Value("\"1 mm\"");
     /// Hair: standard deviation of the mass of every barrel and rack over that mass, normal up to three of them (assumption: 3 L of ullage or of wet wood in a full barrel).
     mass: f64 = SHARE, Default::Value("0.01");
-    /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair of materials (wood on steel goes from 0.1 to 0.6 by moisture and finish, pallets on steel racks from 0.37 to 0.45 by test; with it nine in ten lie within a factor of 1.8; the number is an assumption).
+    /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair of materials (wood on steel goes from 0.1 to 0.6 by moisture and finish, pallets on steel racks from 0.37 to 0.45 by test; with 0.35 nine in ten lie within a factor of 1.8; the number is an assumption).
     friction: f64 = DISPERSION, Default::Value("0.35");
     /// Ignorance: the same on the ground (floors are washed daily; steel on concrete goes from 0.4 in design to 0.65 by test; the number is an assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");
-    /// Ignorance: standard deviation of ln k, lognormal, one draw for all seats (nobody has measured these racks: nineteen in twenty lie within a factor of 3.2, which reaches from what Candia, de la Llera and Almazán 2008 measured to a stave that is clamped between hoops).
+    /// Ignorance: standard deviation of ln k, lognormal, one draw for all seats (nobody has measured these racks: with 0.6 nineteen in twenty lie within a factor of 3.2, which reaches from what Candia, de la Llera and Almazán 2008 measured to a stave that is clamped between hoops).
     stiffness: f64 = DISPERSION, Default::Value("0.6");
     /// Ignorance: the same for all impacts (an assumption).
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
-    /// Ignorance: standard deviation of ln c, or of the logarithm of the damping ratio where a restitution is stated, lognormal, one draw for all seats with a damper (a restitution of 0.8 then lies between 0.69 and 0.88 in nineteen of twenty; the number is an assumption).
+    /// Ignorance: standard deviation of ln c, or of the logarithm of the damping ratio where a restitution is stated, lognormal, one draw for all seats with a damper (with 0.3 a restitution of 0.8 lies between 0.69 and 0.88 in nineteen of twenty; the number is an assumption).
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// Whether half of the variants are shaken the other way round, as stacks that face the other way are.
     sign: bool = Kind::Flag, Default::Value("false");

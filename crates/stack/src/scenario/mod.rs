@@ -205,10 +205,7 @@ impl Scenario {
     /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` where it was not written
     /// so.
     pub fn as_written(&self, path: &str) -> Option<&str> {
-        let (_, table) = self.written.0.as_deref()?;
-        let keys: Vec<&str> = path.split('.').collect();
-        let value = &merge::node_at(table, &keys)?.value;
-        if let tree::Value::Text(text) = value { Some(text) } else { None }
+        if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }
 
     /// Returns the scenario as text that reads back equal: all defaults written out, all quantities in SI, paths
@@ -259,5 +256,24 @@ impl Scenario {
         let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
         settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));
         settings
+    }
+
+    /// Returns every value as [`Scenario::settings`]; of those whose default is derived, the ones that were written are
+    /// given.
+    pub fn stated_settings(&self) -> Vec<Setting> {
+        let mut settings = self.settings();
+        for setting in &mut settings {
+            if matches!(setting.source, Source::Derived(_)) && self.node(&setting.path).is_some() {
+                setting.source = Source::Given;
+            }
+        }
+        settings
+    }
+
+    /// Returns the node that was written at the path of a setting.
+    fn node(&self, path: &str) -> Option<&tree::Node> {
+        let (_, table) = self.written.0.as_deref()?;
+        let keys: Vec<&str> = path.split('.').collect();
+        merge::node_at(table, &keys)
     }
 }

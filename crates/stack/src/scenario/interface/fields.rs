@@ -85,7 +85,9 @@ const FRICTION_FIELD: Field = Field::new(
 const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
-    Default::Nothing,
+    Default::Derived(
+        "in a stack that of the rack's seats in the catalog per seat, without `damping`",
+    ),
     "Ratio of normal speeds after and before an impact, in place of the damping.",
 );
 
