@@ -50,6 +50,15 @@ const READERS: [&str; 14] = [
     "toml",
 ];
 
+/// What its calculators need beside them, and Pelicun.
+const CALCULATORS: [&str; 5] = [
+    "django>=4.2,<5",
+    "docutils~=0.19.0",
+    "geopandas~=1.1.4",
+    "django_cors_headers~=4.3.1",
+    "pelicun",
+];
+
 /// The step of the test command, where there is a Python; else what is missing.
 pub(crate) fn find(root: &Path) -> Result<Command, String> {
     if !root.join("pyproject.toml").is_file() {
@@ -94,18 +103,38 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what != Some("heavy") {
         tests.args(["-m", "not heavy"]);
     }
-    checked(&mut tests, "the tests of the package")
+    checked(&mut tests, "the tests of the package")?;
+    if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// The environment with the package as it is now, kept from run to run; none without the net.
-fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
-    let folder = target(root).join("python");
+/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own.
+fn run_others(root: &Path) -> anyhow::Result<()> {
+    let python = made(&target(root).join("python-others"))?;
+    for words in [&READERS[..], &CALCULATORS, &["--no-deps", OPENQUAKE]] {
+        let mut pip = inside(&python);
+        pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
+        checked(&mut pip, "the installation of OpenQuake and Pelicun")?;
+    }
+    let mut tests = Command::new("cargo");
+    tests.args(["test", "-p", "barrelstack-campaign", "--test", "exports"]);
+    tests.args(["--", "--ignored", "--nocapture"]).current_dir(root);
+    checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
+}
+
+/// The Python of the environment in a folder, which is made if it is not there.
+fn made(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
     if !python.is_file() {
         let base = interpreter().map_err(anyhow::Error::msg)?;
-        checked(Command::new(base).args(["-m", "venv"]).arg(&folder), "the environment")?;
+        checked(Command::new(base).args(["-m", "venv"]).arg(folder), "the environment")?;
     }
+    Ok(python)
+}
+
+/// The environment with the package as it is now, kept from run to run; none without the net.
+fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
+    let python = made(&target(root).join("python"))?;
     let mut needed = TESTS.to_vec();
     if heavy {
         needed.extend(HEAVY.iter().chain(&READERS).chain([&OPENQUAKE]));
