@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::steps::{build_program, program, target};
+use crate::steps::{build_program, cargo, program, target};
 
 /// What the tests need beside the package.
 const TESTS: [&str; 15] = [
@@ -115,8 +115,8 @@ fn run_others(root: &Path) -> anyhow::Result<()> {
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
         checked(&mut pip, "the installation of OpenQuake and Pelicun")?;
     }
-    let mut tests = Command::new("cargo");
-    tests.args(["test", "-p", "barrelstack-campaign", "--test", "exports"]);
+    let mut tests = Command::new(cargo());
+    tests.args(["test", "-p", "barrelstack-campaign", "--test", "all", "exports::"]);
     tests.args(["--", "--ignored", "--nocapture"]).current_dir(root);
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
 }

@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use barrelstack_report::described;
 
 use crate::ensemble::CaseResult;
+use crate::outcome::Outcome;
 use crate::run::{Run, RunFailure};
 use crate::scenario::{Scenario, View};
 use crate::summary::Summary;
@@ -30,9 +31,22 @@ pub struct Side {
     pub summary: Summary,
     /// Statistics of the variants in the other plane, where the scenario has both.
     pub other: Option<Spread>,
+    /// The stack as it is shown, in the other plane, where the scenario has both.
+    pub elsewhere: Option<Elsewhere>,
     /// For each plane, the shown one first, `true` for every variant that collapses, by its number; `None` for variants
     /// without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
+}
+
+/// Result of a run in the plane that is not shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elsewhere {
+    /// The plane.
+    pub view: View,
+    /// The outcome.
+    pub outcome: Outcome,
+    /// Its name in documents for programs.
+    pub kind: &'static str,
 }
 
 /// Makes all answers show the same variant, under the same component of their motion: the medoid over all of them.
@@ -60,8 +74,9 @@ pub fn aligned(
 /// Returns the runs of answers with their names, all in one plane where all have it: that of the worst result
 /// of any.
 pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
-    let share = |answer: &Answer| {
-        answer.decides.summary.ensemble.as_ref().and_then(|spread| spread.share).unwrap_or(0.0)
+    let share = |answer: &Answer| match &answer.decides.summary.ensemble {
+        Some(spread) => spread.share.unwrap_or(0.0),
+        None => f64::from(u8::from(answer.decides.run.outcome.is_collapse())),
     };
     let worst = answers
         .iter()
@@ -80,8 +95,12 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
         };
         let collapsed = std::iter::once(&shown).chain(&other).filter_map(collapsed).collect();
         let summary = Summary { other_plane: None, ..shown.summary };
+        let elsewhere = other.as_ref().and_then(|other| {
+            let (outcome, kind) = (other.run.outcome.clone(), other.summary.outcome.kind);
+            Some(Elsewhere { view: other.run.assembly.view?, outcome, kind })
+        });
         let other = other.and_then(|other| other.summary.ensemble);
-        Side { name, run: shown.run, summary, other, collapsed }
+        Side { name, run: shown.run, summary, other, elsewhere, collapsed }
     };
     answers.into_iter().map(side).collect()
 }
@@ -157,6 +176,10 @@ described! {
         pub summary: Summary = side.summary.clone(),
         /// What its variants say in the other plane; null where it has one plane.
         pub ensemble_of_other_plane: Option<Spread> = side.other.clone(),
+        /// What becomes of the run that is shown in the other plane; null where it has one plane.
+        pub outcome_of_other_plane: Option<&'static str>
+            ["stable", "collapse", "not-judged", "interrupted", "invalid"] =
+            side.elsewhere.as_ref().map(|elsewhere| elsewhere.kind),
     }
 
     /// One input that is not the same in all runs.

@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack::compare::{self, CompareError, Side, differences};
-use barrelstack::scenario::Source;
+use barrelstack::compare::{self, CompareError, Elsewhere, Side, differences};
+use barrelstack::outcome::Outcome;
+use barrelstack::scenario::{Source, View};
 use barrelstack::variants::{RunChoice, answer};
 use barrelstack::{Scenario, Summary};
-use barrelstack_report::{Block, Document, FigureKind, Plot, Table, figures, markdown};
+use barrelstack_report::{Block, Document, FigureKind, Plot, Table, figures, listed, markdown};
 
 const MU: &str = "interface.rack-ground.friction.coefficient";
 
@@ -18,7 +19,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 fn side(name: &str, scenario: &Scenario) -> Side {
     let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
-    Side { name: name.into(), run, summary, other: None, collapsed: Vec::new() }
+    Side { name: name.into(), run, summary, other: None, elsewhere: None, collapsed: Vec::new() }
 }
 
 /// Returns the rows of the table under a heading, as text.
@@ -248,4 +249,48 @@ fn a_headline_of_both_planes_has_one_colon() {
     let headline = compare::document(&compare::sides(aligned)).verdict.headline;
     assert!(headline.starts_with("Four levels in place of five levels: collapse "), "{headline}");
     assert!(headline.contains("; collapse ") && headline.matches(':').count() == 1, "{headline}");
+}
+
+#[test]
+fn without_variants_both_planes_are_judged_and_named() {
+    let short = ["stack.levels=2", "run.duration=9 s", "run.stop_after_collapse=0.1 s"];
+    let answered = |factor: &str| {
+        let none = ["imperfections.variants=0", factor];
+        let scenario = scenario("demo-napa", &[&short[..], &none].concat());
+        answer(&scenario, RunChoice::Typical, &mut |_| ControlFlow::Continue(())).unwrap()
+    };
+    let (weak, strong) = ("motion.scale.factor=0.02", "motion.scale.factor=2.5");
+    let sides = compare::sides(vec![
+        ("weak".to_owned(), answered(weak)),
+        ("strong".to_owned(), answered(strong)),
+    ]);
+    let elsewhere = sides.iter().map(|side| side.elsewhere.as_ref().unwrap());
+    let [weak, strong] = [0, 1].map(|at| elsewhere.clone().nth(at).unwrap());
+    assert_eq!((&sides[0].run.outcome, &weak.outcome), (&Outcome::Stable, &Outcome::Stable));
+    let shown = (sides[1].run.assembly.view.unwrap(), &sides[1].run.outcome);
+    let fallen: Vec<&str> = [shown, (strong.view, &strong.outcome)]
+        .into_iter()
+        .filter(|(_, outcome)| outcome.is_collapse())
+        .map(|(view, _)| view.words())
+        .collect();
+    assert!(!fallen.is_empty());
+    let said = compare::document(&sides).verdict.headline;
+    assert_eq!(said, format!("Stands: weak. Falls: strong ({}).", listed(fallen)));
+}
+
+#[test]
+fn a_stack_that_falls_in_the_plane_that_is_not_shown_falls() {
+    let mut sides = vec![
+        side("one", &scenario("candia-8-barrels", &["run.duration=0.2 s"])),
+        side("other", &scenario("candia-8-barrels", &["run.duration=0.3 s"])),
+    ];
+    assert_eq!(compare::document(&sides).verdict.headline, "Both stand: one and other.");
+    let outcome = scenario("candia-8-barrels", &["run.stop_after_collapse=0.1 s"]).run().unwrap();
+    assert!(outcome.outcome.is_collapse());
+    let kind = outcome.outcome.kind();
+    let view = View::Longitudinal;
+    sides[1].elsewhere = Some(Elsewhere { view, outcome: outcome.outcome, kind });
+    let page = compare::document(&sides);
+    assert_eq!(page.verdict.headline, "Stands: one. Falls: other (along the barrels).");
+    assert!(markdown(&page, "figures").text.contains("outcome in the other plane"));
 }

@@ -72,6 +72,11 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Returns `true` if a body left its seat.
+    pub fn is_collapse(&self) -> bool {
+        matches!(self, Self::Collapse { .. })
+    }
+
     /// Returns `true` if it collapsed under its own weight, before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         matches!(self, Self::Collapse { mode: CollapseMode::Gravity, .. })

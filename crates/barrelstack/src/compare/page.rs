@@ -5,7 +5,7 @@ use barrelstack_report::{
     Verdict, capital, listed, significant,
 };
 
-use super::{Difference, Paired, Side, differences, letter, tables};
+use super::{Difference, Elsewhere, Paired, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
 use crate::report;
@@ -48,13 +48,39 @@ fn fate(side: &Side) -> String {
     if let Some(spread) = &side.summary.ensemble {
         return words::fate(spread);
     }
-    match &side.run.outcome {
-        Outcome::Stable => "stands".into(),
+    let one = |outcome: &Outcome| match outcome {
+        Outcome::Stable => "stands".to_owned(),
         Outcome::Collapse { time, .. } => format!("gives way after {time:.1} s"),
         Outcome::NotJudged => "ran to its end".into(),
         Outcome::Interrupted => "was stopped before its end and says nothing".into(),
         Outcome::Invalid { .. } => "broke down and says nothing".into(),
+    };
+    match (&side.elsewhere, side.run.assembly.view) {
+        (Some(Elsewhere { view, outcome, .. }), Some(shown)) => format!(
+            "{} {}, {} {}",
+            shown.words(),
+            one(&side.run.outcome),
+            view.words(),
+            one(outcome)
+        ),
+        _ => one(&side.run.outcome),
     }
+}
+
+/// Returns the outcomes of a single run, with their planes where both are analyzed.
+fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
+    let shown = std::iter::once((side.run.assembly.view, &side.run.outcome));
+    shown.chain(side.elsewhere.iter().map(|other| (Some(other.view), &other.outcome)))
+}
+
+/// Returns the planes in which a single run collapses, where both are analyzed: " along the barrels".
+fn falls_where(side: &Side) -> String {
+    let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
+    let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
+    if share(side).is_some() || side.elsewhere.is_none() || views.is_empty() {
+        return String::new();
+    }
+    format!(" ({})", listed(views))
 }
 
 /// Returns the names of the runs, and the title where all have the same.
@@ -77,7 +103,7 @@ fn share(side: &Side) -> Option<&Spread> {
 fn stands(side: &Side) -> bool {
     match share(side) {
         Some(spread) => words::stands(spread),
-        None => side.run.outcome == Outcome::Stable,
+        None => singles(side).all(|(_, outcome)| *outcome == Outcome::Stable),
     }
 }
 
@@ -92,18 +118,29 @@ fn effect(sides: &[Side]) -> Option<String> {
         return None;
     }
     let [second] = others else {
-        // In the plane that is shown.
-        let of = pairs.iter().map(|planes| &planes[0]);
-        let all = of.clone().map(Paired::pairs).min()?;
-        if of.clone().any(|pair| pair.pairs() != all || pair.without_verdict > 0) {
-            return None;
-        }
-        let base = format!("{} of {all} variants with {}", pairs[0][0].collapsed()[0], first.name);
-        let rest = of
-            .zip(others)
-            .map(|(pair, other)| format!("{} with {}", pair.collapsed()[1], other.name));
-        let place = place(first, &pairs[0][0]);
-        return Some(format!("Collapse{place}: {}.", listed(std::iter::once(base).chain(rest))));
+        let clause = |plane: usize| {
+            let of = || pairs.iter().filter_map(move |planes| planes.get(plane));
+            let all = of().map(Paired::pairs).min()?;
+            if of().any(|pair| pair.pairs() != all || pair.without_verdict > 0) {
+                return None;
+            }
+            let one = of().next()?;
+            let base = format!("{} of {all} variants with {}", one.collapsed()[0], first.name);
+            let rest = of()
+                .zip(others)
+                .map(|(pair, other)| format!("{} with {}", pair.collapsed()[1], other.name));
+            let counts = listed(std::iter::once(base).chain(rest));
+            let none = of().all(|pair| pair.collapsed() == [0, 0]);
+            // The other plane is named if any variant collapses in it.
+            Some((plane == 0 || !none).then(|| format!("{}: {counts}", place(first, one))))
+        };
+        let clauses: Vec<String> = (0..pairs[0].len())
+            .map(clause)
+            .collect::<Option<Vec<_>>>()?
+            .into_iter()
+            .flatten()
+            .collect();
+        return Some(format!("Collapse{}.", clauses.join(";")));
     };
     let straps = |side: &Side| side.run.stated.stack().is_some_and(|s| s.devices.strap.levels > 0);
     let levels = |side: &Side| side.run.stated.stack().map(|stack| stack.levels);
@@ -172,13 +209,15 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
                     0.0 - low
                 ),
             };
+            let same = first.run.stated.motion == other.run.stated.motion;
+            let motions = if same { " under the same motions" } else { ", by their numbers," };
             let lost = match pair.without_verdict {
                 0 => String::new(),
                 some => format!(" Of {some} more variants one of the two has no verdict."),
             };
             let clear = if pair.is_clear() { "" } else { ", so they do not prove a difference" };
             format!(
-                "Of the same {} variants under the same motions{} {} collapse in both, {} with A only and {} with \
+                "Of the same {} variants{motions}{} {} collapse in both, {} with A only and {} with \
                  {second} only: {change}{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),
@@ -199,7 +238,8 @@ fn headline(sides: &[Side]) -> String {
     }
     let judged = |side: &Side| {
         share(side).is_some()
-            || matches!(side.run.outcome, Outcome::Stable | Outcome::Collapse { .. })
+            || singles(side)
+                .all(|(_, outcome)| outcome.is_collapse() || *outcome == Outcome::Stable)
     };
     if !sides.iter().all(judged) {
         let parts = sides.iter().map(|side| format!("{}: {}", capital(&side.name), fate(side)));
@@ -211,7 +251,8 @@ fn headline(sides: &[Side]) -> String {
     let one_height = sides.iter().all(|side| levels(side) == levels(&sides[0]));
     let all =
         if sides.len() == 2 { "both".to_owned() } else { format!("all {}", number(sides.len())) };
-    let names = |some: &[&Side]| listed(some.iter().map(|side| side.name.clone()));
+    let names =
+        |some: &[&Side]| listed(some.iter().map(|side| side.name.clone() + &falls_where(side)));
     match (up.as_slice(), down.as_slice()) {
         ([up], [down]) if one_height && straps(up) && !straps(down) => {
             let barrels = up.summary.outcome.barrels;
@@ -250,14 +291,15 @@ fn by_themselves(sides: &[Side]) -> String {
 /// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
 fn told(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
-    let Some(spread) = &side.summary.ensemble else { return format!("{name}: {}.", fate(side)) };
+    let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
+    let shown = side.summary.ensemble.as_ref() == Some(spread);
+    let view = if shown { side.run.assembly.view } else { side.elsewhere.as_ref().map(|e| e.view) };
+    let place = view.filter(|_| side.other.is_some()).map(|view| format!(" {}", view.words()));
+    let place = place.unwrap_or_default();
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
-    if spread.share.is_none() {
-        return format!("{name}: {}.", fate(side));
-    }
     let told = format!(
-        "{name}: falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
+        "{name}: falls{place} in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
     );
     let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
     match drift {

@@ -38,7 +38,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
 /// Tabulates the inputs that are the same in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
     let mut settings: Vec<_> =
-        sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
+        sides.iter().take(1).flat_map(|one| one.run.stated.stated_settings()).collect();
     settings.retain(|setting| differing.iter().all(|one| one.path != setting.path));
     report::settings_table("Inputs that all runs share.", &settings)
 }
@@ -76,6 +76,11 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
         row("variants that collapse in the other plane", &|side| collapse(side.other.as_ref()));
     }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
+    if sides.iter().any(|side| side.elsewhere.is_some()) {
+        row("outcome in the other plane", &|side| {
+            Cell::maybe(side.elsewhere.as_ref().map(|elsewhere| elsewhere.kind))
+        });
+    }
     row("mode", &|side| Cell::maybe(side.summary.outcome.mode));
     row("gives way", &|side| seconds(side.summary.outcome.time));
     row("first body", &|side| Cell::maybe(side.summary.outcome.first.as_ref()));

@@ -6,10 +6,11 @@ use barrelstack_report::{capital, significant};
 use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
-use crate::run::Run;
+use crate::run::{CUT, Run};
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
+use crate::watch::Ending;
 
 /// Returns the answer in one sentence: of all variants, where they were run.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
@@ -27,7 +28,13 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
             Some(load) => format!(
                 "The stack stands, but staves are crushed: they bear up to {load} of what they are stated to bear."
             ),
-            None => "The stack stands.".into(),
+            None => match cut(run, summary) {
+                Some(left) => format!(
+                    "The stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does.",
+                    run.end_time
+                ),
+                None => "The stack stands.".into(),
+            },
         },
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
@@ -47,6 +54,13 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
             format!("{who}: the stack gives way after {time:.1} s.")
         }
     }
+}
+
+/// Returns the time (s) of the motion that is left at the end of a run; `None` where none is.
+fn cut(run: &Run, summary: &Summary) -> Option<f64> {
+    let motion = summary.motion.as_ref()?;
+    let left = motion.duration - run.end_time;
+    (run.ending == Ending::Duration && left > CUT).then_some(left)
 }
 
 /// Returns the largest utilization of staves until the first loss of seat; `None` up to 100 %.
@@ -147,8 +161,15 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
     let place =
         view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
+        // A run that ends before its motion may not have met the peaks.
+        let whole = cut(run, summary).map_or_else(String::new, |_| {
+            format!(
+                " in its {:.1} s, of which the run takes {:.1} s",
+                motion.duration, run.end_time
+            )
+        });
         format!(
-            "{place} motion that is shown reaches {:.2} g and {:.0} cm/s.",
+            "{place} motion that is shown reaches {:.2} g and {:.0} cm/s{whole}.",
             motion.pga / STANDARD_GRAVITY,
             100.0 * motion.pgv
         )

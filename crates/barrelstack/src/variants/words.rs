@@ -204,10 +204,11 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
         named(spread.gentlest),
         named(spread.worst)
     ));
-    let stated = match spread.stated {
-        "collapse" => "falls",
-        "stable" => "stands",
-        _ => "has no verdict",
+    let stated = match (spread.stated, spread.standing_until) {
+        ("collapse", _) => "falls".to_owned(),
+        ("stable", None) => "stands".to_owned(),
+        ("stable", Some(until)) => format!("stands until {until:.1} s, where the runs end"),
+        _ => "has no verdict".to_owned(),
     };
     let places = format!(
         "in places by up to {} mm, in masses by {} %",
