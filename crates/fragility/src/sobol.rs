@@ -182,7 +182,7 @@ mod tests {
         for dimension in 0..DIMENSIONS {
             for shift in [0, 0x9E37_79B9] {
                 let axis = Axis::new(dimension, shift);
-                let mut seen = [false; 256];
+                let mut occupied = [false; 256];
                 for point in 0..256 {
                     #[expect(
                         clippy::cast_possible_truncation,
@@ -190,8 +190,8 @@ mod tests {
                         reason = "0 to 255"
                     )]
                     let cell = (256.0 * axis.at(point)) as usize;
-                    assert!(!seen[cell], "dimension {dimension}: cell {cell} twice");
-                    seen[cell] = true;
+                    assert!(!occupied[cell], "dimension {dimension}: cell {cell} twice");
+                    occupied[cell] = true;
                 }
             }
         }

@@ -206,7 +206,7 @@ fn the_measure_that_causes_failure_is_efficient_and_sufficient_and_its_companion
 }
 
 #[test]
-fn demand_is_told_by_its_cause() {
+fn demand_is_separated_by_its_cause() {
     let mut random = Random::new(13);
     let (cause, companion, _) = two_measures(&mut random);
     let demand: Vec<f64> =
