@@ -74,7 +74,7 @@ macro_rules! named {
 /// is its doc comment, and its fields as in [`section!`](crate::section).
 ///
 /// The variants are in the static that is named.
-/// What is declared `among` the fields of a table stands in the field that chooses it there.
+/// A choice declared `among` the fields of a table stands in the field that chooses it there.
 ///
 /// ```
 /// use barrelstack_input::choices::Chosen;
@@ -105,7 +105,7 @@ macro_rules! choices {
         $(#[$about:meta])*
         $visible:vis enum $type:ident $(, among the fields of $holder:ident)?;
         $(#[doc = $all:literal])+
-        $seen:vis static $list:ident;
+        $vis:vis static $list:ident;
         $(
             $(#[doc = $help:literal])+
             $variant:ident = $name:literal $({
@@ -131,7 +131,7 @@ macro_rules! choices {
         }
 
         $(#[doc = $all])+
-        $seen static $list: [$crate::field::Variant; [$($name),+].len()] = [$(
+        $vis static $list: [$crate::field::Variant; [$($name),+].len()] = [$(
             $crate::field::Variant {
                 name: $name,
                 help: concat!($($help),+).trim_ascii(),

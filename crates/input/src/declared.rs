@@ -203,7 +203,7 @@ macro_rules! section {
         $(#[$about:meta])*
         $visible:vis struct $type:ident;
         $(#[doc = $help:literal])+
-        $seen:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)? $(, by $tag:ident of $choices:expr)?;
+        $vis:vis static $section:ident = $name:literal $(, at most one of $rivals:expr)? $(, by $tag:ident of $choices:expr)?;
         $(
             $(#[doc = $text:literal])+
             $field:ident $(as $key:literal)?: $held:ty = $kind:expr, $default:expr;
@@ -220,7 +220,7 @@ macro_rules! section {
 
         $crate::table! {
             $(#[doc = $help])+
-            $seen static $section = $name;
+            $vis static $section = $name;
             $($(#[doc = $text])+ $field $(as $key)? = $kind, $default;)*
             $(of $choices, by $tag;)?
             $(at most one of $rivals;)?
@@ -312,7 +312,7 @@ macro_rules! section {
 macro_rules! table {
     (
         $(#[doc = $help:literal])+
-        $seen:vis static $section:ident = $name:literal;
+        $vis:vis static $section:ident = $name:literal;
         $($(#[doc = $text:literal])+ $field:ident $(as $key:literal)? = $kind:expr, $default:expr;)*
         $(by $tag:ident {$(
             $(#[doc = $meaning:literal])+
@@ -324,7 +324,7 @@ macro_rules! table {
         $(at most one of $rivals:expr;)*
     ) => {
         $(#[doc = $help])+
-        $seen static $section: $crate::field::Section = $crate::field::Section {
+        $vis static $section: $crate::field::Section = $crate::field::Section {
             name: $name,
             help: concat!($($help),+).trim_ascii(),
             fields: &$crate::fields!($($(#[doc = $text])+ $field $(as $key)? = $kind, $default;)*),

@@ -9,14 +9,19 @@ use crate::unit;
 /// page, which `there` names.
 pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str) -> String {
     let mut text = String::new();
-    let mut seen: Vec<(&str, String)> =
+    let mut documented: Vec<(&str, String)> =
         elsewhere.iter().map(|name| (*name, there.to_owned())).collect();
-    table(&mut text, &mut seen, "", top);
+    table(&mut text, &mut documented, "", top);
     text
 }
 
 /// Writes a table. Writing to a `String` cannot fail, so results of `writeln!` are dropped in this file.
-fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section: &'static Section) {
+fn table(
+    text: &mut String,
+    documented: &mut Vec<(&str, String)>,
+    path: &str,
+    section: &'static Section,
+) {
     let heading =
         if path.is_empty() { "Top of the file".to_owned() } else { format!("`[{path}]`") };
     let _ = writeln!(text, "## {heading}\n\n{}\n", section.help);
@@ -39,11 +44,11 @@ fn table(text: &mut String, seen: &mut Vec<(&str, String)>, path: &str, section:
         let inner_path =
             if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
         let Some(inner) = field.kind.section() else { continue };
-        if let Some((_, first)) = seen.iter().find(|(name, _)| *name == inner.name) {
+        if let Some((_, first)) = documented.iter().find(|(name, _)| *name == inner.name) {
             let _ = writeln!(text, "`[{inner_path}]` has the same fields as {first}.\n");
         } else {
-            seen.push((inner.name, format!("`[{inner_path}]`")));
-            table(text, seen, &inner_path, inner);
+            documented.push((inner.name, format!("`[{inner_path}]`")));
+            table(text, documented, &inner_path, inner);
         }
     }
 }

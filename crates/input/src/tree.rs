@@ -174,10 +174,10 @@ impl Sources {
 
     fn adopt_node(&mut self, node: &mut Node, path: &str) {
         let inner = matches!(node.value, Value::Table(_) | Value::Array(_));
-        let told =
+        let text =
             if inner { path.to_owned() } else { format!("{path}={}", writer::inline(&node.value)) };
         node.origin = Origin::Override(self.overrides.len());
-        self.overrides.push(told);
+        self.overrides.push(text);
         match &mut node.value {
             Value::Table(table) => self.adopt_below(table, path),
             Value::Array(items) => {

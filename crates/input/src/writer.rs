@@ -12,14 +12,14 @@ pub struct Writer {
     section: &'static Section,
     variant: Option<&'static Variant>,
     table: Table,
-    seen: Vec<&'static str>,
+    written: Vec<&'static str>,
 }
 
 impl Writer {
     /// Starts a table without variants.
     pub fn new(section: &'static Section) -> Self {
         debug_assert!(section.variants.is_none(), "the variant must be named");
-        Self { section, variant: None, table: Table::default(), seen: Vec::new() }
+        Self { section, variant: None, table: Table::default(), written: Vec::new() }
     }
 
     /// Starts a table of a variant and writes the field that selects it.
@@ -32,7 +32,7 @@ impl Writer {
         let variants = section.variants.as_ref();
         let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
         debug_assert!(variant.is_some(), "the section has no variant \"{name}\"");
-        let mut writer = Self { section, variant, table: Table::default(), seen: Vec::new() };
+        let mut writer = Self { section, variant, table: Table::default(), written: Vec::new() };
         if let Some(variants) = variants {
             writer.put(variants.tag, Value::Text(name.to_owned()));
         }
@@ -42,13 +42,13 @@ impl Writer {
     /// Ends the table; with debug assertions, checks that every defined field has been written or omitted.
     pub fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
-            debug_assert!(self.seen.contains(&field.name), "`{}` was forgotten", field.name);
+            debug_assert!(self.written.contains(&field.name), "`{}` was forgotten", field.name);
         }
         self.table
     }
 
     fn field(&mut self, name: &'static str) -> &'static Field {
-        self.seen.push(name);
+        self.written.push(name);
         let found = self.section.fields_of(self.variant).find(|field| field.name == name);
         found.unwrap_or_else(|| panic!("field `{name}` is written but not defined"))
     }
@@ -66,7 +66,7 @@ impl Writer {
 
     /// Omits fields, because they are absent or replaced by others.
     pub fn omit(&mut self, names: &[&'static str]) {
-        self.seen.extend(names);
+        self.written.extend(names);
     }
 
     /// Writes a quantity in the SI unit of the first dimension of the field.

@@ -6,7 +6,7 @@ use barrelstack_input::measured::{Table, TableError};
 use barrelstack_input::{Dimension, Quantity, QuantityError, unit};
 
 #[test]
-fn gal_is_a_gallon_where_a_volume_is_asked_for_and_an_acceleration_where_one_is() {
+fn gal_is_a_gallon_as_a_volume_and_a_galileo_as_an_acceleration() {
     let as_one = |text: &str, dimension| Quantity::parse_as(text, &[dimension]).unwrap().value;
     assert_eq!(as_one("60 gal", Dimension::VOLUME), 0.227_124_707_04);
     assert_eq!(as_one("350 gal", Dimension::ACCELERATION), 3.5);

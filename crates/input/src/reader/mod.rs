@@ -20,7 +20,7 @@ pub struct Reader<'a> {
     path: String,
     table: Option<&'a Table>,
     origin: Origin,
-    seen: RefCell<Vec<&'static str>>,
+    read: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Reader<'a> {
@@ -32,8 +32,8 @@ impl<'a> Reader<'a> {
         table: Option<&'a Table>,
         origin: Origin,
     ) -> Result<Self> {
-        let seen = RefCell::new(Vec::new());
-        let mut reader = Self { sources, section, variant: None, path, table, origin, seen };
+        let read = RefCell::new(Vec::new());
+        let mut reader = Self { sources, section, variant: None, path, table, origin, read };
         if let Some(variants) = &section.variants {
             let name = reader.catalog_name(variants.tag)?;
             reader.variant = variants.list.iter().find(|variant| variant.name == name);
@@ -97,10 +97,10 @@ impl<'a> Reader<'a> {
 
     /// Ends reading; with debug assertions, checks that every defined field has been read.
     pub fn finish(self) {
-        let seen = self.seen.borrow();
+        let read = self.read.borrow();
         for field in self.section.fields_of(self.variant) {
             debug_assert!(
-                seen.contains(&field.name),
+                read.contains(&field.name),
                 "field `{}` of {} is defined but never read",
                 field.name,
                 self.label()
@@ -196,7 +196,7 @@ impl<'a> Reader<'a> {
 
     /// Returns the definition of a field; a name without one is a bug in this library.
     fn field(&self, name: &'static str) -> &'static Field {
-        self.seen.borrow_mut().push(name);
+        self.read.borrow_mut().push(name);
         let found = self.section.fields_of(self.variant).find(|field| field.name == name);
         found
             .unwrap_or_else(|| panic!("field `{name}` of {} is read but not defined", self.label()))
