@@ -127,5 +127,5 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
     let document = answer_document(&answer, None);
     let Some(Block::Player(player)) = document.blocks.first() else { panic!("no player") };
     let ghosts = player.scene.ghosts.as_ref().unwrap();
-    assert_eq!((ghosts.count, ghosts.ways.len(), ghosts.ends.len()), (4, 8, 16));
+    assert_eq!((ghosts.count, ghosts.paths.len(), ghosts.ends.len()), (4, 8, 16));
 }

@@ -63,16 +63,16 @@ pub enum Value {
 }
 
 described! {
-    /// What a column holds.
+    /// Description of a column.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct ColumnSpec {
         /// Its name without the unit, unique in a table.
         pub name: String,
         /// SI unit; empty for pure numbers and for text.
         pub unit: String,
-        /// What it tells.
+        /// Role of its values.
         pub role: Role,
-        /// What its values are.
+        /// Kind of its values.
         pub kind: ValueKind,
     }
 }

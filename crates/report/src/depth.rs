@@ -93,9 +93,9 @@ pub struct DepthBody {
 /// Poses of the bodies of a scene in three dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DepthPoses {
-    /// Those of the plane scene, whose bodies have the same indices, in the plane of x and z.
+    /// Poses of the plane scene, whose bodies have the same indices, in the plane of x and z.
     Across,
-    /// Those of the plane scene, in the plane of y and z.
+    /// Poses of the plane scene, in the plane of y and z.
     Along,
     /// For each frame of the plane scene, the pose of each body.
     Free(Vec<Vec<Pose3>>),

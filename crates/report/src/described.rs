@@ -290,7 +290,7 @@ macro_rules! described {
     (@of $vis:vis $name:ident { $($field:ident),* }) => {};
     (@of $vis:vis $name:ident, $($from:ident: $of:ty),+ { $($field:ident = $value:expr),* }) => {
         impl $name {
-            /// What there is to say of it.
+            /// Builds the document from its source.
             $vis fn of($($from: $of),+) -> Self {
                 Self { $($field: $value),* }
             }
@@ -307,14 +307,14 @@ mod tests {
     described! {
         /// A thing.
         struct Thing {
-            /// How long
-            /// it is.
+            /// Length
+            /// of it.
             length: Option<f64> as "m",
             /// Its parts.
             parts: Vec<Part>,
-            /// What is in it.
+            /// Its contents.
             inner: Option<Box<Thing>>,
-            /// What is never told.
+            /// Internal data.
             #[serde(skip)]
             hidden: bool,
         }
@@ -351,7 +351,7 @@ mod tests {
         assert_eq!(object["properties"]["length"]["type"], json!(["number", "null"]));
         let rows = dictionary(&schema);
         let row = |key: &str| rows.iter().find(|row| row[0] == key).unwrap();
-        assert_eq!(row("length")[1..], ["m", "How long it is."]);
+        assert_eq!(row("length")[1..], ["m", "Length of it."]);
         assert_eq!(row("parts[].kind")[2], "Its kind. One of: a, b.");
         assert_eq!(rows.len(), 4);
     }

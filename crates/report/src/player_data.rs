@@ -192,20 +192,20 @@ const GHOST_TOLERANCE: f64 = 0.01;
 /// Packs paths as two channels separated by gaps; final poses as three channels and a list of bodies.
 fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     let mut line: Vec<Point> = Vec::new();
-    for way in &ghosts.ways {
+    for path in &ghosts.paths {
         // `simplify` works on a grid of pixels: here one tolerance stands for one pixel.
-        let steps: Vec<Point> = way.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
+        let steps: Vec<Point> = path.iter().map(|p| p.map(|v| v / GHOST_TOLERANCE)).collect();
         line.extend(simplify(&steps, 1.0).into_iter().map(|p| p.map(|v| v * GHOST_TOLERANCE)));
         line.push([f64::NAN; 2]);
     }
     let ends: Vec<&(usize, Pose2)> =
         ghosts.ends.iter().filter(|(body, _)| *body < bodies).collect();
-    let ways = [0, 1].map(|axis| line.iter().map(|point| point[axis]).collect::<Vec<f64>>());
+    let channels = [0, 1].map(|axis| line.iter().map(|point| point[axis]).collect::<Vec<f64>>());
     let poses = [0, 1, 2].map(|axis| ends.iter().map(|(_, pose)| pose[axis]).collect::<Vec<f64>>());
     json!({
         "label": ghosts.label,
         "count": ghosts.count,
-        "ways": pack::channels(&ways, line.len(), GHOST_QUANTUM),
+        "ways": pack::channels(&channels, line.len(), GHOST_QUANTUM),
         "ends": pack::channels(&poses, ends.len(), GHOST_QUANTUM),
         "bodies": ends.iter().map(|(body, _)| body).collect::<Vec<_>>(),
     })

@@ -68,7 +68,7 @@ impl Axis {
     }
 
     /// Formats an ordinate for CSV: the nearest name, on an axis with names.
-    fn told(&self, value: f64) -> String {
+    fn csv_ordinate(&self, value: f64) -> String {
         let rows = (0..self.names.len()).filter(|place| (value - Self::row(*place)).abs() <= 0.5);
         match rows.map(|place| escape::csv(&self.names[place])).next() {
             Some(name) => name,
@@ -229,7 +229,8 @@ impl Plot {
         for row in 0..rows {
             let mut cells = Vec::new();
             for (x, members) in &groups {
-                let cell = |value: Option<&f64>| value.map_or(String::new(), |v| self.y.told(*v));
+                let cell =
+                    |value: Option<&f64>| value.map_or(String::new(), |v| self.y.csv_ordinate(*v));
                 cells.push(x.get(row).map_or(String::new(), |v| number::csv_number(*v)));
                 for series in members {
                     cells.push(cell(series.y[..series.len()].get(row)));

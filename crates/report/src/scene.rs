@@ -268,7 +268,7 @@ pub struct Ghosts {
     /// Number of runs.
     pub count: usize,
     /// Paths (m) relative to the body of the role [`Role::Ground`].
-    pub ways: Vec<Vec<Point>>,
+    pub paths: Vec<Vec<Point>>,
     /// Bodies by their indices in [`Scene::bodies`], with their final poses relative to the same body.
     pub ends: Vec<(usize, Pose2)>,
 }

@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_line_is_wider_than_asked_and_no_word_is_lost() {
+    fn no_line_exceeds_its_width_and_no_word_is_lost() {
         let text = "Rack R2 of level 2 walks 12.5 cm pneumonoultramicroscopicsilicovolcanoconiosis";
         for width in [20.0, 60.0, 200.0, 1000.0] {
             let lines = wrap(Font::of(false), 9.5, text, width);

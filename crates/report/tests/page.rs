@@ -103,7 +103,7 @@ fn hostile_text_reads_back_from_the_data_as_it_was() {
 }
 
 #[test]
-fn a_page_asks_the_network_for_nothing() {
+fn a_page_requests_nothing_from_the_network() {
     let page = hostile_page();
     let markup = markup(&page);
     assert!(markup.split("url(").skip(1).all(|place| place.starts_with('#')));
@@ -244,7 +244,7 @@ fn what_stands_still_has_a_drawing_for_a_phone_with_letters_as_large() {
 }
 
 #[test]
-fn a_program_that_a_page_holds_cannot_end_its_script_and_may_ask_for_nothing() {
+fn a_program_that_a_page_holds_cannot_end_its_script_and_may_request_nothing() {
     let start = serde_json::json!({ "text": HOSTILE }).to_string();
     let trial = Trial { page: HOSTILE, start: &start };
     let report = html_with(&document(vec![Block::Paragraph("x".into())]), &trial);

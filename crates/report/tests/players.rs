@@ -141,7 +141,7 @@ fn ghosts_come_back_from_the_page_within_a_centimeter() {
     let ghosts = Ghosts {
         label: "all".into(),
         count: 2,
-        ways: vec![straight, vec![[0.0, 0.0], [0.3, 0.7], [0.9, 0.1]]],
+        paths: vec![straight, vec![[0.0, 0.0], [0.3, 0.7], [0.9, 0.1]]],
         ends: vec![(1, [0.5, 0.25, 1.0]), (9, [0.0; 3])],
     };
     both.panes[0].scene =

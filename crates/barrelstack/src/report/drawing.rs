@@ -82,7 +82,7 @@ fn ghosts(variants: &Variants) -> Option<Ghosts> {
     (!ways.is_empty()).then(|| Ghosts {
         label: "all variants".into(),
         count: trails().filter(|trail| !trail.barrels.is_empty()).count(),
-        ways,
+        paths: ways,
         ends: ends.collect(),
     })
 }
