@@ -123,9 +123,9 @@ impl FromStr for Horizontals {
     type Err = MotionError;
 
     fn from_str(text: &str) -> Result<Self, MotionError> {
-        let told = text.trim().to_ascii_lowercase();
+        let name = text.trim().to_ascii_lowercase();
         let all = [Self::RotD50, Self::RotD100, Self::GeometricMean];
-        all.into_iter().find(|one| one.to_string() == told).ok_or_else(|| {
+        all.into_iter().find(|one| one.to_string() == name).ok_or_else(|| {
             let (what, all) = ("measure of two horizontals", "rotd50, rotd100 or geomean");
             MotionError::parameter(what, all, format!("\"{text}\""))
         })

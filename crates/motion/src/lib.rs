@@ -82,7 +82,7 @@ mod rotd;
 mod select;
 mod site;
 mod synthesis;
-mod told;
+mod synthesis_text;
 mod units;
 mod utc;
 mod wavelets;

@@ -15,7 +15,7 @@ pub struct Missed {
 }
 
 /// Maximum number of ranges listed individually.
-const MOST_TOLD: usize = 5;
+const MOST_LISTED: usize = 5;
 
 /// A matched motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Matched {
     pub first: MatchMethod,
 }
 
-/// How well two components, matched together, follow their target.
+/// Fit of two components, matched together, to their target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchedPair {
     /// As [`Matched::misfit`].
@@ -74,7 +74,7 @@ pub fn missed_in_words(all: &[Missed]) -> String {
     };
     let mut sizes: Vec<f64> = all.iter().map(|missed| missed.misfit.abs()).collect();
     sizes.sort_by(|a, b| b.total_cmp(a));
-    let least = sizes.get(MOST_TOLD - 1).copied().unwrap_or(0.0);
+    let least = sizes.get(MOST_LISTED - 1).copied().unwrap_or(0.0);
     let worst = all.iter().filter(|missed| missed.misfit.abs() >= least);
     let mut ranges: Vec<String> = worst.map(words).collect();
     let others = all.len() - ranges.len();

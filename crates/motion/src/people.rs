@@ -28,8 +28,8 @@ impl Record {
         };
         let name = name.split(',').next().unwrap_or_default().trim().to_owned();
         let year = dated.and_then(|at| year(words[at]));
-        let told = name.chars().filter(|c| c.is_alphabetic()).count() > 2;
-        told.then(|| match year {
+        let named = name.chars().filter(|c| c.is_alphabetic()).count() > 2;
+        named.then(|| match year {
             Some(year) => format!("{} {year}", softened(&name)),
             None => softened(&name),
         })

@@ -209,11 +209,11 @@ impl Processing {
     /// Pads and filters; returns the time by which the recorded part now starts later (s).
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
         let corner = self.high_pass_used(time_step, a.len());
-        if let (Some(asked), Some(used)) = (self.high_pass, corner)
-            && used > asked
+        if let (Some(requested), Some(used)) = (self.high_pass, corner)
+            && used > requested
         {
             steps.push(format!(
-                "high-pass corner raised from {asked} to {used:.4} Hz, one over the duration"
+                "high-pass corner raised from {requested} to {used:.4} Hz, one over the duration"
             ));
         }
         let slowest = corner.or(self.low_pass).unwrap_or(1.0);

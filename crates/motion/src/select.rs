@@ -217,7 +217,7 @@ impl Record {
             if channel.direction.orientation.is_none() {
                 let (file, name) = (&self.file, &channel.name);
                 return Err(MotionError::mismatch(
-                    format!("{file} does not tell whether channel \"{name}\" is horizontal"),
+                    format!("{file} does not state whether channel \"{name}\" is horizontal"),
                     "name the channels after their directions, such as N and E",
                 ));
             }
@@ -244,9 +244,9 @@ impl Record {
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
         let (first, second) = self.horizontal_pair()?;
         let (mut first, mut second) = (first.clone(), second.clone());
-        let mut told = Vec::new();
-        cut_to_shorter(&mut first, &mut second, &mut told)?;
-        let mut series = |channel: &Channel| history(channel, "horizontal", processing, &mut told);
+        let mut notes = Vec::new();
+        cut_to_shorter(&mut first, &mut second, &mut notes)?;
+        let mut series = |channel: &Channel| history(channel, "horizontal", processing, &mut notes);
         Ok((series(&first)?, series(&second)?))
     }
 

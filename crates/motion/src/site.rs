@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn other_stations_sensors_and_places_are_told_apart() {
+    fn other_stations_sensors_and_places_are_distinguished() {
         let site = |station: &str, sensor: &str| Site {
             station: station.to_owned(),
             sensor: sensor.to_owned(),

@@ -231,13 +231,13 @@ fn rows(
         let of = |demand: &Demand| demand.oscillator / TOGETHER == group;
         let last = first + demands[first..].iter().take_while(|demand| of(demand)).count();
         // Demands on these oscillators, in order of time.
-        let mut asked: Vec<usize> = (first..last).collect();
-        asked.sort_by_key(|&row| demands[row].sample);
+        let mut demanded: Vec<usize> = (first..last).collect();
+        demanded.sort_by_key(|&row| demands[row].sample);
         let group = Group::new(work, some, wavelets);
         for (j, wavelet) in wavelets.iter().enumerate() {
             let mut bank = group.bank(wavelet.stride);
             let mut at = 0;
-            for &row in &asked {
+            for &row in &demanded {
                 let demand = &demands[row];
                 let Some(since) = demand.sample.checked_sub(wavelet.first) else { continue };
                 let k = demand.oscillator % TOGETHER;

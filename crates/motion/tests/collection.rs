@@ -68,17 +68,17 @@ fn a_row_is_found_by_its_number_and_unknown_is_none() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_column() {
-    let told = |text: &str| Flatfile::parse("flat.csv", text).unwrap_err().to_string();
+fn errors_state_line_and_column() {
+    let refusal = |text: &str| Flatfile::parse("flat.csv", text).unwrap_err().to_string();
     assert_eq!(
-        told("RSN,vs30\n1,300\n2,soft\n"),
+        refusal("RSN,vs30\n1,300\n2,soft\n"),
         "flat.csv, line 3, column \"vs30\": expected a number, found \"soft\""
     );
     assert_eq!(
-        told("RSN\n1\n1\n"),
+        refusal("RSN\n1\n1\n"),
         "flat.csv, line 3, column \"rsn\": expected each sequence number once, found \"1\""
     );
-    assert!(told("a,b\n").contains("a column \"Record Sequence Number\""));
+    assert!(refusal("a,b\n").contains("a column \"Record Sequence Number\""));
 }
 
 #[test]

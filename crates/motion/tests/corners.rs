@@ -66,25 +66,27 @@ fn the_arrival_is_found_and_shared_by_all_channels() {
 }
 
 #[test]
-fn a_record_without_noise_is_told_why_it_has_no_corners() {
+fn a_record_without_noise_is_refused_corners_with_the_reason() {
     let criterion = NoiseCriterion::default();
-    let told = |channel: &Channel, arrival: f64| {
+    let refusal = |channel: &Channel, arrival: f64| {
         noise_corners(channel, arrival, &criterion).unwrap_err().to_string()
     };
     let good = known(0.1, 12.0, 1);
-    assert!(told(&good, 0.5).contains("0.50 s of noise before the shaking, where 1 s are needed"));
-    assert!(told(&good, 77.0).contains("3.00 s after the arrival, where 5 s are needed"));
+    assert!(
+        refusal(&good, 0.5).contains("0.50 s of noise before the shaking, where 1 s are needed")
+    );
+    assert!(refusal(&good, 77.0).contains("3.00 s after the arrival, where 5 s are needed"));
     let mut silent = good.clone();
     silent.acceleration[..2000].fill(0.0);
-    assert!(told(&silent, ARRIVAL).contains("below the file's last digit"));
+    assert!(refusal(&silent, ARRIVAL).contains("below the file's last digit"));
     let weak = Channel {
         acceleration: good.acceleration.iter().take(2000).cycle().take(8000).copied().collect(),
         ..good
     };
     assert!(
-        told(&weak, ARRIVAL).contains("signal over noise falls to"),
+        refusal(&weak, ARRIVAL).contains("signal over noise falls to"),
         "{}",
-        told(&weak, ARRIVAL)
+        refusal(&weak, ARRIVAL)
     );
 }
 

@@ -343,7 +343,7 @@ fn what_was_given_and_is_not_needed_is_reported_once() {
     };
     let ignored = |file: &str| -> Vec<&str> {
         let record = read(&bytes(file), file, &all).unwrap();
-        let told = |what: &&str| {
+        let recognized = |what: &&str| {
             let sentence = format!("{what} given was ignored");
             let times = record.warnings.iter().filter(|w| w.message.starts_with(&sentence)).count();
             assert!(times < 2, "{file}: {:?}", record.warnings);
@@ -351,7 +351,7 @@ fn what_was_given_and_is_not_needed_is_reported_once() {
         };
         ["the unit", "the time step", "the sensitivity", "the quantity"]
             .into_iter()
-            .filter(told)
+            .filter(recognized)
             .collect()
     };
     for (file, ..) in SAMPLES.iter().chain(OFFSET) {
@@ -419,7 +419,7 @@ fn places_of_our_own_form_are_stated_once_or_for_each_channel() {
 }
 
 #[test]
-fn a_wrong_unit_is_seen_in_the_warnings() {
+fn a_wrong_unit_appears_in_the_warnings() {
     let file = "columns/time-and-value.csv";
     let text = String::from_utf8(bytes(file)).unwrap().replace("(g's)", "(cm/s2)");
     let record = read(text.as_bytes(), file, &ReadOptions::default()).unwrap();
@@ -523,8 +523,8 @@ fn stars_words_and_huge_numbers_are_refused_with_their_place() {
             assert_eq!(error.refusal, Refusal::Damaged, "{error}");
             assert_eq!(error.line, Some(target + 1), "{error}");
             assert!(error.column.is_some(), "{error}");
-            let told = error.to_string().to_lowercase();
-            assert!(told.contains(&found.to_lowercase()), "{error}");
+            let message = error.to_string().to_lowercase();
+            assert!(message.contains(&found.to_lowercase()), "{error}");
         }
     }
 }
@@ -675,8 +675,8 @@ fn velocities_of_new_formats_are_no_accelerations_until_the_caller_has_them_diff
     let text = String::from_utf8(bytes("timeseries/slist.txt")).unwrap().replace("M/S**2", "M/S");
     let error = refusal(text.as_bytes(), "velocity.txt");
     assert_eq!(error.refusal, Refusal::OtherInstrument, "{error}");
-    let asked = ReadOptions { recorded: Some(Quantity::Velocity), ..ReadOptions::default() };
-    let record = read(text.as_bytes(), "velocity.txt", &asked).unwrap();
+    let options = ReadOptions { recorded: Some(Quantity::Velocity), ..ReadOptions::default() };
+    let record = read(text.as_bytes(), "velocity.txt", &options).unwrap();
     // d/dt of a sine of 1.1 Hz: some 7 times its size.
     let as_read = read(&bytes("timeseries/slist.txt"), "a.txt", &ReadOptions::default()).unwrap();
     let ratio = record.channels[0].pga() / as_read.channels[0].pga();

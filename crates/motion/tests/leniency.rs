@@ -16,7 +16,7 @@ fn given(bytes: &[u8]) -> Record {
     read(bytes, "file", &ReadOptions::default()).unwrap()
 }
 
-fn told(record: &Record) -> String {
+fn warnings_of(record: &Record) -> String {
     record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
@@ -24,7 +24,7 @@ fn told(record: &Record) -> String {
 fn same(file: &str, changed: &[u8], word: &str) {
     let (clean, record) = (given(&bytes(file)), given(changed));
     assert_eq!(clean.channels, record.channels, "{file}");
-    assert!(told(&record).contains(word), "{file}: {}", told(&record));
+    assert!(warnings_of(&record).contains(word), "{file}: {}", warnings_of(&record));
 }
 
 #[test]
@@ -124,8 +124,8 @@ fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
         .fold(0.0, f64::max);
     // For a wave of 3: printed digits and chords across 13 ms; measured 0.016. With an even step it was 3.
     assert!(worst < 0.02, "{worst}");
-    let told = told(&record);
-    assert!(told.contains("unevenly spaced times (0.0040 to 0.0130 s"), "{told}");
+    let warnings = warnings_of(&record);
+    assert!(warnings.contains("unevenly spaced times (0.0040 to 0.0130 s"), "{warnings}");
 }
 
 #[test]
@@ -149,11 +149,15 @@ fn a_blank_field_of_an_at2_file_does_not_shift_what_follows() {
     for (k, (a, b)) in old.iter().zip(new).enumerate() {
         assert_eq!(*b, if k == 12 { 0.0 } else { *a }, "{k}");
     }
-    assert!(told(&record).contains("line 7: column 31: a blank field"), "{}", told(&record));
+    assert!(
+        warnings_of(&record).contains("line 7: column 31: a blank field"),
+        "{}",
+        warnings_of(&record)
+    );
 }
 
 #[test]
-fn steps_counts_and_lengths_that_no_strong_motion_has_are_told() {
+fn steps_counts_and_lengths_that_no_strong_motion_has_are_reported() {
     let at2 = |step: &str, count: usize| {
         let mut text = format!(
             "A\nEVENT, STATION, 90\nACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {step} SEC\n"
@@ -171,7 +175,7 @@ fn steps_counts_and_lengths_that_no_strong_motion_has_are_told() {
         (".005", 100, "a length of 0.495 s"),
     ] {
         let record = at2(step, count);
-        assert!(told(&record).contains(word), "{}", told(&record));
+        assert!(warnings_of(&record).contains(word), "{}", warnings_of(&record));
     }
 }
 

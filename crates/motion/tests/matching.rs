@@ -56,8 +56,8 @@ fn both_methods_meet(target: &TargetSpectrum) {
         // Measured 5e-16 and 3e-14 at most.
         assert!(end.velocity.abs() < 1e-12 * motion.pgv());
         assert!(end.displacement.abs() < 1e-10 * motion.pgd());
-        let told = motion.provenance.last().unwrap();
-        assert!(told.contains(&format!("matched in {} to {target}", matched.domain())), "{told}");
+        let step = motion.provenance.last().unwrap();
+        assert!(step.contains(&format!("matched in {} to {target}", matched.domain())), "{step}");
         assert!(motion.vertical.is_some());
     }
 }
@@ -120,9 +120,9 @@ fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
     let matched = stalled.unwrap();
     assert_eq!(matched.chosen, MatchMethod::Time);
     assert!(matched.misfit <= 0.05);
-    let told = matched.motion.provenance.last().unwrap();
+    let step = matched.motion.provenance.last().unwrap();
     assert!(
-        told.contains("the frequency domain, where the time domain stalled, to NCh2745 (zone 2")
+        step.contains("the frequency domain, where the time domain stalled, to NCh2745 (zone 2")
     );
 }
 

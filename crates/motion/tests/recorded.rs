@@ -46,7 +46,7 @@ fn starts_are_universal_time_whatever_the_clock_of_the_agency() {
 }
 
 #[test]
-fn headers_of_the_agencies_tell_start_and_place() {
+fn headers_of_the_agencies_state_start_and_place() {
     for (file, expected, north, east, elevation) in [
         ("csmip-v1/CICCC.RAW", "2019-07-06T03:19:37.000Z", 35.525, -117.365, None),
         ("csmip-v1/LA116TH.RAW", "1994-01-17T12:31:04.100Z", 33.929, -118.26, None),
@@ -176,9 +176,9 @@ fn channels_that_begin_apart_are_cut_to_their_common_span() {
     assert_eq!(north.start, east.start);
     let off = north.acceleration.iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-12); // measured 8.2e-14
-    let told = gathered.notes.join("\n");
-    assert!(told.contains("channel E begins 20.0000 s before N: 2000 samples outside"), "{told}");
-    assert!(told.contains("channel N: 1000 samples outside"), "{told}");
+    let notes = gathered.notes.join("\n");
+    assert!(notes.contains("channel E begins 20.0000 s before N: 2000 samples outside"), "{notes}");
+    assert!(notes.contains("channel N: 1000 samples outside"), "{notes}");
 }
 
 #[test]
@@ -339,10 +339,10 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let record = read(&both, "both.mseed", &known).unwrap();
     assert_eq!(record.channels.len(), 1);
     assert!(record.warnings.iter().any(|w| w.message.ends_with("accelerometer: HHE")));
-    let asked = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
-    let velocity = read(&bytes, "a.mseed", &asked(Quantity::Velocity)).unwrap();
+    let recorded_as = |quantity| ReadOptions { recorded: Some(quantity), ..options() };
+    let velocity = read(&bytes, "a.mseed", &recorded_as(Quantity::Velocity)).unwrap();
     assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
-    let plain = read(&bytes, "a.mseed", &asked(Quantity::Acceleration)).unwrap();
+    let plain = read(&bytes, "a.mseed", &recorded_as(Quantity::Acceleration)).unwrap();
     // Integrated again it is the recorded velocity, except for a constant and half a step.
     let again: Vec<f64> = velocity.channels[0]
         .acceleration

@@ -83,7 +83,7 @@ fn components_are_chosen_by_role_number_name_and_azimuth() {
 }
 
 #[test]
-fn a_raw_record_comes_to_rest_and_every_step_is_told() {
+fn a_raw_record_comes_to_rest_and_every_step_is_listed() {
     let record = example((0.0, 90.0), 4000);
     let motion = record.default_motion().unwrap();
     for history in [&motion.horizontal, motion.vertical.as_ref().unwrap()] {
@@ -92,9 +92,9 @@ fn a_raw_record_comes_to_rest_and_every_step_is_told() {
         assert!(end.velocity.abs() < 1e-3 * motion.pgv()); // measured 1e-15
         assert!(end.displacement.abs() < 1e-2 * motion.pgd()); // measured 1e-14
     }
-    let told = motion.provenance.join("\n");
+    let steps = motion.provenance.join("\n");
     for word in ["mean", "taper", "high-pass", "pads", "closed", "ends with"] {
-        assert!(told.contains(word), "{word} is missing in\n{told}");
+        assert!(steps.contains(word), "{word} is missing in\n{steps}");
     }
 }
 
@@ -165,11 +165,16 @@ fn unreasonable_settings_are_refused() {
         assert!(chain.apply(0.01, &a, 0.0).is_err(), "{chain:?}");
     }
     let chain = Processing { low_pass: Some(1e-9), ..Processing::none() };
-    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
-    assert!(told.starts_with("low-pass corner (Hz): expected at least one over the duration, 1"));
+    let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(
+        message.starts_with("low-pass corner (Hz): expected at least one over the duration, 1")
+    );
     let chain = Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() };
-    let told = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
-    assert!(told.contains("at least one over the duration: expected below the low-pass"), "{told}");
+    let message = chain.apply(0.01, &a, 0.0).unwrap_err().to_string();
+    assert!(
+        message.contains("at least one over the duration: expected below the low-pass"),
+        "{message}"
+    );
     let whole = Processing { mean: MeanRemoval::Whole, ..Processing::none() };
     assert!(whole.apply(0.01, &a, 0.0).unwrap().acceleration.iter().all(|v| v.abs() < 1e-15));
 }
@@ -183,7 +188,7 @@ fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
         sensitivity: Some(4000.0),
         ..ReadOptions::default()
     };
-    let mut seen = 0;
+    let mut count = 0;
     for folder in std::fs::read_dir(root).unwrap() {
         let folder = folder.unwrap().path();
         if !folder.is_dir() {
@@ -201,12 +206,12 @@ fn every_sample_of_a_raw_record_comes_to_rest_and_stays_consistent() {
                     let component = Component::Number(number);
                     let motion = record.ground_motion(&component, None, &chain).unwrap();
                     consistent_and_closed(&name, sampled(&motion.horizontal));
-                    seen += 1;
+                    count += 1;
                 }
             }
         }
     }
-    assert!(seen >= 40, "{seen}");
+    assert!(count >= 40, "{count}");
 }
 
 fn consistent_and_closed(name: &str, motion: &Sampled) {

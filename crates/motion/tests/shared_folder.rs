@@ -99,7 +99,7 @@ fn every_file_is_read_or_refused_for_the_right_reason() {
 #[test]
 fn raw_records_come_to_rest_after_processing_and_stay_consistent() {
     let Some(folder) = folder() else { return };
-    let (mut worst, mut seen) = ((0.0_f64, 0.0_f64), 0);
+    let (mut worst, mut count) = ((0.0_f64, 0.0_f64), 0);
     for (file, result) in read_all(&folder) {
         let Ok(record) = result else { continue };
         if record.stage != Stage::Raw {
@@ -117,16 +117,16 @@ fn raw_records_come_to_rest_after_processing_and_stay_consistent() {
                     (end.velocity.abs() / sampled.pgv(), end.displacement.abs() / sampled.pgd());
                 assert!(v < 1e-3 && d < 1e-2, "{file} #{number}: {v:e}, {d:e}");
                 worst = (worst.0.max(v), worst.1.max(d));
-                seen += 1;
+                count += 1;
                 derivatives_of_one_another(&file, sampled);
             }
         }
     }
     println!(
-        "{seen} processed components end with at most {:.1e} of PGV and {:.1e} of PGD",
+        "{count} processed components end with at most {:.1e} of PGV and {:.1e} of PGD",
         worst.0, worst.1
     );
-    assert!(seen >= 60, "{seen}");
+    assert!(count >= 60, "{count}");
 }
 
 fn page() -> PathBuf {

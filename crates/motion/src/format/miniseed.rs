@@ -215,15 +215,15 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     }
     let mut encoding = None;
     let mut blockette = usize::from(two(bytes, 46, big));
-    let mut seen = 0;
-    while blockette >= FIXED_HEADER && blockette + 8 <= bytes.len() && seen < 16 {
+    let mut count = 0;
+    while blockette >= FIXED_HEADER && blockette + 8 <= bytes.len() && count < 16 {
         if two(bytes, blockette, big) == 1000 {
             encoding = Some((bytes[blockette + 4], bytes[blockette + 5], bytes[blockette + 6]));
         } else if two(bytes, blockette, big) == 1001 {
             start = start.later(1e-6 * f64::from(i8::from_ne_bytes([bytes[blockette + 5]])));
         }
         blockette = usize::from(two(bytes, blockette + 2, big));
-        seen += 1;
+        count += 1;
     }
     let Some((encoding, order, exponent)) = encoding else {
         return Err(damaged(source, "blockette 1000 in every data record", "none".to_owned()));

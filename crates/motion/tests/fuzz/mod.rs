@@ -141,13 +141,13 @@ impl Reader {
         match self {
             Self::Format(format) => record_holds(&format.read(bytes, "fuzz", given)),
             Self::Packed => record_holds(&read(bytes, "fuzz", given)),
-            Self::StationXml => told(&station_xml(&text())),
-            Self::Flatfile => told(&Flatfile::parse("fuzz", &text())),
+            Self::StationXml => has_message(&station_xml(&text())),
+            Self::Flatfile => has_message(&Flatfile::parse("fuzz", &text())),
         }
     }
 }
 
-fn told<T>(result: &Result<T, MotionError>) -> bool {
+fn has_message<T>(result: &Result<T, MotionError>) -> bool {
     if let Err(error) = result {
         let text = error.to_string();
         assert!(!text.is_empty() && text.len() < 1000, "{text}");
