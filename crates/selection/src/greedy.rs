@@ -142,10 +142,10 @@ fn too_few(pool: &Pool, given: usize, found: usize, choosing: &Choosing) -> Moti
     });
     let what = format!(
         "of {given} records {found} reach the target with factors from {least} to {largest}\
-         {groups}, and {} are asked for",
+         {groups}, and {} are requested",
         choosing.count
     );
-    MotionError::mismatch(what, "widen the limits, ask for fewer, or give more records")
+    MotionError::mismatch(what, "widen the limits, request fewer, or give more records")
 }
 
 fn check(

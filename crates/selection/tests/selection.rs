@@ -185,33 +185,36 @@ fn no_event_gives_more_than_its_share() {
 fn what_cannot_be_chosen_is_refused_with_the_numbers() {
     let library = library(50);
     let strict = Choosing { scale: [0.999, 1.001], ..choosing(20) };
-    let told = select(&target(Some(2.0)), &library, &strict).unwrap_err().to_string();
-    assert!(told.contains("of 50 records") && told.contains("20 are asked for"), "{told}");
-    let told = select(&target(None), &library, &choosing(1)).unwrap_err().to_string();
-    assert_eq!(told, "size of the set: expected at least 2, found 1");
+    let message = select(&target(Some(2.0)), &library, &strict).unwrap_err().to_string();
+    assert!(message.contains("of 50 records") && message.contains("20 are requested"), "{message}");
+    let message = select(&target(None), &library, &choosing(1)).unwrap_err().to_string();
+    assert_eq!(message, "size of the set: expected at least 2, found 1");
     let mut bad = library;
     bad[7].spectrum[2] = 0.0;
-    let told = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
+    let message = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
     let period = target(None).periods()[2];
     assert_eq!(
-        told,
+        message,
         format!(
             "spectrum of record 7 at {period} s: expected an acceleration above 0 (m/s2), found 0"
         )
     );
     bad[7].spectrum.pop();
-    let told = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
+    let message = select(&target(None), &bad, &choosing(20)).unwrap_err().to_string();
     let n = MODEL.len();
     let found = n - 1;
     assert_eq!(
-        told,
+        message,
         format!(
             "spectrum of record 7: expected {n} accelerations, one to a period of the target, found {found}"
         )
     );
     let given = Some(Condition { period: 0.31, acceleration: 1.0 });
-    let told = SelectionTarget::new(&[0.1, 1.0], &[1.0, 1.0], &[0.5, 0.5], given);
+    let message = SelectionTarget::new(&[0.1, 1.0], &[1.0, 1.0], &[0.5, 0.5], given);
     assert!(
-        told.unwrap_err().to_string().contains("expected one of the target's, 0.1, 1, found 0.31")
+        message
+            .unwrap_err()
+            .to_string()
+            .contains("expected one of the target's, 0.1, 1, found 0.31")
     );
 }
