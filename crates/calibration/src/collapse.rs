@@ -58,7 +58,7 @@ impl Default for Settings {
 }
 
 /// Fraction by which an interval must be narrower than the prior for a test to be informative.
-const TOLD: f64 = 0.15;
+const INFORMATIVE: f64 = 0.15;
 
 /// Correlation above which two parameters are inseparable.
 const ALIKE: f64 = 0.9;
@@ -125,7 +125,7 @@ struct Trial<'a> {
 /// [`super::response`].
 ///
 /// The result is a function of the observations, the scenarios and the settings, independent of the number of
-/// threads. `tell` is called with the numbers of completed and of all simulations, from several threads, and may stop
+/// threads. `report` is called with the numbers of completed and of all simulations, from several threads, and may stop
 /// them.
 ///
 /// # Errors
@@ -136,7 +136,7 @@ pub fn collapse(
     scenarios: &[Scenario],
     parameters: &[Parameter],
     settings: &Settings,
-    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Calibration, CalibrateError> {
     let trials = trials(observations, scenarios, parameters, settings)?;
     let Some(lead) = trials.first() else { return Ok(Calibration::default()) };
@@ -160,8 +160,8 @@ pub fn collapse(
                 trials.iter().map(built).collect::<Vec<_>>()
             })
             .collect();
-        let report = |done| tell(before + done, of.max(before + done));
-        let simulated = if stopped { None } else { simulate(batch, settings.lanes, &report) };
+        let overall = |done| report(before + done, of.max(before + done));
+        let simulated = if stopped { None } else { simulate(batch, settings.lanes, &overall) };
         let Some(simulated) = simulated else {
             stopped = true;
             return vec![f64::NEG_INFINITY; draws.len()];
@@ -331,7 +331,7 @@ fn identifiability(
     for (at, estimate) in estimates.iter().enumerate() {
         // The central 95 % of the prior is 1.9 wide.
         let width = posterior.quantile(at, 0.975) - posterior.quantile(at, 0.025);
-        if width > (1.0 - TOLD) * 1.9 {
+        if width > (1.0 - INFORMATIVE) * 1.9 {
             warnings.push(format!(
                 "what was observed says nothing about {}: its interval is the range that was tried, not a \
                  measurement; test it on its own, or do not fit it",
@@ -348,7 +348,7 @@ fn identifiability(
     if posterior.power < 1.0 {
         warnings.push(format!(
             "too few simulations came near to what was observed, so its likelihood counts to the power {} and \
-             the intervals are wider than they need be: ask for more",
+             the intervals are wider than they need be: run more",
             short(posterior.power)
         ));
     }

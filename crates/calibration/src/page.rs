@@ -59,12 +59,12 @@ impl Calibration {
 
     /// States every parameter in a few words.
     fn headline(&self) -> String {
-        let told = |estimate: &Estimate| {
+        let stated = |estimate: &Estimate| {
             let unit = estimate.unit();
             let value = format!("{} {}", significant(estimate.value, 3), unit);
             format!("{} {}", estimate.name, value.trim_end())
         };
-        let all: Vec<String> = self.estimates.iter().map(told).collect();
+        let all: Vec<String> = self.estimates.iter().map(stated).collect();
         format!("{}.", capital(&all.join(", ")))
     }
 

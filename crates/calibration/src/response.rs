@@ -8,7 +8,7 @@ use barrelstack_dynamics::math;
 use barrelstack_fragility::student_quantile;
 use barrelstack_report::{Axis, Figure};
 
-use self::simulate::{Measured, Simulator, Tell};
+use self::simulate::{Measured, Report, Simulator};
 use super::figures::{figure, fitted};
 use super::least_squares::{Fit, Start, condition, fit, normalized};
 use super::result::{inseparable, short};
@@ -21,7 +21,7 @@ const WIDTH: f64 = 0.01;
 /// Length of the last step of a fit over the standard error; it adds 0.3 % to an interval.
 const SHARE: f64 = 0.05;
 
-/// That length in the first fit, which only estimates the scatter of the channels.
+/// The same length in the first fit, which only estimates the scatter of the channels.
 const FIRST_SHARE: f64 = 0.2;
 
 /// Fraction of a channel's magnitude below which residuals count as rounding.
@@ -46,7 +46,7 @@ const ILL: f64 = 1e3;
 /// The nominal 95 % intervals covered the truth in about 90 of 100 simulated records (89 to 94), for a reason
 /// that is not known; the result warns of it.
 ///
-/// `tell` is called with the number of simulations started, from several threads, and may stop them.
+/// `report` is called with the number of simulations started, from several threads, and may stop them.
 ///
 /// The fit starts from the scenario and finds the minimum next to it.
 /// Impacts, slips and falls make responses chaotic within seconds: short windows of mild shaking that
@@ -60,10 +60,10 @@ pub fn response(
     table: &Table,
     parameters: &[Parameter],
     until: Option<f64>,
-    tell: &Tell<'_>,
+    report: &Report<'_>,
 ) -> Result<Calibration, CalibrateError> {
     let measured = Measured::read(table, until)?;
-    let simulator = Simulator::new(scenario, &measured, parameters, tell)?;
+    let simulator = Simulator::new(scenario, &measured, parameters, report)?;
     let mut warnings: Vec<String> = simulator.first()?.into_iter().collect();
     let rows = measured.times.len();
     let values = rows * measured.channels.len();

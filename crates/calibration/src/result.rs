@@ -149,13 +149,13 @@ described! {
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),
-        /// What the reader should know.
+        /// Warnings.
         pub warnings: Vec<String> = found.warnings.clone(),
     }
 
     /// A parameter.
     pub struct EstimateRow of estimate: &Estimate {
-        /// What it is.
+        /// Name of the parameter.
         pub name: String = estimate.name.clone(),
         /// Its value.
         pub value: f64 as "as `unit` says" = estimate.value,
@@ -178,7 +178,7 @@ pub(super) fn inseparable(
     for (i, row) in correlation.iter().enumerate() {
         for (j, value) in row.iter().enumerate().skip(i + 1).filter(|(_, v)| v.abs() > limit) {
             warnings.push(format!(
-                "{} and {} cannot be told apart by what was measured: correlation {value:.3}; state one \
+                "{} and {} cannot be separated by the measurements: correlation {value:.3}; state one \
                  of them from a test of its own and fit the other",
                 estimates[i].name, estimates[j].name
             ));

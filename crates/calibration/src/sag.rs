@@ -16,7 +16,7 @@ const COLUMNS: [&str; 3] = ["load", "sag", "angle"];
 
 /// Fits the stiffness of a seat to the sag of what lies on several of them.
 ///
-/// The columns are `load`, a mass that was set down on the seats, and `sag`, by how much they gave way under it;
+/// The columns are `load`, a mass that was set down on the seats, and `sag`, by how much they deflected under it;
 /// `angle`, where there is one, is how far from upright the seats press, such as that of a cradle.
 /// `seats` are those that share the load, so `sag = load g / (seats k cos² angle)`.
 /// The interval is that of the slope of sag over load, through zero, by Student's t.

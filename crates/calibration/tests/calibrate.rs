@@ -83,8 +83,8 @@ fn stiffness_from_sag_lies_within_its_interval_and_parses() {
     let k = found.estimate("stiffness k").unwrap();
     assert!(k.relative() < 0.2, "{k:?}");
     let stiffness = pasted("", &found).stack().unwrap().interfaces.barrel_rack.normal;
-    let told = format!("{stiffness:?}");
-    assert!(told.contains(&format!("stiffness: {:?}", rounded(k.value))), "{told}: {k:?}");
+    let printed = format!("{stiffness:?}");
+    assert!(printed.contains(&format!("stiffness: {:?}", rounded(k.value))), "{printed}: {k:?}");
 }
 
 fn rounded(value: f64) -> f64 {
@@ -92,7 +92,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 #[test]
-fn hollow_seats_and_bad_sags_are_told() {
+fn hollow_seats_and_bad_sags_are_reported() {
     let table = |text: &str| Table::parse("sag.csv", text).unwrap();
     // Half a millimeter of play.
     let play = "load (kg),sag (mm)\n100,0.6\n200,0.7\n300,0.801\n400,0.9\n";
@@ -135,7 +135,7 @@ fn stiffness_from_a_tap_test_comes_back_and_parses() {
 }
 
 #[test]
-fn a_press_test_of_spheres_is_told_from_a_straight_line() {
+fn a_press_test_of_spheres_is_distinguished_from_a_straight_line() {
     let warned = |power: f64| {
         let mut random = Random::new(3);
         let mut text = String::from("penetration (mm),force (N)\n");
@@ -200,8 +200,8 @@ fn what_was_measured_is_drawn_beside_the_fit() {
     }
     let line = drawn(&found, 0, "force in proportion to penetration");
     let slope = (line[9].1 - line[0].1) / (line[9].0 - line[0].0);
-    let told = found.estimate("stiffness k").unwrap().value;
-    assert!((1e6 * slope / told - 1.0).abs() < 1e-9, "{slope} {told}");
+    let fitted = found.estimate("stiffness k").unwrap().value;
+    assert!((1e6 * slope / fitted - 1.0).abs() < 1e-9, "{slope} {fitted}");
 
     // Heights that the law itself gives: the curve passes through them.
     let striker = Striker { mass: 275.0, stiffness: 9.8e5, nodes: 4, gravity: GRAVITY };
@@ -427,7 +427,7 @@ fn a_response_gives_its_parameters_back_within_their_intervals() {
 }
 
 #[test]
-fn a_response_says_what_it_cannot_tell() {
+fn a_response_states_what_it_cannot_determine() {
     // Shaken so mildly that the rack sticks to the ground: its friction leaves no trace.
     let mut scenario = shaken();
     scenario.motion = Scenario::builtin(
@@ -441,8 +441,8 @@ fn a_response_says_what_it_cannot_tell() {
     let found = response(&scenario, &table, &fitted, None, &|_| ControlFlow::Continue(())).unwrap();
     let friction = found.estimate("friction rack-ground").unwrap();
     assert!(friction.high > 4.0 * friction.low, "{friction:?}");
-    let told = |warning: &String| warning.contains("friction rack-ground");
-    assert!(found.warnings.iter().any(told), "{:?}", found.warnings);
+    let names_friction = |warning: &String| warning.contains("friction rack-ground");
+    assert!(found.warnings.iter().any(names_friction), "{:?}", found.warnings);
     assert!(found.estimate("stiffness k").unwrap().relative() < 0.05, "{found:?}");
 }
 
@@ -490,12 +490,13 @@ fn from_film(tests: usize, simulations: usize, parameters: &[Parameter]) -> Cali
     ];
     let table = Table::parse("video.csv", &filmed(scenarios, &values)).unwrap();
     let settings = Settings { simulations, ..Settings::default() };
-    let seen = Observations::read(&table, &settings.errors).unwrap();
-    collapse(&seen, scenarios, parameters, &settings, &|_, _| ControlFlow::Continue(())).unwrap()
+    let observations = Observations::read(&table, &settings.errors).unwrap();
+    collapse(&observations, scenarios, parameters, &settings, &|_, _| ControlFlow::Continue(()))
+        .unwrap()
 }
 
 #[test]
-fn two_collapses_tell_little_and_say_so() {
+fn two_collapses_determine_little_and_say_so() {
     let found = from_film(2, 150, &[Parameter::Stiffness, Parameter::FrictionBarrelRack]);
     println!("{}\n{:?}", found.lines().join("\n"), found.warnings);
     let stiffness = found.estimate("stiffness k").unwrap();
@@ -519,10 +520,10 @@ fn two_collapses_tell_little_and_say_so() {
 }
 
 #[test]
-fn a_collapse_says_what_it_cannot_tell_and_the_same_every_time() {
+fn a_collapse_states_what_it_cannot_determine_and_the_same_every_time() {
     let found = from_film(1, 50, &[Parameter::Damping]);
-    let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
-    assert!(told("says nothing about damping c"), "{:?}", found.warnings);
+    let warned = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
+    assert!(warned("says nothing about damping c"), "{:?}", found.warnings);
     // Compared as texts, since NaN gaps in figures equal nothing.
     let again = from_film(1, 50, &[Parameter::Damping]);
     assert_eq!(format!("{found:?}"), format!("{again:?}"));
@@ -556,11 +557,12 @@ fn observations_are_refused_at_their_place() {
     }
     let table = Table::parse("video.csv", "mode,B9.1 fell (s)\nejection,1.5\n").unwrap();
     let settings = Settings { simulations: 50, ..Settings::default() };
-    let seen = Observations::read(&table, &settings.errors).unwrap();
+    let observations = Observations::read(&table, &settings.errors).unwrap();
     let fit = [Parameter::Stiffness];
-    let error =
-        collapse(&seen, &shaken_down()[..1], &fit, &settings, &|_, _| ControlFlow::Continue(()))
-            .unwrap_err();
+    let error = collapse(&observations, &shaken_down()[..1], &fit, &settings, &|_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap_err();
     let words = "test 1: the scenario has no barrel \"B9.1\"; it has B1.1, B1.2, B2.1";
     assert!(error.to_string().starts_with(words), "{error}");
 }

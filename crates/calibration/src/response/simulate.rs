@@ -69,19 +69,19 @@ pub(super) struct Simulator<'a> {
     measured: &'a Measured,
     pub(super) tunable: Tunable,
     count: AtomicUsize,
-    tell: &'a Tell<'a>,
+    report: &'a Report<'a>,
     stopped: AtomicBool,
 }
 
 /// Callback with the number of simulations started, called repeatedly from several threads; may stop them.
-pub(super) type Tell<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
+pub(super) type Report<'a> = dyn Fn(usize) -> ControlFlow<()> + Sync + 'a;
 
 impl<'a> Simulator<'a> {
     pub(super) fn new(
         scenario: &Scenario,
         measured: &'a Measured,
         parameters: &[Parameter],
-        tell: &'a Tell<'a>,
+        report: &'a Report<'a>,
     ) -> Result<Self, CalibrateError> {
         let tunable = Tunable::new(scenario, parameters)?;
         let mut scenario = scenario.clone();
@@ -98,7 +98,7 @@ impl<'a> Simulator<'a> {
         scenario.record.history_rate = 1.0 / step;
         scenario.record.frame_rate = 1.0;
         let (count, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-        Ok(Self { scenario, measured, tunable, count, tell, stopped })
+        Ok(Self { scenario, measured, tunable, count, report, stopped })
     }
 
     /// Returns the number of simulations run.
@@ -143,7 +143,7 @@ impl<'a> Simulator<'a> {
     fn run(&self, point: &[f64]) -> Result<Run, RunFailure> {
         let count = self.count.fetch_add(1, Ordering::Relaxed) + 1;
         self.tunable.at(&self.scenario, point).run_watched(&mut |_| {
-            if (self.tell)(count).is_break() {
+            if (self.report)(count).is_break() {
                 self.stopped.store(true, Ordering::Relaxed);
             }
             if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
