@@ -18,11 +18,11 @@ mod indices;
 mod json;
 mod limit;
 mod loss;
-mod matters;
 mod measures;
 mod modes;
 mod page;
 mod sensitivity;
+mod tables;
 mod words;
 
 use std::path::Path;

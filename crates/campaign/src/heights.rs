@@ -196,7 +196,7 @@ pub enum HeightsError {
 
 /// Runs every height in both directions, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` receives the numbers of finished and of all runs, and may cancel.
+/// `report` receives the numbers of finished and of all runs, and may cancel.
 ///
 /// # Errors
 /// When the rack or the height is unknown, a record cannot be read, or a folder cannot be written.
@@ -204,7 +204,7 @@ pub fn heights(
     request: &Request,
     folder: &Path,
     options: &RunOptions,
-    tell: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Heights, HeightsError> {
     if !(SMALLEST..=LARGEST).contains(&request.highest) {
         return Err(HeightsError::Levels(request.highest));
@@ -222,19 +222,19 @@ pub fn heights(
     let mut before = 0;
     let mut found = Vec::new();
     for (view, recorded, study) in &studies {
-        let report = |progress: &Progress| tell(before + progress.tally.cases, all);
+        let overall = |progress: &Progress| report(before + progress.tally.cases, all);
         let name = plan::name(*view, *recorded);
         let place = folder.join(&name);
         system::folder_below(folder, Path::new(&name))
             .map_err(StudyError::system("make the folder", &place))?;
-        found.push((*view, *recorded, study.run(&place, options, &report)?));
+        found.push((*view, *recorded, study.run(&place, options, &overall)?));
         before += study.cases();
     }
     let stacks: Vec<(u32, View)> = View::ALL
         .into_iter()
         .flat_map(|view| request.heights().map(move |levels| (levels, view)))
         .collect();
-    let margins = margin::margins(request, &stacks, &|| tell(all, all))?;
+    let margins = margin::margins(request, &stacks, &|| report(all, all))?;
     let mut found = gather(request, &found)?;
     for height in &mut found.heights {
         let at = stacks.iter().position(|of| *of == (height.levels, height.view));

@@ -100,7 +100,7 @@ pub struct Ranked {
     pub burst: Estimate,
     /// Reduction of fallen barrels against the stack as it is, under the same motions; `None` for itself.
     pub saved: Option<Estimate>,
-    /// That reduction with an interval that holds for all tried protections simultaneously, since the best of many
+    /// The same reduction with an interval that holds for all tried protections simultaneously, since the best of many
     /// is reported.
     pub saved_together: Option<Estimate>,
     /// The direction of shaking in which more barrels fall.
@@ -179,20 +179,20 @@ impl Ranking {
     /// When one of them cannot be run.
     pub fn show_before_and_after(
         &mut self,
-        tell: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
+        report: &mut (dyn FnMut(Advance) -> ControlFlow<()> + Send),
     ) -> Result<bool, ProtectError> {
         let Some(best) = self.best() else { return Ok(true) };
         let own = &self.request.scenario;
         let protected = best.protection.on(own)?;
         let mut answers = Vec::new();
         for (name, scenario) in [("as it is", own), (&*best.protection.name, &protected)] {
-            let answer = answer(scenario, RunChoice::Typical, tell)?;
+            let answer = answer(scenario, RunChoice::Typical, report)?;
             if answer.is_stopped() {
                 return Ok(false);
             }
             answers.push((name.to_owned(), answer));
         }
-        let answers = compare::aligned(answers, tell)?;
+        let answers = compare::aligned(answers, report)?;
         if answers.iter().any(|(_, answer)| answer.decides.run.interrupted) {
             return Ok(false);
         }
@@ -251,7 +251,7 @@ pub struct Reached {
 
 /// Tries all protections of a stack, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` receives the progress, from several threads, and may cancel.
+/// `report` receives the progress, from several threads, and may cancel.
 ///
 /// # Errors
 /// When the scenario has no stack, a record cannot be read, or a folder cannot be written.
@@ -259,7 +259,7 @@ pub fn protect(
     request: &Request,
     folder: &Path,
     options: &RunOptions,
-    tell: &(dyn Fn(Reached) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(Reached) -> ControlFlow<()> + Sync),
 ) -> Result<Ranking, ProtectError> {
     if request.scenario.stack().is_none() {
         return Err(ProtectError::NoStack(request.scenario.title.clone()));
@@ -275,7 +275,7 @@ pub fn protect(
     base.motion.source = MotionSource::None;
     let (levels, weights) = (request.shaking.levels(), request.shaking.weights());
     let mut search =
-        Search { request, base: &base, folder, options, tell, levels, not_tried: Vec::new() };
+        Search { request, base: &base, folder, options, report, levels, not_tried: Vec::new() };
     let mut singles = options::singles(&base);
     // The stack as it is has to stand before anything else is tried.
     let mut trials = vec![Trial::new(&base, singles.remove(0))?];

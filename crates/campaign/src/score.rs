@@ -205,7 +205,7 @@ pub enum ScoreError {
 
 /// Scores the rack and the devices of a scenario, in folders below `folder`, and resumes earlier runs.
 ///
-/// `tell` receives the numbers of finished and of all runs, and may cancel.
+/// `report` receives the numbers of finished and of all runs, and may cancel.
 ///
 /// # Errors
 /// When the scenario has no stack, a state cannot be built, or a folder cannot be written.
@@ -214,7 +214,7 @@ pub fn score(
     protocol: &Protocol,
     folder: &Path,
     options: &RunOptions,
-    tell: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Sheet, ScoreError> {
     if scenario.stack().is_none() {
         return Err(ScoreError::NoStack(scenario.title.clone()));
@@ -244,8 +244,8 @@ pub fn score(
     let (mut before, mut rows) = (0, Vec::new());
     for (state, view, study) in studies {
         let place = folder.join(slug(&state.name)).join(view.name());
-        let report = |progress: &Progress| tell(before + progress.tally.cases, all);
-        let cases = Cases::read(&study.run(&place, options, &report)?)?;
+        let overall = |progress: &Progress| report(before + progress.tally.cases, all);
+        let cases = Cases::read(&study.run(&place, options, &overall)?)?;
         before += study.cases();
         let curve = LimitCurve::of(&cases, LimitState::SeatLost, cases.main);
         let capacity = Capacity::of(&curve, protocol).map_err(|source| {

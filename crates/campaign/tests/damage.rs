@@ -50,7 +50,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 }
 
 /// Returns status, rows and decision of a folder, or the refusals.
-fn told(folder: &Path) -> [Result<String, String>; 3] {
+fn read_all(folder: &Path) -> [Result<String, String>; 3] {
     let words = |error: StudyError| error.to_string();
     let status = Collected::status(folder).map(|status| format!("{status:?}")).map_err(words);
     let rows = Collected::read(folder).map(|read| format!("{read:?}")).map_err(words);
@@ -67,7 +67,7 @@ fn damage(times: u32) -> [u32; 3] {
     let folder = place.path().join("study");
     run(&study, &folder).unwrap();
     collect(&folder, &mut |_, _| Ok(())).unwrap();
-    let (whole, said) = (files(&folder), told(&folder));
+    let (whole, said) = (files(&folder), read_all(&folder));
     assert!(said.iter().all(Result::is_ok), "{said:?}");
     let mut random = Random::new(1);
     let mut pick = |below: usize| {
@@ -90,7 +90,7 @@ fn damage(times: u32) -> [u32; 3] {
             }
             fs::write(path, &changed).unwrap();
             let name = path.strip_prefix(&folder).unwrap().display().to_string();
-            let now = told(&folder);
+            let now = read_all(&folder);
             for (now, before) in now.iter().zip(&said) {
                 assert!(now.is_err() || now == before, "{name} accepted: {now:?}");
             }

@@ -30,15 +30,18 @@ fn the_same_study_gives_the_same_page_to_the_byte() {
 }
 
 #[test]
-fn an_island_of_collapse_is_told_with_its_levels_and_not_smoothed_away() {
+fn an_island_of_collapse_is_reported_with_its_levels_and_not_smoothed_away() {
     // Everything between 0.3 and 0.5 m/s falls, little stands again above, all falls at the top.
     let island = study(|record, level| {
         let falls = (0.3..0.55).contains(&level) || level > 0.85 || (record == 0 && level > 0.3);
         if falls { 2 } else { 0 }
     });
     let found = decide(&island, &Request::default()).unwrap();
-    let told = found.warnings.iter().find(|w| w.contains("not monotone")).expect("a warning");
-    assert!(told.contains("12 of 12 cases at 50 cm/s, but only 1 of 12 at 60 cm/s"), "{told}");
+    let warning = found.warnings.iter().find(|w| w.contains("not monotone")).expect("a warning");
+    assert!(
+        warning.contains("12 of 12 cases at 50 cm/s, but only 1 of 12 at 60 cm/s"),
+        "{warning}"
+    );
     assert!(found.document.verdict.headline.contains("raw fractions"));
     assert!(found.warnings.iter().any(|w| w.contains("standing at a higher level")));
     assert_eq!(found.curves[0].returned.len(), 11);
@@ -157,7 +160,7 @@ fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
 }
 
 #[test]
-fn a_table_that_tells_no_forces_says_nothing_of_what_bursts_by_them() {
+fn a_table_without_forces_gives_no_bursts_by_force() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
     columns.retain(|column| column.spec.name != "fall_forces");
@@ -197,12 +200,12 @@ fn one_at_a_time_rests_on_the_base_where_the_first_chunk_is_missing() {
     collected.provenance.design = "one-at-a-time".into();
     collected.provenance.drawn.clear();
     let effects = decide(&collected, &Request::default()).unwrap().effects;
-    let told: Vec<_> = effects.iter().map(|of| (of.factor.as_str(), of.groups.len())).collect();
-    assert_eq!(told, [("cask", 2)]);
+    let groups: Vec<_> = effects.iter().map(|of| (of.factor.as_str(), of.groups.len())).collect();
+    assert_eq!(groups, [("cask", 2)]);
 }
 
 #[test]
-fn shares_of_one_change_at_a_time_are_told_at_each_level_with_intervals_that_count_motions() {
+fn shares_of_one_change_at_a_time_are_reported_at_each_level_with_intervals_that_count_motions() {
     let mut collected = ordinary();
     let mut columns = collected.table.columns().to_vec();
     // Every record is drawn one friction; another cask is tried on all of them.

@@ -60,7 +60,7 @@ fn verdicts(collected: &Collected) -> Vec<Option<String>> {
 }
 
 #[test]
-fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere() {
+fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_reported_everywhere() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     let Some((_, by_default)) = study(&at("default"), "") else { return };
@@ -84,8 +84,11 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_told_everywhere()
     assert!(plan.contains("while the ground still moves under 4 of 4 motions"), "{plan}");
     let endings = endings_of(&cut.table);
     assert!(endings.cut > 0 && endings.open > 0, "{endings:?}");
-    let told = endings.sentences();
-    assert!(told[0].contains("cut short by run.duration while the ground still moved"), "{told:?}");
+    let sentences = endings.sentences();
+    assert!(
+        sentences[0].contains("cut short by run.duration while the ground still moved"),
+        "{sentences:?}"
+    );
     let left = cut.table.numbers("motion_left").unwrap();
     assert_eq!(left.iter().flatten().filter(|left| **left > 0.0).count() as u64, endings.cut);
     let page = decide(&cut, &Request::default()).unwrap();

@@ -1,4 +1,4 @@
-//! What other programs read: the files themselves, and `OpenQuake` and Pelicun run on them.
+//! Exported files, and `OpenQuake` and Pelicun run on them.
 
 #![allow(clippy::print_stdout, reason = "numbers of other programs are read with --nocapture")]
 

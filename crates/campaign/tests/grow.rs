@@ -32,11 +32,11 @@ fn synthetic(count: u32) -> String {
 fn run(text: &str, folder: &Path) -> (u64, [Vec<u8>; 4]) {
     let study = Study::parse("test.toml", text).unwrap();
     let last = Mutex::new(Progress::default());
-    let tell = |progress: &Progress| {
+    let report = |progress: &Progress| {
         *last.lock().unwrap() = *progress;
         ControlFlow::Continue(())
     };
-    study.run(folder, &RunOptions::default(), &tell).unwrap();
+    study.run(folder, &RunOptions::default(), &report).unwrap();
     let files = ["table.csv", "table.parquet", "provenance.json", "columns.csv"];
     let now = last.lock().unwrap().now;
     (now, files.map(|name| std::fs::read(folder.join(name)).unwrap()))
@@ -146,14 +146,14 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
     let (out, grown) = (folder.path().join("out"), folder.path().join("grown"));
     run(&text(80, PULSE, "", "sobol"), &grown);
     let study = Study::parse("test.toml", &text(60, PULSE, "", "sobol")).unwrap();
-    let tell = |progress: &Progress| {
+    let report = |progress: &Progress| {
         if progress.now == 1 {
             std::fs::copy(grown.join("study.json"), out.join("study.json")).unwrap();
         }
         ControlFlow::Continue(())
     };
     let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
-    let error = study.run(&out, &options, &tell).unwrap_err().to_string();
+    let error = study.run(&out, &options, &report).unwrap_err().to_string();
     assert!(error.contains("has been given to a study that grew since this run began"), "{error}");
 }
 
@@ -163,7 +163,7 @@ fn a_shard_that_is_damaged_while_a_study_runs_is_counted() {
     let study = Study::parse("test.toml", &text(60, PULSE, "", "sobol")).unwrap();
     let damaged = folder.path().join("shards/000002-0000000000000000.parquet");
     let last = Mutex::new(Progress::default());
-    let tell = |progress: &Progress| {
+    let report = |progress: &Progress| {
         if progress.now == 1 {
             std::fs::write(&damaged, "no shard").unwrap();
         }
@@ -171,7 +171,7 @@ fn a_shard_that_is_damaged_while_a_study_runs_is_counted() {
         ControlFlow::Continue(())
     };
     let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
-    let collected = study.run(folder.path(), &options, &tell).unwrap();
+    let collected = study.run(folder.path(), &options, &report).unwrap();
     let last = last.lock().unwrap();
     assert_eq!((last.damaged, last.now, collected.table.rows()), (1, 60, 60));
     assert!(damaged.with_extension("damaged").is_file() && !damaged.exists());
@@ -188,7 +188,7 @@ fn who_waits_for_a_chunk_of_a_stopped_process_learns_its_name() {
     let stopped = Mutex::new(Some(std::fs::File::open(&claim).unwrap()));
     stopped.lock().unwrap().as_ref().unwrap().lock().unwrap();
     let found = Mutex::new(None);
-    let tell = |progress: &Progress| {
+    let report = |progress: &Progress| {
         if let Some(chunk) = progress.waits_for {
             *found.lock().unwrap() = Some((chunk, holder(folder.path(), chunk).unwrap()));
             // It ends, and its claim is free.
@@ -197,7 +197,7 @@ fn who_waits_for_a_chunk_of_a_stopped_process_learns_its_name() {
         ControlFlow::Continue(())
     };
     let options = RunOptions { threads: std::num::NonZero::new(1), lanes: None };
-    study.run(folder.path(), &options, &tell).unwrap();
+    study.run(folder.path(), &options, &report).unwrap();
     let (chunk, holder) = found.into_inner().unwrap().expect("it waits");
     assert_eq!((chunk, holder.who.as_str()), (0, "process 4711 on cellar"));
     assert!(folder.path().join("table.csv").is_file());

@@ -64,9 +64,9 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
 
     // Interrupted repeatedly, the result is the same bit for bit.
     for most in [3, 9, 30] {
-        let heard = AtomicUsize::new(0);
+        let reports = AtomicUsize::new(0);
         let stop = |_: Reached| {
-            if heard.fetch_add(1, Ordering::Relaxed) < most {
+            if reports.fetch_add(1, Ordering::Relaxed) < most {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
@@ -114,15 +114,15 @@ fn all_protections_meet_the_same_motions_and_friction_and_a_stop_loses_no_bit() 
         );
     }
     assert!(kinds["device"] >= 2 && kinds["as-it-is"] == 1, "{kinds:?}");
-    let told = |name: &str| {
+    let reason = |name: &str| {
         found.not_tried.iter().find(|(known, _)| known == name).map(|(_, why)| why.as_str())
     };
-    assert!(told("1 level").unwrap().contains("US$400, above the budget of US$130"));
-    assert!(told("chocks in the top three levels").unwrap().contains("the stack has only 2"));
+    assert!(reason("1 level").unwrap().contains("US$400, above the budget of US$130"));
+    assert!(reason("chocks in the top three levels").unwrap().contains("the stack has only 2"));
 }
 
 #[test]
-fn what_costs_more_than_the_budget_is_not_tried_and_told() {
+fn a_protection_above_the_budget_is_reported_and_not_tried() {
     let folder = tempfile::tempdir().unwrap();
     let request = Request { budget: Some(0.0), rounds: 1, ..request() };
     let found = ranking(&request, folder.path()).unwrap();

@@ -14,14 +14,14 @@ fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {
     let say = |of: &dyn Fn(bool) -> Option<&'static str>| {
         fell.iter().map(|fell| of(*fell).map(Into::into)).collect::<Vec<Option<String>>>()
     };
-    let seen = |factor: f64| levels.iter().map(|x| Some(factor * x)).collect::<Vec<_>>();
+    let column = |factor: f64| levels.iter().map(|x| Some(factor * x)).collect::<Vec<_>>();
     let columns = vec![
         integer("case", Role::Key, (0..count).map(|row| i64::try_from(row).ok()).collect()),
         number("friction", "", Role::Factor, (0..count).map(|_| Some(random.uniform())).collect()),
         text("record", Role::Motion, (0..count).map(|k| Some(format!("m{}", k % 24))).collect()),
-        number("level", "m/s", Role::Motion, seen(1.0)),
-        number("pga", "m/s2", Role::Intensity, seen(8.0)),
-        number("pgv", "m/s", Role::Intensity, seen(1.0)),
+        number("level", "m/s", Role::Motion, column(1.0)),
+        number("pga", "m/s2", Role::Intensity, column(8.0)),
+        number("pgv", "m/s", Role::Intensity, column(1.0)),
         text("outcome", Role::Outcome, say(&|f| Some(if f { "collapse" } else { "stable" }))),
         text("ended", Role::Run, vec![Some("rest".into()); count]),
         number("motion_left", "s", Role::Run, vec![Some(0.0); count]),
@@ -30,7 +30,7 @@ fn sampled(count: usize, seed: u64, chance: impl Fn(f64) -> f64) -> Decision {
         text("fall_heights", Role::Outcome, say(&|f| f.then_some("1.8;0.9"))),
         text("fall_wine", Role::Outcome, say(&|f| f.then_some("0.225;0.225"))),
         number("stack_wine", "m3", Role::Outcome, vec![Some(6.0 * 0.225); count]),
-        number("top_drift_ratio", "", Role::Demand, seen(0.05)),
+        number("top_drift_ratio", "", Role::Demand, column(0.05)),
     ];
     let mut collected = made(columns, "sobol", &[], "m", 24);
     collected.provenance.seed = seed;
@@ -73,10 +73,10 @@ fn a_page_of_ten_thousand_samples_is_small_binned_and_says_what_it_rests_on() {
 
 #[test]
 fn an_island_among_samples_is_found_with_every_seed_and_none_where_there_is_none() {
-    let told = |chance: fn(f64) -> f64| {
+    let violations = |chance: fn(f64) -> f64| {
         (1..=20).filter(|seed| sampled(10_000, *seed, chance).curves[0].violates_order()).count()
     };
-    assert_eq!(told(island), 20);
+    assert_eq!(violations(island), 20);
     // Measured: none; the level of the test is one in twenty.
-    assert!(told(ordered) <= 1);
+    assert!(violations(ordered) <= 1);
 }

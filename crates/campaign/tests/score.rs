@@ -43,9 +43,9 @@ fn the_score_is_the_least_of_all_states_and_directions_and_a_stop_loses_no_bit()
     assert_eq!(at(0.3).sum::<u32>(), 0);
     assert!(at(2.4).sum::<u32>() >= 6);
 
-    let heard = AtomicUsize::new(0);
+    let reports = AtomicUsize::new(0);
     let stop = |_, _| {
-        if heard.fetch_add(1, Ordering::Relaxed) < 20 {
+        if reports.fetch_add(1, Ordering::Relaxed) < 20 {
             ControlFlow::Continue(())
         } else {
             ControlFlow::Break(())

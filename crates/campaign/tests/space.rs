@@ -92,7 +92,7 @@ fn a_case_is_the_run_of_its_scenario_to_the_last_bit() {
             assert_eq!(bits(column, row), expected.map(f64::to_bits), "{column} of row {row}");
         }
         assert_eq!(table.texts("heading").unwrap()[row].as_deref(), first.map(Heading::name));
-        let away = debris.iter().filter(|way| **way == Heading::Away).count();
+        let away = debris.iter().filter(|heading| **heading == Heading::Away).count();
         assert_eq!(table.integers("debris_away").unwrap()[row], i64::try_from(away).ok());
     }
     let outcomes = table.texts("outcome").unwrap();
@@ -104,9 +104,9 @@ fn a_case_is_the_run_of_its_scenario_to_the_last_bit() {
 #[test]
 fn neither_threads_nor_a_stop_change_a_byte() {
     let study = Study::parse("test.toml", DEMO).unwrap();
-    let run = |folder: &Path, threads, tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync)| {
+    let run = |folder: &Path, threads, report: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync)| {
         let options = RunOptions { threads: NonZero::new(threads), ..RunOptions::default() };
-        study.run(folder, &options, tell)
+        study.run(folder, &options, report)
     };
     let bytes = |folder: &Path| {
         ["table.csv", "table.parquet", "provenance.json"]
@@ -179,7 +179,7 @@ fn what_space_does_not_know_is_a_row_with_its_reason() {
 }
 
 #[test]
-fn a_record_of_one_component_is_told_as_such() {
+fn a_record_of_one_component_is_reported_as_such() {
     let pulse: Vec<f64> = (0..200).map(|k| if k < 50 { 1.0 } else { -1.0 }).collect();
     let unit = AccelerationUnit::MetersPerSecondSquared;
     let record = Record::of_samples("pulse", &[("E", pulse.as_slice())], 0.01, unit).unwrap();

@@ -38,12 +38,12 @@ fn run(study: &Study) -> StudyTable {
 
 /// The rows of a table as text, without the number of the case and of the chunk.
 fn rows(table: &StudyTable) -> Vec<String> {
-    let told = |row: usize| {
+    let values_of = |row: usize| {
         let values =
             table.columns().iter().filter(|c| !["case", "chunk"].contains(&c.spec.name.as_str()));
         format!("{:?}", values.map(|column| column.values.get(row)).collect::<Vec<_>>())
     };
-    (0..table.rows()).map(told).collect()
+    (0..table.rows()).map(values_of).collect()
 }
 
 fn numbers(table: &StudyTable, column: &str) -> Vec<f64> {
@@ -172,7 +172,7 @@ fn points_of_sobol_fill_every_cell_and_more_of_them_keep_the_earlier_rows() {
 }
 
 #[test]
-fn what_was_asked_of_the_intensity_is_what_shakes() {
+fn the_requested_intensity_is_what_shakes() {
     let table = run(&sampled("kind = \"sobol\"\ncount = 4"));
     for (level, pgv) in numbers(&table, "level").into_iter().zip(numbers(&table, "pgv")) {
         // Measured: 2e-16.
@@ -348,9 +348,9 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     let error = other
         .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
         .unwrap_err();
-    let told = error.to_string();
-    assert!(told.contains("belongs to another study: a [[factor]] has changed"), "{told}");
-    let told = Study::parse(
+    let message = error.to_string();
+    assert!(message.contains("belongs to another study: a [[factor]] has changed"), "{message}");
+    let message = Study::parse(
         "test.toml",
         &format!("{HEAD}{RUN}{text}").replacen("seed = 7", "seed = 8", 1),
     )
@@ -358,7 +358,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     .run(folder.path(), &RunOptions::default(), &|_| ControlFlow::Continue(()))
     .unwrap_err()
     .to_string();
-    assert!(told.contains("its seed is 7, that of this one 8"), "{told}");
+    assert!(message.contains("its seed is 7, that of this one 8"), "{message}");
     assert_eq!(std::fs::read(folder.path().join("study.json")).unwrap(), before);
 
     // An earlier version had another layout, without a fingerprint.
@@ -423,13 +423,13 @@ fn a_changed_record_is_another_study() {
     std::fs::copy(&record, moved.join("site.csv")).unwrap();
     std::fs::copy(&file, moved.join("study.toml")).unwrap();
     let done = std::sync::Mutex::new(Progress::default());
-    let tell = |progress: &Progress| {
+    let report = |progress: &Progress| {
         *done.lock().unwrap() = *progress;
         ControlFlow::Continue(())
     };
     Study::load(&moved.join("study.toml"))
         .unwrap()
-        .run(&out, &RunOptions::default(), &tell)
+        .run(&out, &RunOptions::default(), &report)
         .unwrap();
     let Progress { before, now, .. } = *done.lock().unwrap();
     assert!(before > 0 && now == 0, "{now} cases run again");
@@ -443,7 +443,7 @@ fn a_changed_record_is_another_study() {
 }
 
 #[test]
-fn every_ensemble_is_tried_before_the_work_and_told_in_words() {
+fn every_ensemble_is_tried_before_the_work_and_described_in_words() {
     let made = |rise: &str| {
         format!(
             "[[motion]]\nname = \"rise {rise}\"\nsynthetic = {{ kind = \"clough-penzien\", duration = \"1 s\", \
@@ -452,12 +452,13 @@ fn every_ensemble_is_tried_before_the_work_and_told_in_words() {
     };
     let good = study(&format!("{}{STRIPES}", made("0.1 s")));
     let motions = good.provenance().unwrap().motions;
-    let told = &motions[1].source;
+    let source = &motions[1].source;
     assert!(
-        told.starts_with("Clough-Penzien noise: 0.980665 m/s2 rms, ") && told.contains(", seed "),
-        "{told}"
+        source.starts_with("Clough-Penzien noise: 0.980665 m/s2 rms, ")
+            && source.contains(", seed "),
+        "{source}"
     );
-    assert_ne!(motions[0].source, *told);
+    assert_ne!(motions[0].source, *source);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let error = study(&format!("{}{}{STRIPES}", made("0.1 s"), made("0.9 s")))

@@ -222,9 +222,9 @@ impl Reading {
         let mut measures: Vec<Measure> =
             measures.map(|column| Measure::new(&column.name, &column.unit)).collect();
         // `sa(0.5)` is the column `sa_0.5`.
-        let asked = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
+        let requested = made.measure.as_deref().map(|name| name.replace('(', "_").replace(')', ""));
         let known = |name: &str| measures.iter().position(|measure| measure.name == name);
-        let main = match asked.as_deref() {
+        let main = match requested.as_deref() {
             Some(name) => known(name).unwrap_or_else(|| {
                 let level = made.columns.iter().find(|column| column.name == "level");
                 let unit = level.map_or("", |column| column.unit.as_str());
@@ -239,7 +239,7 @@ impl Reading {
             modes: Vec::new(),
             measures,
             main,
-            leveled: asked.is_some(),
+            leveled: requested.is_some(),
             hunted: made.design == "ida",
             sampled: made.is_sampled(),
             drawn: made.drawn.clone(),
@@ -306,10 +306,10 @@ impl Reading {
             let fell_at_rest = mode == Some(CollapseMode::Gravity.name());
             let mode = mode.and_then(|mode| u8::try_from(self.modes.of(mode)).ok());
             let numbers = |column, of: Option<&[Option<String>]>| {
-                let told = of.and_then(|of| of[row].as_deref()).unwrap_or_default();
-                let filled = told.split(';').map(str::trim).filter(|number| !number.is_empty());
+                let text = of.and_then(|of| of[row].as_deref()).unwrap_or_default();
+                let filled = text.split(';').map(str::trim).filter(|number| !number.is_empty());
                 let parsed = filled.map(|number| {
-                    let list = || DecisionError::List { column, found: told.to_owned() };
+                    let list = || DecisionError::List { column, found: text.to_owned() };
                     number.parse::<f64>().map_err(|_| list())
                 });
                 parsed.collect::<Result<Box<[f64]>, _>>()
@@ -317,7 +317,7 @@ impl Reading {
             let curve = if self.cases.sampled {
                 small(self.cases.all.len())
             } else {
-                let factors = fixed.iter().map(|f| told(f.values.get(row)));
+                let factors = fixed.iter().map(|f| format_value(f.values.get(row)));
                 let key: Vec<String> = std::iter::once(name.to_owned()).chain(factors).collect();
                 self.curves.of(&key.join("\n"))
             };
@@ -415,7 +415,7 @@ impl Cases {
     }
 
     /// `true` if the number of fallen barrels is known: no case, or hardly any, was ended while something moved.
-    pub fn tells_losses(&self) -> bool {
+    pub fn has_losses(&self) -> bool {
         self.endings.no_losses().is_none()
     }
 
@@ -480,6 +480,6 @@ const MOST_BINS: usize = 16;
 const FEWEST_OF_LEVEL: usize = 8;
 
 /// Formats a value of a factor.
-pub(super) fn told(value: Option<Value>) -> String {
+pub(super) fn format_value(value: Option<Value>) -> String {
     value.map_or_else(String::new, |value| word(&value))
 }

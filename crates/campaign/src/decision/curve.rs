@@ -100,10 +100,10 @@ impl LimitCurve {
             goodness_in_bins(&groups.iter().map(of).collect::<Vec<_>>(), fit)
         });
         let monotony = monotony(&stripes, DRAWS, || random.uniform());
-        let told = cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
+        let outcomes = cases.all.iter().filter(|_| !cases.sampled).filter_map(|case| {
             Some((case.curve as usize, case.intensity(measure)?, limit.reached(case)))
         });
-        let returned = returns(told);
+        let returned = returns(outcomes);
         Self {
             limit,
             measure,
@@ -175,14 +175,14 @@ pub(super) fn stripe(intensity: f64, of: &[&Case], failed: impl Fn(&Case) -> boo
 /// Hunted levels depend on earlier results, so that counts at them would be biased: there each hunt bounds its first
 /// failure between two levels. Everywhere else each case states whether it failed.
 fn evidence(cases: &Cases, limit: &LimitState, measure: usize) -> Vec<Evidence> {
-    let seen = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
+    let measured = cases.all.iter().filter_map(|case| Some((case, case.intensity(measure)?)));
     if !cases.hunted {
-        return seen
+        return measured
             .map(|(case, x)| Evidence::case(x, limit.reached(case), case.record as usize))
             .collect();
     }
     let mut hunts: BTreeMap<u32, (usize, Vec<(f64, bool)>)> = BTreeMap::new();
-    for (case, x) in seen {
+    for (case, x) in measured {
         let hunt = hunts.entry(case.curve).or_insert_with(|| (case.record as usize, Vec::new()));
         hunt.1.push((x, limit.reached(case)));
     }

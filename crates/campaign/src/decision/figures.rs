@@ -89,7 +89,7 @@ pub(super) fn fragility(curve: &LimitCurve, measure: &Measure) -> Figure {
 
 /// Plots one line per limit state.
 pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
-    let told = |(index, curve): (usize, &LimitCurve)| {
+    let series_of = |(index, curve): (usize, &LimitCurve)| {
         let words = curve.limit.words();
         let style = style(index);
         fitted(curve, measure.scale, &words).map_or_else(
@@ -97,7 +97,7 @@ pub(super) fn limits(curves: &[LimitCurve], measure: &Measure) -> Figure {
             |line| Series { style, ..line },
         )
     };
-    let series = curves.iter().enumerate().map(told).collect();
+    let series = curves.iter().enumerate().map(series_of).collect();
     Figure::new(
         "limit-states",
         "Chance of each limit state. Lines are fitted curves; where the cases determine none, dots are the raw \
@@ -178,7 +178,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         let (y, x) = found.map(|(x, d)| (x, d.map_or(f64::NAN, place))).unzip();
         series.push(Series { style: style(index), ..Series::new(label, x, y) });
     }
-    let told = match returned.len() {
+    let note = match returned.len() {
         0 => String::new(),
         count => format!(
             " {count} of {} come back: they collapse at one level and stand at a higher one.",
@@ -189,7 +189,7 @@ pub(super) fn ida(cases: &Cases, returned: &[Returned]) -> Option<Figure> {
         "ida",
         format!(
             "Incremental dynamic analysis: peak drift of the top while the stack stands against {}. A line that reaches \
-             the right edge has collapsed.{told}",
+             the right edge has collapsed.{note}",
             measure.label
         ),
         Plot {

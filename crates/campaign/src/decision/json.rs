@@ -12,7 +12,7 @@ use super::sensitivity::{Effect, Group, Level};
 use super::{Cases, Decision, Sensitivity};
 
 described! {
-    /// What a study says. Intensities in the SI unit of their measure.
+    /// Results of a study. Intensities in the SI unit of their measure.
     pub struct DecisionDocument of decision: &Decision {
         /// Name and version of this layout.
         pub schema: &'static str ["decision/1"] = "decision/1",
@@ -30,10 +30,10 @@ described! {
         pub measure: NamedMeasure = NamedMeasure::of(decision.cases.measure()),
         /// A curve for every limit state, over that measure.
         pub fragility: Vec<Fragility> = decision.curves.iter().map(Fragility::of).collect(),
-        /// How well every measure predicts collapse, the best first.
+        /// Efficiency of every measure as a predictor of collapse, the best first.
         pub measures: Vec<MeasureEfficiency> =
             decision.measures.iter().map(|row| MeasureEfficiency::of(&(row, &decision.cases))).collect(),
-        /// How collapse divides among its modes, the most frequent first.
+        /// Share of each collapse mode, the most frequent first.
         pub modes: Vec<ModeShare> =
             decision.modes.iter().map(|mode| ModeShare::of(&(mode, &decision.curves[0]))).collect(),
         /// Cases that were followed until nothing moved.
@@ -50,14 +50,14 @@ described! {
         pub no_losses: Option<String> = decision.losses.as_ref().err().cloned(),
         /// Barrels and wine lost.
         pub losses: Option<LossTable> = decision.losses.as_ref().ok().map(LossTable::of),
-        /// What varied quantities do to the variance of results; empty but for a design made for it.
+        /// Sobol indices of the varied quantities for every result; empty unless the design is made for them.
         pub sobol_indices: Vec<SobolIndices> =
             decision.sensitivities.iter().map(SobolIndices::of).collect(),
-        /// What varied factors change, the largest effect first.
+        /// Effects of the varied factors, the largest first.
         pub effects: Vec<FactorEffect> = decision.effects.iter().map(FactorEffect::of).collect(),
-        /// What it means at the site; null without a hazard curve.
+        /// Rates at the site; null without a hazard curve.
         pub site: Option<SiteRates> = decision.site.as_ref().map(SiteRates::of),
-        /// What the reader must know.
+        /// Warnings.
         pub warnings: Vec<String> = decision.warnings.clone(),
     }
 
@@ -73,7 +73,7 @@ described! {
     pub struct Fragility of curve: &LimitCurve {
         /// The limit state.
         pub limit_state: String = curve.limit.name(),
-        /// What was counted.
+        /// Raw counts at every level.
         pub raw: Vec<RawShare> = raw(&curve.stripes, &curve.intervals),
         /// Median of the lognormal curve; null where the data support none.
         pub median: Option<f64> as "of the measure" =
@@ -90,7 +90,7 @@ described! {
             curve.median.filter(|_| curve.fit.is_ok()).map(bounds),
         /// Why there is no curve.
         pub no_curve: Option<String> = curve.fit.as_ref().err().map(ToString::to_string),
-        /// How the band was found.
+        /// Method of the band.
         pub band: &'static str ["jackknife over records", "profile likelihood", "none"] =
             match curve.band_kind {
                 BandKind::Records => "jackknife over records",
@@ -110,13 +110,13 @@ described! {
         pub returned: usize = curve.returned.len(),
     }
 
-    /// What was counted at one level.
+    /// Raw counts at one level.
     pub struct RawShare of at: &(&Stripe, &Interval) {
         /// The level.
         pub intensity: f64 as "of the measure" = at.0.intensity,
         /// Cases.
         pub cases: u32 = at.0.cases,
-        /// Those that reached the limit state.
+        /// Cases that reached the limit state.
         pub failures: u32 = at.0.failures,
         /// 95 % interval of the chance (Wilson).
         pub interval: [Option<f64>; 2] as "1" = bounds(*at.1),
@@ -140,7 +140,7 @@ described! {
         pub p: f64 as "1" = fall.p,
     }
 
-    /// How well a measure predicts collapse.
+    /// Efficiency of a measure as a predictor of collapse.
     pub struct MeasureEfficiency of row: &(&MeasureRow, &Cases) {
         /// The measure.
         pub measure: String = row.1.measures[row.0.measure].name.clone(),
@@ -158,9 +158,9 @@ described! {
         /// Share of pairs that it puts in the right order.
         pub concordance: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| finite(found.concordance)),
-        /// The measure beside which sufficiency was asked.
+        /// Other measure against which sufficiency was tested.
         pub beside: Option<String> = row.0.beside.map(|at| row.1.measures[at].name.clone()),
-        /// Chance that the other measure tells nothing more.
+        /// p-value of the hypothesis that the other measure adds nothing on collapse.
         pub sufficiency_p: Option<f64> as "1" =
             row.0.collapse.as_ref().ok().and_then(|found| found.sufficiency),
         /// Why there is no curve.
@@ -169,7 +169,7 @@ described! {
         pub drift_slope: Option<f64> as "1" = row.0.drift.map(|found| found.slope),
         /// Scatter about it.
         pub drift_dispersion: Option<f64> as "1" = row.0.drift.map(|found| found.dispersion),
-        /// Chance that the other measure tells nothing more of the drift.
+        /// p-value of the hypothesis that the other measure adds nothing on the drift.
         pub drift_sufficiency_p: Option<f64> as "1" = row.0.drift.and_then(|found| found.sufficiency),
     }
 
@@ -177,7 +177,7 @@ described! {
     pub struct ModeShare of mode: &(&ModeIncidence, &LimitCurve) {
         /// The mode.
         pub mode: String = mode.0.mode.clone(),
-        /// What was counted.
+        /// Raw counts at every level.
         pub raw: Vec<RawShare> = raw(&mode.0.stripes, &mode.0.intervals),
         /// Cumulative incidence: the chance of collapse in this mode.
         pub cumulative_incidence_at: Vec<ChanceAt> =
@@ -192,7 +192,7 @@ described! {
         pub chance: f64 as "1" = *at.1,
     }
 
-    /// What is lost.
+    /// Losses.
     pub struct LossTable of losses: &Losses {
         /// Barrels of a stack.
         pub barrels: u32 = losses.barrels,
@@ -204,7 +204,7 @@ described! {
         pub levels: Vec<LossAt> = losses.levels.iter().map(LossAt::of).collect(),
     }
 
-    /// What is lost at one level.
+    /// Losses at one level.
     pub struct LossAt of loss: &Loss {
         /// The level.
         pub intensity: f64 as "of the measure" = loss.intensity,
@@ -218,11 +218,11 @@ described! {
         pub barrels_burst: [f64; 3] as "barrels" = loss.burst,
         /// Wine lost in them, under each assumption.
         pub wine_lost_m3: [f64; 3] as "m3" = loss.wine,
-        /// Mean number of barrels that burst, by the largest force on them; null where the study does not tell forces.
+        /// Mean number of barrels that burst, by the largest force on them; null where the study does not record forces.
         pub barrels_burst_by_force: Option<f64> as "barrels" = loss.burst_by_force,
     }
 
-    /// What varied quantities do to the variance of a result.
+    /// Sobol indices of the varied quantities for one result.
     pub struct SobolIndices of found: &Sensitivity {
         /// The result.
         pub result: String = found.result.clone(),
@@ -248,7 +248,7 @@ described! {
         pub total_interval: [Option<f64>; 2] as "1" = bounds(input.1.total_interval),
     }
 
-    /// What a varied factor changes.
+    /// Effect of a varied factor.
     pub struct FactorEffect of effect: &Effect {
         /// The factor.
         pub factor: String = effect.factor.clone(),
@@ -262,7 +262,7 @@ described! {
         pub value: String = group.label.clone(),
         /// Cases.
         pub cases: u32 = group.cases,
-        /// Those that collapse.
+        /// Cases that collapse.
         pub collapsed: u32 = group.collapsed,
         /// 95 % interval of the share (Wilson); of one change at a time the cases of one motion go together.
         pub interval: [Option<f64>; 2] as "1" = bounds(group.interval),
@@ -276,13 +276,13 @@ described! {
         pub intensity: f64 as "of the measure" = level.intensity,
         /// Cases.
         pub cases: u32 = level.cases,
-        /// Those that collapse.
+        /// Cases that collapse.
         pub collapsed: u32 = level.collapsed,
         /// 95 % interval of the share, for which the cases of one motion go together.
         pub interval: [Option<f64>; 2] as "1" = bounds(level.interval),
     }
 
-    /// What it means at a site.
+    /// Rates at a site.
     pub struct SiteRates of site: &Site {
         /// File of the hazard curve.
         pub hazard: String = site.hazard.file.clone(),
@@ -300,13 +300,13 @@ described! {
             site.lost.as_ref().map(|lost: &Lost| lost.burst.iter().map(YearlyRate::of).collect()),
         /// Wine lost, under each assumption.
         pub wine_lost_m3_per_year: Option<[f64; 3]> as "m3/year" = site.lost.as_ref().map(|lost| lost.wine),
-        /// What the barrels that burst under the central assumption cost, with their wine, from and to.
+        /// Range of the cost of barrels that burst under the central assumption, with their wine.
         pub money_lost_per_year: Option<[f64; 2]> as "US$/year" = site.lost.as_ref().map(|lost| lost.money),
         /// Shares of the rate of collapse by intensity.
         pub contributions: Vec<RatePart> = site.contributions.iter().map(RatePart::of).collect(),
     }
 
-    /// How often a limit state is reached.
+    /// Rate at which a limit state is reached.
     pub struct LimitStateRate of limit: &LimitRate {
         /// The limit state.
         pub limit_state: String = limit.limit.name(),
@@ -316,7 +316,7 @@ described! {
         pub annual_rate_interval: Option<[Option<f64>; 2]> as "1/year" = limit.interval.map(bounds),
         /// With the raw shares.
         pub annual_rate_raw: YearlyRate = YearlyRate::of(&limit.raw),
-        /// Chance in the years that were asked for.
+        /// Chance in the requested number of years.
         pub chance: f64 as "1" = limit.chance,
     }
 
@@ -326,7 +326,7 @@ described! {
         pub low: f64 as "1/year" = rate.low,
         /// If it did the worst.
         pub high: f64 as "1/year" = rate.high,
-        /// What shaking of the intensity of the first row does.
+        /// Chance of the limit state at the intensity of the first row.
         pub at_first_row: f64 as "1" = rate.at_first,
     }
 

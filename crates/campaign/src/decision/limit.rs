@@ -49,7 +49,7 @@ impl LimitState {
 
     /// Returns collapse and, where falls are known, the first fall, a quarter, half and all of the barrels.
     pub(super) fn worth_telling(cases: &Cases) -> Vec<Self> {
-        let most = if cases.tells_losses() { cases.most_barrels() } else { 0 };
+        let most = if cases.has_losses() { cases.most_barrels() } else { 0 };
         let counts: BTreeSet<u32> =
             [1, most.div_ceil(4), most.div_ceil(2), most].into_iter().filter(|n| *n > 0).collect();
         std::iter::once(Self::SeatLost).chain(counts.into_iter().map(Self::Fallen)).collect()

@@ -139,8 +139,8 @@ fn at(intensity: f64, of: &[&Case]) -> Loss {
         let falls = of.iter().flat_map(|case| case.falls.iter().zip(&case.wines));
         falls.map(|(fall, wine)| wine * breakage.probability(*fall)).sum::<f64>() / count
     });
-    let told: Option<Vec<&[f64]>> = of.iter().map(|case| case.forces.as_deref()).collect();
-    let burst_by_force = told.map(|forces| {
+    let recorded: Option<Vec<&[f64]>> = of.iter().map(|case| case.forces.as_deref()).collect();
+    let burst_by_force = recorded.map(|forces| {
         let all = forces.into_iter().flatten();
         all.map(|force| BURST_BY_FORCE.probability(*force)).sum::<f64>() / count
     });

@@ -9,7 +9,7 @@ use super::hazard::{LimitRate, Site};
 use super::loss::{Breakage, Losses};
 use super::modes::ModeIncidence;
 use super::words::{self, count, percent, range};
-use super::{Decision, figures, matters};
+use super::{Decision, figures, tables};
 use crate::study::Provenance;
 
 /// Builds the whole page.
@@ -79,7 +79,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     // Shares of a hunt depend on its path.
     if !decision.sensitivities.is_empty() {
         blocks.push(heading("What matters"));
-        blocks.push(Block::Table(matters::indices(&decision.sensitivities)));
+        blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
             "The first index is the share of the variance that would go if the quantity were known, the total index the \
              share that would stay if everything else were; what the total has more than the first it does together with \
@@ -91,14 +91,14 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
         let overall = collapsed / cases.all.len() as f64;
         blocks.push(heading("What matters"));
         blocks.push(Block::Figure(figures::tornado(&decision.effects, overall)));
-        blocks.push(Block::Table(matters::effects(decision)));
+        blocks.push(Block::Table(tables::effects(decision)));
     }
-    blocks.push(heading("Which measure of shaking tells most"));
-    blocks.push(Block::Table(matters::measures(decision)));
+    blocks.push(heading("Which measure of shaking predicts collapse best"));
+    blocks.push(Block::Table(tables::measures(decision)));
     blocks.push(text(
         "Dispersion is what a measure leaves unexplained: the smaller, the fewer records are needed. Concordance is the \
          chance that of two cases, one collapsed and one standing, the collapsed one had the stronger shaking by this \
-         measure (0.5 tells nothing). A small p in the last columns says that the other measure still knows something: \
+         measure (0.5 is no better than chance). A small p in the last columns says that the other measure still adds information: \
          this one is then not sufficient.",
     ));
     blocks.push(heading("What was run"));
@@ -352,7 +352,7 @@ fn at_site(site: &Site, measure: &Measure) -> Vec<Block> {
         ],
     );
     let lost = site.lost.as_ref().map_or_else(
-        || "What a stack is expected to lose in a year is not known, since the study does not tell what falls.".to_owned(),
+        || "The expected loss of a stack in a year is not known, since the study does not record what falls.".to_owned(),
         |lost| {
             let [few, central, many] = lost.burst.map(|rate| measured(rate.low, 2));
             let wine = lost.wine.map(|wine| measured(1000.0 * wine, 0));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use barrelstack_fragility::{Interval, grouped_mean, wilson};
 
-use super::cases::{Case, Cases, told};
+use super::cases::{Case, Cases, format_value};
 use super::curve::LEVEL;
 use crate::study::{Column, Provenance, Value};
 
@@ -86,13 +86,13 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
                         other == at || drawn(column) || value() == *base
                     })
             };
-            let seen = cases
+            let rows = cases
                 .all
                 .iter()
                 .map(AsRef::as_ref)
                 .filter(belongs)
                 .map(|case| (factor.values.get(case.row as usize), case));
-            let mut groups = groups(seen, &factor.spec.unit);
+            let mut groups = groups(rows, &factor.spec.unit);
             for (group, of) in groups.iter_mut().filter(|_| alone && cases.records.len() > 1) {
                 group.interval = by_motion(of).interval;
                 group.levels = levels(of, cases);
@@ -109,7 +109,7 @@ pub(super) fn effects(factors: &[Column], made: &Provenance, cases: &Cases) -> V
 fn most_frequent(factor: &Column) -> Option<Value> {
     let mut counts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     for row in 0..factor.values.len() {
-        counts.entry(told(factor.values.get(row))).or_insert((0, row)).0 += 1;
+        counts.entry(format_value(factor.values.get(row))).or_insert((0, row)).0 += 1;
     }
     let (_, first) = counts.into_values().max_by_key(|(count, first)| (*count, Reverse(*first)))?;
     factor.values.get(first)
@@ -154,10 +154,10 @@ fn levels(of: &[&Case], cases: &Cases) -> Vec<Level> {
 }
 
 fn groups<'a>(
-    seen: impl Iterator<Item = (Option<Value>, &'a Case)> + Clone,
+    rows: impl Iterator<Item = (Option<Value>, &'a Case)> + Clone,
     unit: &str,
 ) -> Vec<(Group, Vec<&'a Case>)> {
-    let numbers: Option<Vec<(f64, &'a Case)>> = seen
+    let numbers: Option<Vec<(f64, &'a Case)>> = rows
         .clone()
         .map(|(value, case)| match value {
             Some(Value::Number(x)) => Some((x, case)),
@@ -172,8 +172,8 @@ fn groups<'a>(
     };
     let Some(mut numbers) = numbers else {
         let mut by_text: BTreeMap<String, Vec<&'a Case>> = BTreeMap::new();
-        for (value, case) in seen {
-            by_text.entry(told(value)).or_default().push(case);
+        for (value, case) in rows {
+            by_text.entry(format_value(value)).or_default().push(case);
         }
         return by_text.into_iter().map(|(label, of)| group(label, of)).collect();
     };

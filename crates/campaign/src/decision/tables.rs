@@ -23,7 +23,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
     if !levels.is_empty() {
         table.caption += " Intervals count motions, not cases.";
     }
-    let told = |share: f64, interval: Interval| {
+    let with_interval = |share: f64, interval: Interval| {
         format!("{} ({})", percent(share), range(interval, percent))
     };
     for effect in &decision.effects {
@@ -39,7 +39,7 @@ pub(super) fn effects(decision: &Decision) -> Table {
             row.extend(levels.iter().map(|level| {
                 let own = group.levels.iter().find(|own| alike(own.intensity, level.intensity));
                 let share = |own: &Level| f64::from(own.collapsed) / f64::from(own.cases);
-                Cell::maybe(own.map(|own| told(share(own), own.interval)))
+                Cell::maybe(own.map(|own| with_interval(share(own), own.interval)))
             }));
             table.rows.push(row);
         }

@@ -26,8 +26,8 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// Formats both ends of an interval with the same formatter.
-pub(crate) fn range(of: Interval, told: impl Fn(f64) -> String) -> String {
-    format!("{} to {}", told(of.low), told(of.high))
+pub(crate) fn range(of: Interval, format: impl Fn(f64) -> String) -> String {
+    format!("{} to {}", format(of.low), format(of.high))
 }
 
 /// Returns a count as a cell with all of its digits.
@@ -63,17 +63,17 @@ fn recurrence(rate: f64) -> String {
 }
 
 /// Explains why there is no curve; the caller formats intensities.
-pub(crate) fn refusal(reason: &FitError, told: impl Fn(f64) -> String) -> String {
+pub(crate) fn refusal(reason: &FitError, format: impl Fn(f64) -> String) -> String {
     match reason {
         FitError::NothingFailed { largest } => format!(
             "no case failed up to {}, so the median lies above; add cases of higher intensity",
-            told(*largest)
+            format(*largest)
         ),
         FitError::EverythingFailed { smallest } => format!(
             "every case failed down to {}, so the median lies below; add cases of lower intensity",
-            told(*smallest)
+            format(*smallest)
         ),
-        FitError::Separated { above, below } => match (told(*above), told(*below)) {
+        FitError::Separated { above, below } => match (format(*above), format(*below)) {
             (above, below) if above == below => {
                 format!(
                     "no case failed below {above} and none survived above it, so the dispersion cannot be found; add cases \
@@ -229,7 +229,7 @@ pub(super) fn warnings(
     if cases.fallen_at_rest() > 0 {
         said.push(format!(
             "{} of {} cases do not stand by themselves: they count as collapsed at every level of shaking, the level \
-             that gives way and all above it as fallen to the floor. A fitted curve tends to nothing where shaking does, \
+             that fails and all above it as fallen to the floor. A fitted curve tends to nothing where shaking does, \
              and theirs does not: read the raw fractions.",
             cases.fallen_at_rest(),
             cases.all.len()
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn a_share_reads_as_none_or_all_only_when_it_is() {
         let shares = [0.0, 5e-4, 0.044, 0.5, 0.708, 299.0 / 300.0, 0.9995, 1.0];
-        let told = [
+        let expected = [
             "0 %",
             "less than 0.1 %",
             "4.4 %",
@@ -379,6 +379,6 @@ mod tests {
             "more than 99.9 %",
             "100 %",
         ];
-        assert_eq!(shares.map(percent), told);
+        assert_eq!(shares.map(percent), expected);
     }
 }

@@ -7,7 +7,7 @@ use super::{AsRecorded, Height, Heights, known};
 use crate::decision::{LimitCurve, bounds};
 
 described! {
-    /// How high is safe.
+    /// Collapse of stacks by height.
     pub struct HeightsDocument of all: &Heights {
         /// Name and version of this layout.
         pub schema: &'static str ["heights/1"] = "heights/1",
@@ -31,7 +31,7 @@ described! {
         pub heights: Vec<HeightRow> = all.heights.iter().map(HeightRow::of).collect(),
         /// The bundled record as it was recorded.
         pub as_recorded: Vec<RecordedRow> = all.recorded.iter().map(RecordedRow::of).collect(),
-        /// What the reader must know.
+        /// Warnings.
         pub warnings: Vec<String> = all.warnings.clone(),
     }
 
@@ -43,7 +43,7 @@ described! {
         pub direction: &'static str ["transverse", "longitudinal"] = run.view.name(),
         /// The component.
         pub motion: String = run.motion.clone(),
-        /// Whether it collapsed.
+        /// `true` if it collapsed.
         pub collapsed: bool = run.collapsed,
         /// Share of its barrels that fell.
         pub fallen_share: f64 as "1" = run.fallen,
@@ -62,7 +62,7 @@ described! {
         /// Steady horizontal acceleration that they bear at most, with the friction and the seats of the catalog; null
         /// where they bear 1 g.
         pub static_margin: Option<f64> as "m/s2" = height.static_margin,
-        /// What becomes of them at every level of shaking.
+        /// Results at every level of shaking.
         pub at: Vec<LevelRow> = levels(height),
         /// Collapse over peak ground velocity (m/s).
         pub pgv: FittedCurve = FittedCurve::of(&height.by_velocity),
@@ -70,7 +70,7 @@ described! {
         pub pga: FittedCurve = FittedCurve::of(&height.by_acceleration),
     }
 
-    /// What becomes of stacks at one level of shaking.
+    /// Results of stacks at one level of shaking.
     pub struct LevelRow of at: &(&Stripe, &f64) {
         /// Peak ground velocity.
         pub pgv: f64 as "m/s" = at.0.intensity,

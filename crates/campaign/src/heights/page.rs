@@ -237,7 +237,7 @@ fn blocks(all: &Heights) -> Vec<Block> {
             100.0 * MEDIUM
         )),
         text(
-            "Find your site's line: ask for the peak ground velocity of your design earthquake, or read it off a ShakeMap \
+            "Find your site's line: request the peak ground velocity of your design earthquake, or read it off a ShakeMap \
              of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
              California on average (Wald et al. 1999).",
         ),

@@ -1,4 +1,4 @@
-//! What the page of heights says of given counts.
+//! Sentences of the page of heights for given counts.
 
 use barrelstack_fragility::{FitError, Monotony, Stripe};
 use barrelstack_report::{Document, markdown};

@@ -5,7 +5,7 @@ use barrelstack_report::described;
 use super::{Estimate, Ranked, Ranking, Shaking};
 
 described! {
-    /// What protects a stack best for what it costs.
+    /// Protections of a stack, ranked by effect and cost.
     pub struct ProtectDocument of all: &Ranking {
         /// Name and version of this layout.
         pub schema: &'static str ["protect/1"] = "protect/1",
@@ -13,7 +13,7 @@ described! {
         pub title: String = all.request.scenario.title.clone(),
         /// Peak ground velocities to which every motion was scaled.
         pub velocities: Vec<f64> as "m/s" = all.request.shaking.levels().to_vec(),
-        /// What estimates are of: one event at these levels, all alike, or a year at the site.
+        /// Reference of the estimates: one event at these levels, all equally likely, or a year at the site.
         pub per: &'static str ["event", "year"] = match all.request.shaking {
             Shaking::Levels(_) => "event",
             Shaking::Site(_) => "year",
@@ -27,7 +27,7 @@ described! {
         pub seed: u32 = all.request.seed,
         /// Most that a protection may cost for a stack.
         pub budget: Option<f64> as "US$" = all.request.budget,
-        /// How many protections were tried, beside the stack as it is.
+        /// Number of protections tried, not counting the stack as it is.
         pub tries: usize = all.tries(),
         /// Runs in all.
         pub runs: usize = all.runs,
@@ -38,7 +38,7 @@ described! {
         /// Every protection that was tried: those first that went furthest, of these the one under which fewest
         /// barrels fall.
         pub protections: Vec<ProtectionRow> = all.all.iter().map(ProtectionRow::of).collect(),
-        /// What was not tried.
+        /// Protections that were not tried.
         pub not_tried: Vec<NotTried> = all.not_tried.iter().map(NotTried::of).collect(),
     }
 
@@ -46,30 +46,30 @@ described! {
     pub struct ProtectionRow of one: &Ranked {
         /// Its name.
         pub name: String = one.protection.name.clone(),
-        /// What kind of change it is.
+        /// Kind of change.
         pub kind: &'static str ["as-it-is", "height", "rack", "device", "pair"] = one.protection.kind.name(),
-        /// What it changes, as overrides of the scenario.
+        /// Its changes, as overrides of the scenario.
         pub changes: Vec<String> = one.protection.changes.clone(),
-        /// What it costs for a stack, from and to.
+        /// Range of its cost for a stack.
         pub cost: [f64; 2] as "US$" = one.protection.cost,
         /// Where the cost comes from.
         pub cost_source: String = one.protection.source.clone(),
         /// Barrels that have to stand elsewhere.
         pub barrels_moved: u32 = one.protection.moved,
-        /// How likely, or how often a year, it collapses.
+        /// Probability of collapse, or rate of collapse in a year.
         pub collapse: Interval = Interval::of(&one.collapse),
         /// Barrels that fall.
         pub barrels_fallen: Interval = Interval::of(&one.fallen),
         /// Barrels that burst, under the central assumption of falls.
         pub barrels_burst: Interval = Interval::of(&one.burst),
-        /// How many fewer barrels fall than of the stack as it is, under the same motions; null for itself.
+        /// Reduction of fallen barrels from the stack as it is, under the same motions; null for that stack.
         pub barrels_saved: Option<Interval> = one.saved.as_ref().map(Interval::of),
         /// The same with an interval that holds for all protections that were tried at once (Bonferroni), by which `best`
         /// is chosen; null for the stack as it is.
         pub barrels_saved_together: Option<Interval> = one.saved_together.as_ref().map(Interval::of),
         /// Barrels that fall when it is worst kept; null where that was not tried.
         pub barrels_fallen_when_worn: Option<Interval> = one.worn.as_ref().map(|(_, worn)| Interval::of(worn)),
-        /// What it is then, in words.
+        /// Description of the worn state.
         pub worn: Option<String> = one.worn.as_ref().map(|(words, _)| words.clone()),
         /// The direction of shaking in which more barrels fall.
         pub direction: &'static str ["transverse", "longitudinal"] = one.direction.name(),
@@ -83,7 +83,7 @@ described! {
         pub runs_fallen_at_rest: usize = one.fallen_at_rest,
         /// The last round in which it was run.
         pub round: u32 = one.round,
-        /// Whether nothing that was tried in all rounds costs no more and loses less.
+        /// `true` if no protection tried in all rounds costs as little and loses less.
         pub on_front: bool = one.on_front,
     }
 
@@ -98,7 +98,7 @@ described! {
         pub high: f64 as "that of the field" = estimate.high,
     }
 
-    /// What was not tried.
+    /// A protection that was not tried.
     pub struct NotTried of one: &(String, String) {
         /// Its name.
         pub name: String = one.0.clone(),

@@ -315,14 +315,14 @@ fn rests_on(all: &Ranking) -> Vec<String> {
         "Friction is drawn for every run about that of the scenario: rack on floor with a scatter of 20 %, barrel on rack \
          of 25 %, both assumptions. All protections draw the same quantiles."
             .into(),
-        "Costs are for one stack, bought and put on once; most are assumptions, told in the table. Work, lost time and \
+        "Costs are for one stack, bought and put on once; most are assumptions, listed in the table. Work, lost time and \
          what a fall does to people are not counted."
             .into(),
         "Barrels burst by the height of their fall, by the central assumption of three; nobody has tested that.".into(),
         "One stack alone in a plane: no neighbors that knock it down, no walls, no ropes between stacks. Straps tear at no \
          force unless the scenario gives one."
             .into(),
-        "Half-way between two levels of shaking the loss is half-way, and nothing is lost below half of the lowest level; \
+        "Between two levels of shaking the loss is interpolated linearly, and nothing is lost below half of the lowest level; \
          above the highest it is that of the highest."
             .into(),
     ]
@@ -333,7 +333,9 @@ fn warnings(all: &Ranking) -> Vec<String> {
     let fallen: usize = all.all.iter().map(|one| one.fallen_at_rest).sum();
     let fallen = (fallen > 0).then(|| {
         let said = fallen_at_rest(fallen, all.runs, "runs of all protections");
-        format!("{said}They count as collapsed, and the level that gives way and all above it as fallen.")
+        format!(
+            "{said}They count as collapsed, and the level that fails and all above it as fallen."
+        )
     });
     left_out(lost, all.runs).into_iter().chain(fallen).collect()
 }

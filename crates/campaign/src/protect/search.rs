@@ -57,7 +57,7 @@ pub(super) struct Search<'a> {
     pub(super) base: &'a Scenario,
     pub(super) folder: &'a Path,
     pub(super) options: &'a RunOptions,
-    pub(super) tell: &'a (dyn Fn(Reached) -> ControlFlow<()> + Sync),
+    pub(super) report: &'a (dyn Fn(Reached) -> ControlFlow<()> + Sync),
     pub(super) levels: &'a [f64],
     pub(super) not_tried: Vec<(String, String)>,
 }
@@ -116,7 +116,7 @@ impl Search<'_> {
                 let now = progress.tally.cases;
                 let news = now.saturating_sub(before.fetch_max(now, Ordering::Relaxed));
                 let done = done.fetch_add(news, Ordering::Relaxed) + news;
-                (self.tell)(Reached { round: round + 1, done, of })
+                (self.report)(Reached { round: round + 1, done, of })
             })?;
             Ok::<Cases, ProtectError>(Cases::read(&collected)?)
         };

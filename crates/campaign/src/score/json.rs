@@ -11,7 +11,7 @@ described! {
         pub schema: &'static str ["rockscore/1"] = "rockscore/1",
         /// Name and version of the protocol; scores of another one do not compare.
         pub protocol: &'static str = sheet.protocol.name,
-        /// What was scored.
+        /// The stack that was scored.
         pub title: String = sheet.scenario.title.clone(),
         /// The rack.
         pub rack: Option<String> = sheet.scenario.stack().map(|stack| stack.rack.base.to_owned()),
@@ -33,13 +33,13 @@ described! {
     pub struct StateRow of row: &(&Scored, &Sheet) {
         /// The state.
         pub state: String = row.0.state.name.clone(),
-        /// What it changes, as overrides of the scenario.
+        /// Its changes, as overrides of the scenario.
         pub changes: Vec<String> = row.0.state.changes.clone(),
         /// The direction of shaking.
         pub direction: &'static str ["transverse", "longitudinal"] = row.0.view.name(),
         /// The velocity at which the chance is reached.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
-        /// Whether it comes from a curve, is the highest at which none collapsed, or lies beyond all levels.
+        /// Source: a fitted curve, the highest level at which none collapsed, or beyond all levels.
         pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
             match row.0.capacity {
                 Capacity::Fitted(..) => "curve",

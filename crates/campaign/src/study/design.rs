@@ -364,7 +364,7 @@ impl Study {
     }
 
     /// Returns the value of a factor in a case, as in the table.
-    pub(super) fn told(&self, case: &Case, factor: usize) -> Option<Value> {
+    pub(super) fn factor_value(&self, case: &Case, factor: usize) -> Option<Value> {
         match &case.settings[factor] {
             Some(setting) => Some(setting.value.clone()),
             None => self.factors[factor].base.clone(),

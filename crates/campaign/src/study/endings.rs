@@ -116,12 +116,12 @@ impl Endings {
 }
 
 described! {
-    /// How long the cases of a study are followed.
+    /// End conditions of the cases of a study.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Following {
-        /// Whether a case goes on until nothing moves.
+        /// `true` if a case goes on until nothing moves.
         pub to_rest: bool,
-        /// Whether a case ends once its verdict is known.
+        /// `true` if a case ends once its verdict is known.
         pub by_verdict: bool,
         /// Longest time (s) after the end of the motion, where nothing else ends a case.
         pub patience: f64 as "s",
@@ -154,7 +154,7 @@ impl Study {
             longest_cut: 0.0,
         };
         if let Some(duration) = run.duration {
-            let mut seen = BTreeSet::new();
+            let mut named = BTreeSet::new();
             let mut last: Option<(&Synthetic, f64)> = None;
             for motion in &self.motions {
                 let made = match &motion.shaking {
@@ -168,7 +168,7 @@ impl Study {
                 };
                 last = made.map(|made| (made, end));
                 let left = end / run.similitude.sqrt() - duration;
-                if left > crate::run::CUT && seen.insert(&motion.name) {
+                if left > crate::run::CUT && named.insert(&motion.name) {
                     found.cut.push(motion.name.clone());
                     found.longest_cut = found.longest_cut.max(left);
                 }

@@ -80,7 +80,7 @@ pub(super) fn read(
             if components.is_empty() { vec![None] } else { components.iter().map(Some).collect() };
         for component in chosen {
             let mut entries = entries.clone();
-            let mut told = match &name {
+            let mut label = match &name {
                 Some(name) if many => format!("{name} {source}"),
                 Some(name) => name.clone(),
                 None => source.clone(),
@@ -88,11 +88,11 @@ pub(super) fn read(
             if let Some(component) = component {
                 entries.push(("component", Value::Text(component.clone())));
                 if components.len() > 1 {
-                    told = format!("{told} {component}");
+                    label = format!("{label} {component}");
                 }
             }
             let spec = motion_of(set, opened, number, &entries)?;
-            motions.push(Motion { name: told, shaking: Shaking::Spec(Box::new(spec)) });
+            motions.push(Motion { name: label, shaking: Shaking::Spec(Box::new(spec)) });
         }
     }
     Ok(motions)

@@ -87,7 +87,7 @@ struct Shared<'a> {
     rule: Option<StopRule>,
     stop: AtomicBool,
     state: Mutex<State>,
-    tell: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+    report: &'a (dyn Fn(&Progress) -> ControlFlow<()> + Sync),
 }
 
 /// State behind the mutex.
@@ -112,9 +112,9 @@ impl Study {
         &self,
         folder: &Path,
         options: &RunOptions,
-        tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+        report: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
     ) -> Result<Collected, StudyError> {
-        self.run_all(folder, options, tell)?;
+        self.run_all(folder, options, report)?;
         collect(folder, &mut |_, _| Ok(()))?;
         Collected::read(folder)
     }
@@ -122,18 +122,18 @@ impl Study {
     /// Runs all chunks that are missing from a folder; other processes may do so at the same time, and each chunk
     /// is run by one of them.
     ///
-    /// `tell` is called after each case and many times a second in between, from several threads, and may cancel the
+    /// `report` is called after each case and many times a second in between, from several threads, and may cancel the
     /// run. Finished chunks are kept, and the next run resumes from there.
     /// The table does not depend on the number of threads.
     ///
     /// # Errors
     /// When a motion cannot be read, the folder belongs to something else, a file cannot be written, and
-    /// [`StudyError::Stopped`] when `tell` canceled it.
+    /// [`StudyError::Stopped`] when `report` canceled it.
     pub fn run_all(
         &self,
         folder: &Path,
         options: &RunOptions,
-        tell: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
+        report: &(dyn Fn(&Progress) -> ControlFlow<()> + Sync),
     ) -> Result<(), StudyError> {
         let cache = MotionCache::default();
         // Before the folder is made: a study that cannot run leaves none behind.
@@ -166,9 +166,9 @@ impl Study {
             rule,
             stop: AtomicBool::new(false),
             state: Mutex::new(state),
-            tell,
+            report,
         };
-        if tell(&progress).is_break() {
+        if report(&progress).is_break() {
             return Err(StudyError::Stopped);
         }
         std::thread::scope(|scope| {
@@ -219,7 +219,7 @@ impl Study {
             let mut resources = Resources {
                 cache: &cache,
                 lanes: Width::widest(),
-                tell: &mut |_| {},
+                report: &mut |_| {},
                 stop: &|| false,
             };
             self.compute(*chunk, &mut resources)?.ok_or(StudyError::Stopped)
@@ -275,7 +275,7 @@ impl Study {
             return Ok(ChunkRun::Before);
         }
         let mut resources =
-            Resources { cache: &MotionCache::default(), lanes, tell: &mut |_| {}, stop };
+            Resources { cache: &MotionCache::default(), lanes, report: &mut |_| {}, stop };
         let table = self.compute(chunk, &mut resources)?.ok_or(StudyError::Stopped)?;
         place.write_shard(chunk, self.chunk_key(chunk, &keys), &table)?;
         Ok(if found.damaged > 0 { ChunkRun::Again } else { ChunkRun::Now })
@@ -352,7 +352,7 @@ impl Shared<'_> {
             // Their owners finish them, or die and release their claims.
             std::thread::sleep(LOOK_AGAIN);
             state = self.state();
-            self.tell(&mut state);
+            self.report_progress(&mut state);
             state.progress.waits_for = None;
         }
         state.open.pop()
@@ -372,17 +372,17 @@ impl Shared<'_> {
             state.progress.tally = state.progress.tally.plus(tally);
             state.progress.chunks_done += 1;
             state.done.insert(chunk, tally);
-            self.tell(&mut state);
+            self.report_progress(&mut state);
             return Ok(());
         }
         drop(state);
-        let mut tell = |result: &CaseResult| self.case_done(result);
+        let mut on_case = |result: &CaseResult| self.case_done(result);
         let stop = || {
-            self.tell(&mut self.state());
+            self.report_progress(&mut self.state());
             self.stop.load(Ordering::Relaxed)
         };
         let mut resources =
-            Resources { cache: &self.cache, lanes: self.lanes, tell: &mut tell, stop: &stop };
+            Resources { cache: &self.cache, lanes: self.lanes, report: &mut on_case, stop: &stop };
         let Some(table) = self.study.compute(chunk, &mut resources)? else { return Ok(()) };
         self.folder.write_shard(chunk, self.study.chunk_key(chunk, &self.keys), &table)?;
         let mut state = self.state();
@@ -395,11 +395,11 @@ impl Shared<'_> {
         let mut state = self.state();
         state.progress.now += 1;
         state.progress.tally.add(result.outcome.as_ref().map_or("error", |outcome| outcome.kind()));
-        self.tell(&mut state);
+        self.report_progress(&mut state);
     }
 
-    fn tell(&self, state: &mut State) {
-        if (self.tell)(&state.progress).is_break() {
+    fn report_progress(&self, state: &mut State) {
+        if (self.report)(&state.progress).is_break() {
             state.failed.get_or_insert(StudyError::Stopped);
             self.stop.store(true, Ordering::Relaxed);
         }

@@ -103,7 +103,7 @@ table! {
         "discrete" {
             /// The values.
             values = Kind::Values, Default::Required;
-            /// How likely each is, relative to the others.
+            /// Relative weight of each value.
             weights = Kind::Values, Default::Derived("all alike");
         }
     }
@@ -212,11 +212,11 @@ table! {
     seed = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
     /// The scenario that is varied, with all its fields; most often `extends` and what differs.
     base = Kind::Table(&ROOT), Default::Required;
-    /// What is varied.
+    /// Varied quantities.
     factor = Kind::Tables(&FACTOR), Default::Nothing;
-    /// What shakes it.
+    /// Motions of the ground.
     motion = Kind::Tables(&MOTIONS), Default::Derived("the motion of the base");
-    /// How strongly it is shaken.
+    /// Intensity to which motions are scaled.
     intensity = Kind::Table(&INTENSITY), Default::Nothing;
     /// Which cases are run.
     design = Kind::Table(&DESIGN), Default::Required;

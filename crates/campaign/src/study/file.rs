@@ -269,9 +269,9 @@ fn few(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
 
 /// Refuses two motions of one name.
 fn of_their_own_names(top: &Reader<'_>, motions: &[Motion]) -> Result<(), ScenarioError> {
-    let mut seen = std::collections::BTreeSet::new();
+    let mut names = std::collections::BTreeSet::new();
     for motion in motions {
-        if !seen.insert(&motion.name) {
+        if !names.insert(&motion.name) {
             let message = format!(
                 "two motions have the name \"{}\"; give their [[motion]] each a `name` of its own",
                 motion.name

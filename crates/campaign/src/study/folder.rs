@@ -46,7 +46,7 @@ const COPY: &str = "study.toml";
 const KEY: &str = "chunk";
 
 described! {
-    /// What the rows of a study come from.
+    /// Provenance of the rows of a study.
     #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
     pub struct Provenance {
         /// Version of this layout.
@@ -71,9 +71,9 @@ described! {
         pub stop: Option<StopRule>,
         /// Factors that are drawn anew for each case of a motion.
         pub drawn: Vec<String>,
-        /// What a design for sensitivity exchanges, in the order of the cases of a block; empty for others.
+        /// Quantities that a sensitivity design exchanges, in the order of the cases of a block; empty for others.
         pub varied: Vec<String>,
-        /// What all cases depend on.
+        /// Inputs common to all cases.
         pub common: Vec<Common>,
         /// The motions, in order.
         pub motions: Vec<MotionSource>,
@@ -85,7 +85,7 @@ described! {
         pub chunks_done: usize,
         /// Rows of the table.
         pub cases: usize,
-        /// Whether nothing is left to run.
+        /// `true` if nothing is left to run.
         pub complete: bool,
     }
 }

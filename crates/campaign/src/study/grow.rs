@@ -16,7 +16,7 @@ described! {
     /// One thing on which every case of a study depends, with its fingerprint.
     #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
     pub struct Common {
-        /// What it is, as a sentence calls it.
+        /// Name of it in a sentence.
         pub what: String,
         /// Its fingerprint.
         pub hash: String,

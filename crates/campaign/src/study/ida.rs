@@ -21,13 +21,13 @@ pub struct Hunt {
 }
 
 /// A level that was run, and `true` if the stack collapsed; `None` without a verdict.
-pub(super) type Seen = (f64, Option<bool>);
+pub(super) type LevelResult = (f64, Option<bool>);
 
 impl Hunt {
     /// Returns the next level to run, given those that were run; `None` when the hunt is over.
-    pub(super) fn next(&self, seen: &[Seen]) -> Option<f64> {
+    pub(super) fn next(&self, results: &[LevelResult]) -> Option<f64> {
         // A run without a verdict would fail again at the next level: the hunt ends with it.
-        let known: Vec<(f64, bool)> = seen
+        let known: Vec<(f64, bool)> = results
             .iter()
             .map(|(level, fell)| fell.map(|fell| (*level, fell)))
             .collect::<Option<_>>()?;
@@ -59,43 +59,43 @@ impl Hunt {
 
 #[cfg(test)]
 mod tests {
-    use super::{Hunt, Seen};
+    use super::{Hunt, LevelResult};
 
     fn hunt() -> Hunt {
         Hunt { first: 0.1, step: 0.1, growth: 0.05, resolution: 0.1, runs: 14 }
     }
 
     /// Returns all levels of a hunt of a stack that collapses where `falls` is true.
-    fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<Seen> {
-        let mut seen = Vec::new();
-        while let Some(level) = hunt.next(&seen) {
-            seen.push((level, Some(falls(level))));
+    fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<LevelResult> {
+        let mut results = Vec::new();
+        while let Some(level) = hunt.next(&results) {
+            results.push((level, Some(falls(level))));
         }
-        seen
+        results
     }
 
     #[test]
     fn steps_grow_until_the_collapse_and_the_gap_is_narrowed_below_its_resolution() {
-        let seen = levels(&hunt(), |level| level > 0.62);
+        let results = levels(&hunt(), |level| level > 0.62);
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} and {b}");
-        for ((level, _), expected) in seen.iter().zip([0.1, 0.2, 0.35, 0.55, 0.8]) {
+        for ((level, _), expected) in results.iter().zip([0.1, 0.2, 0.35, 0.55, 0.8]) {
             // Measured: 6e-17.
             near(*level, expected);
         }
-        near(seen[5].0, 0.55 + 0.25 / 3.0);
-        let fall = seen
+        near(results[5].0, 0.55 + 0.25 / 3.0);
+        let fall = results
             .iter()
             .filter(|(_, fell)| *fell == Some(true))
             .map(|(l, _)| *l)
             .fold(f64::INFINITY, f64::min);
-        let stood = seen
+        let stood = results
             .iter()
             .filter(|(_, fell)| *fell == Some(false))
             .map(|(l, _)| *l)
             .fold(0.0, f64::max);
         assert!(stood <= 0.62 && fall > 0.62 && fall - stood <= 0.1 * stood, "{stood} {fall}");
-        assert_eq!(seen.len(), 14, "what is left fills the gaps below");
-        let mut sorted: Vec<f64> = seen.iter().map(|(level, _)| *level).collect();
+        assert_eq!(results.len(), 14, "what is left fills the gaps below");
+        let mut sorted: Vec<f64> = results.iter().map(|(level, _)| *level).collect();
         sorted.sort_by(f64::total_cmp);
         sorted.dedup();
         assert_eq!(sorted.len(), 14, "no level is run twice");
@@ -103,8 +103,11 @@ mod tests {
 
     #[test]
     fn an_island_of_collapse_below_is_found_and_the_hunt_goes_on_below_it() {
-        let seen = levels(&hunt(), |level| level > 0.62 || (0.4..0.5).contains(&level));
-        assert!(seen.iter().any(|(level, fell)| *fell == Some(true) && *level < 0.5), "{seen:?}");
+        let results = levels(&hunt(), |level| level > 0.62 || (0.4..0.5).contains(&level));
+        assert!(
+            results.iter().any(|(level, fell)| *fell == Some(true) && *level < 0.5),
+            "{results:?}"
+        );
     }
 
     #[test]
@@ -115,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_stack_that_falls_at_once_is_hunted_downward() {
-        let seen = levels(&hunt(), |_| true);
-        assert!(seen.len() < 14 && seen.last().unwrap().0 < 0.015, "{seen:?}");
+        let results = levels(&hunt(), |_| true);
+        assert!(results.len() < 14 && results.last().unwrap().0 < 0.015, "{results:?}");
     }
 }

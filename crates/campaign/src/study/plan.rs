@@ -153,7 +153,10 @@ impl Study {
     /// Returns the values of the factors that change which bodies and contacts there are.
     fn structure(&self, case: &Case) -> Vec<Option<Value>> {
         let structural = |index: &usize| self.factors[*index].structural;
-        (0..self.factors.len()).filter(structural).map(|index| self.told(case, index)).collect()
+        (0..self.factors.len())
+            .filter(structural)
+            .map(|index| self.factor_value(case, index))
+            .collect()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::scenario::{Scenario, ScenarioError, Scene};
 
 use super::design::{Case, Design, seed_of};
 use super::error::StudyError;
-use super::ida::{Hunt, Seen};
+use super::ida::{Hunt, LevelResult};
 use super::motions::{Motion, MotionCache, Shaken, Shaking, Synthetic};
 use super::setting::Setting;
 use super::space::FinishedCase;
@@ -27,7 +27,7 @@ pub(super) struct Resources<'a> {
     /// Vector unit for the cases.
     pub(super) lanes: Width,
     /// Callback after each case.
-    pub(super) tell: &'a mut dyn FnMut(&CaseResult),
+    pub(super) report: &'a mut dyn FnMut(&CaseResult),
     /// Returns `true` to cancel.
     pub(super) stop: &'a dyn Fn() -> bool,
 }
@@ -58,8 +58,8 @@ impl Study {
             let cases: Vec<Case> =
                 numbers.iter().map(|number| self.cases.case(self, *number)).collect();
             let Some(done) = self.shake(&cases, resources) else { return Ok(None) };
-            for (case, (shaken, told)) in cases.iter().zip(done) {
-                table.push(self.row(case, chunk, shaken.as_ref(), &told))?;
+            for (case, (shaken, finished)) in cases.iter().zip(done) {
+                table.push(self.row(case, chunk, shaken.as_ref(), &finished))?;
             }
         }
         Ok(Some(table))
@@ -75,13 +75,13 @@ impl Study {
     ) -> Option<Vec<Vec<Option<Value>>>> {
         let hunts: Vec<Case> =
             numbers.iter().map(|number| self.cases.case(self, *number)).collect();
-        let mut seen: Vec<Vec<Seen>> = vec![Vec::new(); hunts.len()];
+        let mut results: Vec<Vec<LevelResult>> = vec![Vec::new(); hunts.len()];
         let mut rows: Vec<(u64, Vec<Option<Value>>)> = Vec::new();
         loop {
             let mut round: Vec<(usize, Case)> = Vec::new();
-            for (index, (base, seen)) in hunts.iter().zip(&seen).enumerate() {
-                if let Some(level) = hunt.next(seen) {
-                    let number = base.number * u64::from(hunt.runs) + seen.len() as u64;
+            for (index, (base, results)) in hunts.iter().zip(&results).enumerate() {
+                if let Some(level) = hunt.next(results) {
+                    let number = base.number * u64::from(hunt.runs) + results.len() as u64;
                     let id = seed_of(base.id, &crate::scenario::quantity::plain(level));
                     round.push((index, Case { number, id, level: Some(level), ..base.clone() }));
                 }
@@ -91,17 +91,17 @@ impl Study {
             }
             for part in round.chunks(BATCH) {
                 let cases: Vec<Case> = part.iter().map(|(_, case)| case.clone()).collect();
-                for ((index, case), (shaken, told)) in
+                for ((index, case), (shaken, finished)) in
                     part.iter().zip(self.shake(&cases, resources)?)
                 {
-                    let fell = match &told.result.outcome {
+                    let fell = match &finished.result.outcome {
                         Ok(Outcome::Collapse { .. }) => Some(true),
                         Ok(Outcome::Stable) => Some(false),
                         Ok(Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. })
                         | Err(_) => None,
                     };
-                    seen[*index].push((case.level.unwrap_or(0.0), fell));
-                    rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &told)));
+                    results[*index].push((case.level.unwrap_or(0.0), fell));
+                    rows.push((case.number, self.row(case, chunk, shaken.as_ref(), &finished)));
                 }
             }
         }
@@ -119,11 +119,11 @@ impl Study {
         let ready = built.iter().filter_map(|built| built.prepared.as_ref().ok());
         let ready: Vec<Prepared> =
             ready.filter(|prepared| !prepared.scenario.is_spatial()).cloned().collect();
-        let mut audience = Audience { tell: &mut *resources.tell, stop: resources.stop };
+        let mut audience = Audience { tell: &mut *resources.report, stop: resources.stop };
         let mut results = simulate_in(resources.lanes, &ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
         for (case, Built { shaken, prepared }) in cases.iter().zip(built) {
-            let told = match prepared {
+            let finished = match prepared {
                 Ok(Prepared { scenario, .. }) if scenario.is_spatial() => {
                     let factor = shaken.as_ref().map_or(1.0, |shaken| shaken.factor);
                     self.run_in_space(case, &scenario, factor, resources)?
@@ -131,11 +131,11 @@ impl Study {
                 Ok(_) => results.next()?.into(),
                 Err(reason) => {
                     let result = CaseResult::failed(reason);
-                    (resources.tell)(&result);
+                    (resources.report)(&result);
                     result.into()
                 }
             };
-            done.push((shaken, told));
+            done.push((shaken, finished));
         }
         Some(done)
     }

@@ -19,7 +19,7 @@ const MOTION: [&str; 3] = ["record", "level", "scale_factor"];
 pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
     match (spec.role, spec.name.as_str()) {
         (Role::Key, "case") => "number of the case in its study",
-        (Role::Key, "id") => "what tells the case from every other, however many there are",
+        (Role::Key, "id") => "unique identifier of the case, independent of the number of cases",
         (Role::Key, _) => "chunk that ran the case",
         (Role::Factor, _) => "value of a varied field",
         (Role::Motion, "record") => "name of the motion",
@@ -27,8 +27,8 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (Role::Motion, _) => "factor by which it was scaled",
         (Role::Intensity, _) => "intensity measure of the motion as shaken",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
-            let told = CASE_COLUMNS.iter().find(|column| column.name == name);
-            told.map(|column| column.meaning).or_else(|| columns::meaning(name)).unwrap_or("")
+            let column = CASE_COLUMNS.iter().find(|column| column.name == name);
+            column.map(|column| column.meaning).or_else(|| columns::meaning(name)).unwrap_or("")
         }
     }
 }
@@ -66,21 +66,21 @@ impl Study {
         case: &Case,
         chunk: usize,
         shaken: Option<&Shaken>,
-        told: &FinishedCase,
+        finished: &FinishedCase,
     ) -> Vec<Option<Value>> {
         let mut row = vec![
             Some(Value::Integer(i64::try_from(case.number).unwrap_or(i64::MAX))),
             text(&format!("{:016x}", case.id)),
             i64::try_from(chunk).ok().map(Value::Integer),
         ];
-        row.extend((0..self.factors.len()).map(|factor| self.told(case, factor)));
+        row.extend((0..self.factors.len()).map(|factor| self.factor_value(case, factor)));
         row.push(text(&self.motions[case.motion].name));
         row.push(case.level.map(Value::Number));
         row.push(shaken.map(|shaken| Value::Number(shaken.factor)));
         let measures = shaken.and_then(|shaken| shaken.measures);
         row.extend((0..MEASURES.len()).map(|at| number(measures.map(|measures| measures[at]))));
-        row.extend(CASE_COLUMNS.iter().map(|column| column.of(&told.result)));
-        row.extend(space::values(told).filter(|_| self.in_space));
+        row.extend(CASE_COLUMNS.iter().map(|column| column.of(&finished.result)));
+        row.extend(space::values(finished).filter(|_| self.in_space));
         row
     }
 }

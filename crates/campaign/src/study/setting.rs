@@ -267,7 +267,7 @@ impl Domain {
     }
 
     /// Returns the value of the base of a study, from its resolved scenario.
-    pub(super) fn told(self, written: &Written) -> Option<Value> {
+    pub(super) fn base_value(self, written: &Written) -> Option<Value> {
         match (self.column_kind(), written) {
             (ValueKind::Integer, Written::Integer(value)) => value.map(Value::Integer),
             (ValueKind::Number, Written::Float(value)) => Some(Value::Number(*value)),

@@ -20,20 +20,20 @@ pub(super) struct FinishedCase {
     pub(super) result: CaseResult,
     /// Heading in which the first body left its seat, and of each fallen barrel from where it stood; `None` for a
     /// case in a plane, or without a verdict.
-    ways: Option<(Option<Heading>, Vec<Heading>)>,
+    headings: Option<(Option<Heading>, Vec<Heading>)>,
 }
 
 /// For a case in a plane, or one that could not run.
 impl From<CaseResult> for FinishedCase {
     fn from(result: CaseResult) -> Self {
-        Self { result, ways: None }
+        Self { result, headings: None }
     }
 }
 
 impl From<InSpace> for FinishedCase {
     fn from(case: InSpace) -> Self {
-        let ways = case.ways().map(|(first, debris)| (first, debris.to_vec()));
-        Self { ways, result: case.result }
+        let headings = case.ways().map(|(first, debris)| (first, debris.to_vec()));
+        Self { headings, result: case.result }
     }
 }
 
@@ -52,7 +52,7 @@ impl Study {
             Ok(ground) => run(scenario, ground.scaled(factor).under(scenario), resources.stop)?,
             Err(error) => CaseResult::failed(error.to_string()).into(),
         };
-        (resources.tell)(&finished.result);
+        (resources.report)(&finished.result);
         Some(finished)
     }
 }
@@ -68,5 +68,5 @@ fn run(scenario: &Scenario, ground: Ground, stop: &dyn Fn() -> bool) -> Option<F
 
 /// Returns the values of a case in the columns of space.
 pub(super) fn values(finished: &FinishedCase) -> impl Iterator<Item = Option<Value>> {
-    columns::values(finished.ways.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
+    columns::values(finished.headings.as_ref().map(|(first, debris)| (*first, debris.as_slice())))
 }

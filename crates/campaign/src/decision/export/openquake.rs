@@ -1,4 +1,4 @@
-//! What `OpenQuake` reads (`nrml` 0.5): fragility, vulnerability, a taxonomy mapping, and an exposure to begin with.
+//! Input files of `OpenQuake` (`nrml` 0.5): fragility, vulnerability, a taxonomy mapping, and an exposure template.
 
 use std::fmt::Write as _;
 
@@ -176,7 +176,7 @@ impl Ratios {
         }
     }
 
-    /// Whether what is interpolated linearly between two levels can be, and is near our own mean.
+    /// Returns `true` if linear interpolation between two levels is defined and near our own mean.
     fn is_fine(&self, from: Level, to: Level) -> bool {
         (1..16).map(|k| f64::from(k) / 16.0).all(|t| {
             let between = |from: f64, to: f64| from + t * (to - from);

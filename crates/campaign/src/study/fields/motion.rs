@@ -9,7 +9,7 @@ use crate::scenario::motion::{MOTION, PULSE, SCALE, SINE, record_names};
 use super::MOST;
 
 named! {
-    /// How a synthetic motion is made.
+    /// Method that makes a synthetic motion.
     pub(in crate::study) enum Maker {
         Boore = "boore",
         CloughPenzien = "clough-penzien",
@@ -38,9 +38,9 @@ const TIME: Kind = Kind::Quantity(&[Dimension::TIME], Range::up_to(3600.0));
 table! {
     /// Motions made from random numbers of stated seeds.
     static SYNTHETIC = "synthetic";
-    /// How they are made.
+    /// Method that makes them.
     kind = Kind::Choice(names::<Maker>), Default::Required;
-    /// How many realizations.
+    /// Number of realizations.
     count = Kind::Integer(1, MOST), Default::Required;
     /// Seed of the set; each realization has its own, made of this one and its number.
     seed = Kind::Integer(0, u32::MAX as i64), Default::Derived("that of the study");
@@ -105,7 +105,7 @@ table! {
     synthetic = Kind::Table(&SYNTHETIC), Default::Nothing;
     /// Horizontal components of records, each a motion of its own.
     components = Kind::Texts, Default::Derived("the one of `each`, or the first horizontal component");
-    /// How every record is read: the fields of [motion] but its source and scale.
+    /// Processing of every record: the fields of [motion] except its source and scale.
     each = Kind::Table(&MOTION), Default::Nothing;
     /// Scaling, where there is no [intensity].
     scale = Kind::Table(&SCALE), Default::Nothing;

@@ -39,7 +39,7 @@ pub(super) fn clash(top: &Reader<'_>, factors: &[Factor], new: &Factor) -> Optio
     None
 }
 
-/// What the factors of a study may still hold, so that memory and work are bounded before values are tried.
+/// Remaining capacity of the factors of a study, so that memory and work are bounded before values are tried.
 #[derive(Debug)]
 pub(super) struct Room {
     /// Values that may still be listed.
@@ -130,7 +130,7 @@ pub(super) fn read_factor(
         let changes = fields.iter().map(|field| (field.as_str(), &setting.node));
         in_space |= template.with(changes)?.is_spatial();
     }
-    let base = Template::value_in(scenario, &field).and_then(|value| domain.told(&value));
+    let base = Template::value_in(scenario, &field).and_then(|value| domain.base_value(&value));
     let column = ColumnSpec::new(&name, &domain.unit(), Role::Factor, domain.column_kind());
     let structural = !domain.continuous();
     Ok(Factor { name, fields, variation, column, base, structural, in_space })
