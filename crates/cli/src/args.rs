@@ -27,7 +27,7 @@ With --json what has no result prints one document as well, of the schema `error
 #[derive(Debug, Parser)]
 #[command(name = "barrelstack", version, propagate_version = true, after_help = AFTER_HELP)]
 pub(crate) struct Args {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Stop as by Ctrl-C at a place of the work, WORK:THINGS:DONE; for tests.
@@ -35,16 +35,16 @@ pub(crate) struct Args {
     pub(crate) stop_at: Option<crate::interrupt::Place>,
 }
 
-/// What to do.
+/// Command to run.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run a scenario and say what happens.
     Run(RunArgs),
     /// Shake a five-level stack with the South Napa earthquake of 2014 and write a report.
     Demo(DemoArgs),
-    /// How high is safe: collapse of stacks of two to six levels, on one page.
+    /// Safe height: collapse of stacks of two to six levels, on one page.
     Heights(crate::commands::heights::HeightsArgs),
-    /// What protects a stack best for what it costs: levels, racks, devices, pairs of these.
+    /// Best protection of a stack for its cost: levels, racks, devices, pairs of these.
     Protect(crate::commands::protect::ProtectArgs),
     /// The RockScore of a rack or a device: one number from a fixed protocol, on one sheet.
     Score(crate::commands::score::ScoreArgs),
@@ -86,7 +86,7 @@ pub(crate) struct ScenarioArgs {
     pub(crate) record: Option<PathBuf>,
 }
 
-/// How many variants are run beside the case as it is stated, and which run is shown.
+/// Number of variants run beside the case as stated, and the run that is shown.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct VariantArgs {
     /// Variants of the stack to run beside it, in place of imperfections.variants; 0 for one run.
@@ -191,7 +191,7 @@ pub(crate) struct ReproduceArgs {
 /// Arguments of `scenarios`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct ScenariosArgs {
-    /// What to do with them.
+    /// Action on the scenarios.
     #[command(subcommand)]
     pub(crate) action: Option<ScenariosAction>,
     /// Print the list as one JSON document.
@@ -199,7 +199,7 @@ pub(crate) struct ScenariosArgs {
     pub(crate) json: bool,
 }
 
-/// What to do with the built-in scenarios.
+/// Actions on the built-in scenarios.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ScenariosAction {
     /// List them.

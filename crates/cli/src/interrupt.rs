@@ -86,14 +86,14 @@ pub(crate) fn stop_at(place: Option<Place>) {
 pub(crate) fn watch(json: bool) {
     JSON.store(json, Ordering::Relaxed);
     // An error means that the system refuses a handler: then Ctrl-C terminates the program as by default.
-    drop(ctrlc::set_handler(ask));
+    drop(ctrlc::set_handler(request_stop));
 }
 
 /// `true` if a document is printed.
 static JSON: AtomicBool = AtomicBool::new(false);
 
 /// Handles a signal.
-fn ask() {
+fn request_stop() {
     let json = JSON.load(Ordering::Relaxed);
     if REQUESTED.swap(true, Ordering::Relaxed) || !LISTENS.load(Ordering::Relaxed) {
         end(json);
@@ -176,7 +176,7 @@ impl Interrupt {
     }
 
     /// `true` if the user requested a stop.
-    #[expect(clippy::unused_self, reason = "who asks has to listen")]
+    #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn is_requested(&self) -> bool {
         let requested = REQUESTED.load(Ordering::Relaxed);
         if requested {
@@ -186,14 +186,14 @@ impl Interrupt {
     }
 
     /// Reports the progress of work of a kind: the place at which a test stops it.
-    #[expect(clippy::unused_self, reason = "who reaches it has to listen")]
+    #[expect(clippy::unused_self, reason = "callers must listen first")]
     pub(crate) fn reached(&self, things: &str, done: f64) {
         let Some(Some(place)) = PLACE.get() else { return };
         let here = place.work == WORKS.load(Ordering::Relaxed)
             && things.contains(&place.things)
             && done >= place.done;
         if here && !REQUESTED.load(Ordering::Relaxed) {
-            ask();
+            request_stop();
         }
     }
 

@@ -47,7 +47,7 @@ pub(crate) fn help(help: &clap::Error) -> anyhow::Result<()> {
     printed(help.print().and_then(|()| std::io::stdout().flush()))
 }
 
-/// What became of printing a result.
+/// Converts the outcome of printing a result.
 fn printed(result: std::io::Result<()>) -> anyhow::Result<()> {
     const WHERE: &str = "cannot write to standard output";
     match result {
@@ -141,9 +141,9 @@ described! {
     pub(crate) struct ErrorDocument of error: &(&str, Option<&str>, Option<&Place>, u8) {
         /// Name and version of this layout.
         schema: &'static str ["error/1"] = "error/1",
-        /// What is wrong, with the causes.
+        /// Message, with the causes.
         error: String = error.0.to_owned(),
-        /// What to type next, where one option helps.
+        /// Command to type next, if one option helps.
         next: Option<String> = error.1.map(str::to_owned),
         /// The file that is wrong.
         file: Option<String> = match error.2 {

@@ -1,4 +1,4 @@
-//! What has to be arranged before the runtime of Rust starts.
+//! Setup that precedes the start of the runtime of Rust.
 //!
 //! The runtime opens `/dev/null` in the place of a standard output that is closed (`>&-`), so that results would be lost
 //! without an error; and a file that grows beyond the limit of the process (`ulimit -f`) kills it, which leaves half a
@@ -20,7 +20,7 @@ mod before_main {
     use std::os::fd::AsFd as _;
     use std::sync::atomic::Ordering;
 
-    /// What the system says of a descriptor that is not open (EBADF).
+    /// Error number of a descriptor that is not open (EBADF).
     const NOT_OPEN: i32 = 9;
 
     /// The signal for a file beyond the limit of the process (SIGXFSZ), and the handler that ignores it (`SIG_IGN`).

@@ -131,7 +131,7 @@ impl Progress {
     }
 }
 
-/// What work consists of, which decides when its first part predicts the rest.
+/// Kind of work, which decides when its first part predicts the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Of {
     /// One run, whose simulated time advances evenly.

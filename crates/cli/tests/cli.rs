@@ -94,7 +94,7 @@ fn a_folder_gets_all_files_and_the_same_summary() {
 }
 
 #[test]
-fn an_occupied_folder_is_left_alone_unless_told_otherwise() {
+fn an_occupied_folder_is_left_alone_by_default() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     fs::write(folder.path().join("letter.txt"), "mine").unwrap();
@@ -189,7 +189,7 @@ fn a_name_that_is_nothing_is_answered_with_the_nearest() {
 }
 
 #[test]
-fn the_record_that_cannot_be_passed_on_is_told_how_to_get() {
+fn the_record_that_cannot_be_passed_on_has_instructions() {
     let words = ["candia-6-barrels", "PEER NGA-West2", "PEL360", "--record FILE"];
     let folder = tempfile::tempdir().unwrap();
     let output = program(["run", "candia-6-barrels"]).current_dir(folder.path()).output().unwrap();
@@ -264,7 +264,7 @@ fn a_free_scene_is_not_judged() {
 }
 
 #[test]
-fn variants_are_told_counted_and_shown_by_their_number() {
+fn variants_are_listed_counted_and_shown_by_their_number() {
     let text = stdout(&barrelstack(SHORT));
     let headline = "  This stack falls: in all 4 variants. The first seat is lost between ";
     assert!(text.contains("; no barrel falls within 0.1 s of that.\n"), "{text}");

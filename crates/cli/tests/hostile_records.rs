@@ -172,7 +172,7 @@ fn uneven() -> Vec<u8> {
 }
 
 #[test]
-fn what_can_be_read_in_one_way_only_is_read_with_a_warning() {
+fn records_of_a_single_reading_are_read_with_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes, set, words) in [
         ("a.at2", changed("NPTS=    200", "NPTS=    199"), "title=a", ["line 4", "199 values"]),

@@ -69,7 +69,7 @@ fn every_command_ends_and_says_what_is_kept() {
                          [design]\nkind = \"full-factorial\"\nchunk = 1\n"
     );
     fs::write(at.join("study.toml"), study).unwrap();
-    fs::write(at.join("seen.csv"), "mode,until (s)\nstands,8\n").unwrap();
+    fs::write(at.join("observed.csv"), "mode,until (s)\nstands,8\n").unwrap();
     let rows: Vec<String> =
         (0..400).map(|row| format!("{:.1},{}\n", 0.1 * f64::from(row), row % 3)).collect();
     let response = format!("time (s),B1.1_displacement_x (mm)\n{}", rows.concat());
@@ -91,7 +91,7 @@ fn every_command_ends_and_says_what_is_kept() {
         vec!["reproduce", "--out=reproduced"],
         vec!["study", "study.toml", "--out=study"],
         vec!["study", "run-chunk", "study.toml", "--chunk=0", "--out=chunk"],
-        vec!["calibrate", "collapse", "candia-8-barrels", "seen.csv", "--simulations=100000"],
+        vec!["calibrate", "collapse", "candia-8-barrels", "observed.csv", "--simulations=100000"],
         vec!["calibrate", "response", "candia-8-barrels", "response.csv"],
         vec![
             "motion",

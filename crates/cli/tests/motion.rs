@@ -9,16 +9,16 @@ use serde_json::Value;
 /// Runs `motion`, which must succeed, and returns standard output.
 fn motion(arguments: &[&str]) -> String {
     let output = barrelstack([&["motion"], arguments].concat());
-    let (told, warned) = (stdout(&output), stderr(&output));
+    let (printed, warned) = (stdout(&output), stderr(&output));
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {warned}");
-    assert!(!told.is_empty(), "{arguments:?}");
-    told
+    assert!(!printed.is_empty(), "{arguments:?}");
+    printed
 }
 
 /// Returns the channels of a file from `info --json`.
 fn channels(file: &Path) -> Vec<Value> {
-    let told = motion(&["info", "--json", text(file)]);
-    let document: Value = serde_json::from_str(&told).unwrap();
+    let printed = motion(&["info", "--json", text(file)]);
+    let document: Value = serde_json::from_str(&printed).unwrap();
     document["records"][0]["channels"].as_array().unwrap().clone()
 }
 
@@ -55,9 +55,9 @@ fn info_shows_what_the_header_states_beside_what_the_numbers_give() {
     let header = "PEER STRONG MOTION DATABASE RECORD\nEVENT, STATION, 090\n\
                   ACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .5000 SEC\n";
     fs::write(&file, format!("{header} .0 .2 -.3 .0\n")).unwrap();
-    let told = motion(&["info", text(&file)]);
+    let printed = motion(&["info", text(&file)]);
     for words in ["PEER AT2", "EVENT", "STATION", "azimuth 90°", "PGA", "0.3000", "cm/s"] {
-        assert!(told.contains(words), "no {words:?} in {told}");
+        assert!(printed.contains(words), "no {words:?} in {printed}");
     }
     let channel = &channels(&file)[0];
     assert!(close(measure(channel, "pga"), 0.3 * 9.806_65, 1e-12));
@@ -68,10 +68,10 @@ fn info_shows_what_the_header_states_beside_what_the_numbers_give() {
 
 #[test]
 fn every_number_of_the_table_has_a_unit() {
-    let told = motion(&["info", "napa-college-2014", "--all-measures"]);
-    let table = told.lines().skip_while(|line| !line.trim_start().starts_with("measure"));
+    let printed = motion(&["info", "napa-college-2014", "--all-measures"]);
+    let table = printed.lines().skip_while(|line| !line.trim_start().starts_with("measure"));
     let rows: Vec<&str> = table.skip(1).take_while(|line| !line.is_empty()).collect();
-    assert_eq!(rows.len(), 21, "{told}");
+    assert_eq!(rows.len(), 21, "{printed}");
     let units = ["g", "cm/s", "cm", "s", "m/s", "m/s^0.75"];
     for row in rows {
         // Two blanks or more separate columns, one separates the words of a name.
@@ -79,12 +79,12 @@ fn every_number_of_the_table_has_a_unit() {
         assert!(units.contains(&unit), "{row}");
     }
     for words in ["RotD50", "velocity pulse", "of the squared velocity"] {
-        assert!(told.contains(words), "no {words:?} in {told}");
+        assert!(printed.contains(words), "no {words:?} in {printed}");
     }
 }
 
 #[test]
-fn raw_records_are_told_apart() {
+fn raw_records_are_distinguished() {
     let output = barrelstack(["motion", "info", "napa-college-2014"]);
     assert!(stderr(&output).contains("a raw record"), "{}", stderr(&output));
     let (_folder, file) = napa();
@@ -114,7 +114,7 @@ fn every_form_reads_back() {
     assert!(close(measure(channel, "pga"), measure(&before[0], "pga"), 5e-8));
     assert_eq!(channel["azimuth"], before[0]["azimuth"]);
     let header = fs::read_to_string(&at2).unwrap();
-    assert!(header.lines().next().unwrap().contains("high-pass"), "the processing is told");
+    assert!(header.lines().next().unwrap().contains("high-pass"), "the processing is stated");
 }
 
 #[test]
@@ -148,8 +148,8 @@ fn an_archive_holds_the_numbers_of_the_text() {
 fn one_factor_scales_all_components() {
     let (folder, first) = napa();
     let file = folder.path().join("strong.txt");
-    let told = motion(&["scale", text(&first), "--to", "pgv=60 cm/s", "-o", text(&file)]);
-    assert!(told.contains("one factor for all components"), "{told}");
+    let printed = motion(&["scale", text(&first), "--to", "pgv=60 cm/s", "-o", text(&file)]);
+    assert!(printed.contains("one factor for all components"), "{printed}");
     let (before, after) = (channels(&first), channels(&file));
     assert!(close(measure(&after[0], "pgv"), 0.6, 1e-12));
     let factor = measure(&after[0], "pga") / measure(&before[0], "pga");
@@ -165,8 +165,8 @@ fn a_raw_record_is_scaled_by_its_motion_and_not_by_its_drift() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("strong.txt");
     let scaled = ["scale", "napa-college-2014", "--to", "pgd=20 cm", "--overwrite", "-o"];
-    let told = motion(&[&scaled[..], &[text(&file)]].concat());
-    assert!(told.contains("high-pass"), "{told}");
+    let printed = motion(&[&scaled[..], &[text(&file)]].concat());
+    assert!(printed.contains("high-pass"), "{printed}");
     assert!(close(measure(&channels(&file)[0], "pgd"), 0.2, 1e-12));
     let processed = measure(&channels(&file)[0], "pga");
     motion(&[&scaled[..], &[text(&file), "--processing", "none"]].concat());
@@ -210,8 +210,8 @@ fn parts_of_a_record_are_joined_where_they_overlap() {
     };
     let (one, two) = (part("one.txt", &body[..4000]), part("two.txt", &body[3000..]));
     let joined = folder.path().join("joined.txt");
-    let told = motion(&["convert", "--join", text(&one), text(&two), "-o", text(&joined)]);
-    assert!(told.contains("repeat the end of the part before"), "{told}");
+    let printed = motion(&["convert", "--join", text(&one), text(&two), "-o", text(&joined)]);
+    assert!(printed.contains("repeat the end of the part before"), "{printed}");
     assert_eq!(rows(&joined).len(), body.len());
     for (old, new) in channels(&first).iter().zip(&channels(&joined)) {
         assert!(close(measure(new, "arias"), measure(old, "arias"), 1e-12));
@@ -226,8 +226,8 @@ fn a_matched_motion_follows_its_target() {
     fs::write(&table, "period (s),Sa (g)\n0.05,0.65\n0.12,1\n0.6,1\n3,0.2\n").unwrap();
     for (k, to) in ["asce7:sds=1.0,sd1=0.6", text(&table)].into_iter().enumerate() {
         let file = folder.path().join(format!("matched-{k}.txt"));
-        let told = motion(&["match", text(&first), "--to", to, "-o", text(&file)]);
-        assert!(told.contains("misfit at most"), "{told}");
+        let printed = motion(&["match", text(&first), "--to", to, "-o", text(&file)]);
+        assert!(printed.contains("misfit at most"), "{printed}");
         let spectrum = folder.path().join(format!("spectrum-{k}.csv"));
         let periods = "0.2,0.4,0.6,1.0,2.0";
         motion(&[
@@ -255,8 +255,8 @@ fn a_seed_makes_the_same_motion_every_time() {
     let boore = |name: &str, seed: &str| {
         let file = folder.path().join(name);
         let given = ["--magnitude", "6", "--distance", "15 km", "--seed", seed];
-        let told = motion(&[&["synth", "boore"], &given[..], &["-o", text(&file)]].concat());
-        assert!(told.contains(&format!("seed {seed}")), "{told}");
+        let printed = motion(&[&["synth", "boore"], &given[..], &["-o", text(&file)]].concat());
+        assert!(printed.contains(&format!("seed {seed}")), "{printed}");
         fs::read(&file).unwrap()
     };
     let one = boore("one.txt", "1");
@@ -265,7 +265,7 @@ fn a_seed_makes_the_same_motion_every_time() {
 }
 
 #[test]
-fn every_kind_of_synthesis_makes_what_was_asked_for() {
+fn every_kind_of_synthesis_makes_what_was_requested() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("made.txt");
     let pulses = [
@@ -343,8 +343,12 @@ fn a_written_motion_drives_a_stack() {
 fn figures_come_with_their_numbers() {
     let (folder, first) = napa();
     let pictures = folder.path().join("pictures");
-    let told = motion(&["plot", text(&first), "-o", text(&pictures)]);
-    assert_eq!(told.lines().filter(|line| line.starts_with("written: ")).count(), 7, "{told}");
+    let printed = motion(&["plot", text(&first), "-o", text(&pictures)]);
+    assert_eq!(
+        printed.lines().filter(|line| line.starts_with("written: ")).count(),
+        7,
+        "{printed}"
+    );
     let kinds = [
         "acceleration",
         "arias",
@@ -496,7 +500,7 @@ fn every_real_file_is_shown_or_refused() {
         skipped(&format!("{} is not there", folder.display()));
         return;
     }
-    let mut seen = 0;
+    let mut files = 0;
     let mut open = vec![folder.clone()];
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).unwrap() {
@@ -512,14 +516,14 @@ fn every_real_file_is_shown_or_refused() {
                 refused(&name, &output, Path::new("none"), &[]);
                 continue;
             }
-            let told = stdout(&output);
+            let printed = stdout(&output);
             assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
             for words in ["PGA", "PGV", "PGD", "duration D5-95", "stage"] {
-                assert!(told.contains(words), "{name}: no {words:?} in {told}");
+                assert!(printed.contains(words), "{name}: no {words:?} in {printed}");
             }
-            seen += 1;
+            files += 1;
         }
     }
     // The number of files in the folder's README, without those refused.
-    assert!(seen >= 30, "{seen} files");
+    assert!(files >= 30, "{files} files");
 }

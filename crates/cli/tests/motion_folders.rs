@@ -66,8 +66,8 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let (records, out) = (folder.path().join("records"), folder.path().join("out"));
     let flatfile = folder.path().join("flat.csv");
     let all = ["info", text(&records), "--out", text(&out), "--flatfile", text(&flatfile)];
-    let told = motion(&all);
-    assert!(told.starts_with("6 records measured, 1 file refused\n"), "{told}");
+    let printed = motion(&all);
+    assert!(printed.starts_with("6 records measured, 1 file refused\n"), "{printed}");
     let table = fs::read_to_string(out.join("records.csv")).unwrap();
     assert_eq!(table.lines().count(), 7);
     let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
@@ -88,8 +88,8 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let cut = format!("{}\n{}", lines[..4].join("\n"), &lines[4][..100]);
     fs::write(&journal, cut).unwrap();
     fs::remove_file(out.join("records.csv")).unwrap();
-    let told = motion(&all);
-    assert!(told.contains(" of them before), 1 file refused"), "{told}");
+    let printed = motion(&all);
+    assert!(printed.contains(" of them before), 1 file refused"), "{printed}");
     assert_eq!(fs::read_to_string(out.join("records.csv")).unwrap(), table);
     assert_eq!(fs::read(out.join("records.parquet")).unwrap(), parquet);
 
@@ -97,10 +97,10 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     let one = records.join("below/RSN1_made.txt");
     let bytes = fs::read(&one).unwrap();
     fs::write(&one, &bytes).unwrap();
-    assert!(motion(&all).contains("6 of them before"), "{told}");
+    assert!(motion(&all).contains("6 of them before"), "{printed}");
     fs::write(&one, [&bytes[..], b"0 0\n"].concat()).unwrap();
-    let told = motion(&all);
-    assert!(told.starts_with("6 records measured (5 of them before)"), "{told}");
+    let printed = motion(&all);
+    assert!(printed.starts_with("6 records measured (5 of them before)"), "{printed}");
 
     let other = ["info", text(&records), "--out", text(&out), "--table-periods", "1,2"];
     refused(
@@ -141,8 +141,8 @@ fn a_folder_is_processed_converted_and_drawn() {
     assert!(png.starts_with(b"\x89PNG"));
     // Missing files are made again.
     fs::remove_file(out("d").join("below/RSN1_made.txt.png")).unwrap();
-    let told = motion(&["plot", text(&records), "--out", text(&out("d"))]);
-    assert!(told.starts_with("2 records measured (1 of them before)"), "{told}");
+    let printed = motion(&["plot", text(&records), "--out", text(&out("d"))]);
+    assert!(printed.starts_with("2 records measured (1 of them before)"), "{printed}");
     assert!(out("d").join("below/RSN1_made.txt.png").is_file());
 }
 
@@ -176,9 +176,12 @@ fn a_set_for_a_target_is_a_study_that_runs() {
         [&usual[..], more].concat().into_iter().map(str::to_owned).collect::<Vec<String>>()
     };
     let arguments = select(&out, &["--magnitude", "5.6..", "--distance", "..20"]);
-    let told = motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
-    assert!(told.contains("10 of 12 records may be chosen"), "{told}");
-    assert!(told.contains("1 outside the limit of magnitude, 0 of unknown magnitude"), "{told}");
+    let printed = motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(printed.contains("10 of 12 records may be chosen"), "{printed}");
+    assert!(
+        printed.contains("1 outside the limit of magnitude, 0 of unknown magnitude"),
+        "{printed}"
+    );
     for file in ["selection.csv", "study.toml", "index.html", "figures/spectra.svg"] {
         assert!(out.join(file).is_file(), "{file}");
     }

@@ -11,7 +11,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-fn told(arguments: &[&str]) -> String {
+fn printed(arguments: &[&str]) -> String {
     let output = barrelstack([&["motion"], arguments].concat());
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
     stdout(&output)
@@ -44,10 +44,11 @@ fn both_horizontals_reach_their_goal_with_one_factor_for_all() {
     for of in ["rotd50", "rotd100", "geomean"] {
         let out = folder.path().join(format!("{of}.txt"));
         let said =
-            told(&["scale", text(&file), "--to", "sa(0.5)=0.6 g", "--of", of, "-o", text(&out)]);
+            printed(&["scale", text(&file), "--to", "sa(0.5)=0.6 g", "--of", of, "-o", text(&out)]);
         assert!(said.contains(of), "{said}");
         let document: Value =
-            serde_json::from_str(&told(&["info", "--json", "--all-measures", text(&out)])).unwrap();
+            serde_json::from_str(&printed(&["info", "--json", "--all-measures", text(&out)]))
+                .unwrap();
         let record = &document["records"][0];
         let g = 9.806_65;
         let reached = if of == "geomean" {
@@ -62,14 +63,15 @@ fn both_horizontals_reach_their_goal_with_one_factor_for_all() {
         };
         assert!((reached / (0.6 * g) - 1.0).abs() < 1e-9, "{of}: {reached}"); // measured 1e-15
         let pga = |k: usize| record["channels"][k]["measures"]["pga"]["value"].as_f64().unwrap();
-        let before: Value = serde_json::from_str(&told(&["info", "--json", text(&file)])).unwrap();
+        let before: Value =
+            serde_json::from_str(&printed(&["info", "--json", text(&file)])).unwrap();
         let old = |k: usize| {
             before["records"][0]["channels"][k]["measures"]["pga"]["value"].as_f64().unwrap()
         };
         assert!((pga(2) / old(2) / (pga(0) / old(0)) - 1.0).abs() < 1e-12); // measured 0
     }
     let single = folder.path().join("one.txt");
-    told(&["convert", text(&file), "--component", "90", "-o", text(&single)]);
+    printed(&["convert", text(&file), "--component", "90", "-o", text(&single)]);
     let out = folder.path().join("no.txt");
     let arguments =
         ["scale", text(&single), "--to", "pgv=1 m/s", "--of", "rotd50", "-o", text(&out)];
@@ -81,8 +83,8 @@ fn both_horizontals_reach_their_goal_with_one_factor_for_all() {
 fn the_index_of_fajfar_can_be_scaled_to() {
     let folder = tempfile::tempdir().unwrap();
     let (file, out) = (record(folder.path()), folder.path().join("out.txt"));
-    told(&["scale", text(&file), "--to", "fajfar=0.9", "-o", text(&out)]);
-    let said = told(&["info", "--all-measures", text(&out)]);
+    printed(&["scale", text(&file), "--to", "fajfar=0.9", "-o", text(&out)]);
+    let said = printed(&["info", "--all-measures", text(&out)]);
     let row = said.lines().find(|line| line.contains("Fajfar")).unwrap();
     assert!(row.contains("0.9000"), "{row}");
 }
@@ -104,7 +106,7 @@ fn plain_parts_of_one_record_are_joined_where_they_repeat() {
     let (one, two) = (write("part1.txt", 0, 1500, 0.0), write("part2.txt", 1200, 3000, 0.05));
     let whole = folder.path().join("whole.txt");
     let given = ["--unit", "m/s2", "--time-step", "0.01 s"];
-    let said = told(
+    let said = printed(
         &[&["convert", "--join", text(&one), text(&two)], &given[..], &["-o", text(&whole)]]
             .concat(),
     );
@@ -146,9 +148,9 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
     let turned = |axes: &str| -> Vec<(String, f64, f64)> {
         let out = folder.path().join(format!("{}.txt", axes.replace(':', "-")));
         let all = ["process", text(&file), "--chain", "none", "--rotate", axes, "-o", text(&out)];
-        assert!(told(&all).contains("turned to"), "{axes}");
-        let told = told(&["info", "--json", text(&out)]);
-        let document: Value = serde_json::from_str(&told).unwrap();
+        assert!(printed(&all).contains("turned to"), "{axes}");
+        let printed = printed(&["info", "--json", text(&out)]);
+        let document: Value = serde_json::from_str(&printed).unwrap();
         let channel = |channel: &Value| {
             let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
             let name = channel["name"].as_str().unwrap().to_owned();
@@ -196,7 +198,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
 }
 
 #[test]
-fn components_of_two_stations_are_taken_together_only_where_told() {
+fn components_of_two_stations_are_combined_only_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, station: &str, azimuth: u32, phase: f64| {
         let mut rows = format!(
@@ -221,7 +223,7 @@ fn components_of_two_stations_are_taken_together_only_where_told() {
             .collect::<Vec<String>>()
     };
     let as_words = |all: &[String]| all.iter().map(String::as_str).collect::<Vec<_>>().join(" ");
-    let say = |all: &[String]| told(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    let say = |all: &[String]| printed(&all.iter().map(String::as_str).collect::<Vec<_>>());
     let same = say(&spectrum(&beside, &[]));
     let all = spectrum(&there, &[]);
     let said = refused(&all.iter().map(String::as_str).collect::<Vec<_>>());
@@ -249,7 +251,7 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
     let first = record(folder.path());
     let page = folder.path().join("match.html");
     let out = folder.path().join("matched.txt");
-    told(&[
+    printed(&[
         "match",
         "napa-college-2014",
         "--to",
@@ -270,7 +272,7 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
     let out = folder.path().join("both.txt");
     let to = ["match", "napa-college-2014", "--to=asce7:sds=0.6,sd1=0.4", "--tolerance=10 %"];
     let over = ["--of=rotd100", "-o", text(&out), "--figure", text(&both)];
-    told(&[&to[..], &over].concat());
+    printed(&[&to[..], &over].concat());
     let written = fs::read_to_string(&both).unwrap();
     for wanted in
         ["(rotd100) follows asce7:sds=0.6,sd1=0.4 within 10", "RotD100", "matched together"]
@@ -280,7 +282,7 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
     let page = folder.path().join("process.html");
     let out = folder.path().join("processed.txt");
     let arguments = ["--high-pass", "0.1 Hz", "-o", text(&out), "--figure", text(&page)];
-    told(&[&["process", text(&first)], &arguments[..]].concat());
+    printed(&[&["process", text(&first)], &arguments[..]].concat());
     let written = fs::read_to_string(&page).unwrap();
     assert!(written.contains("before and after processing") && written.contains("high-pass"));
     // The page is checked before the work, as the motion is.

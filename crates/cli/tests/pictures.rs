@@ -40,9 +40,9 @@ fn render_writes_every_part_and_names_it() {
     let output = barrelstack(BLOCK.into_iter().chain(["--dpi=60", "--out", out.to_str().unwrap()]));
     assert_eq!(stderr(&output), "");
     let parts = ["figures", "report.pdf", "animation", "frames", "paraview"];
-    let told = stdout(&output);
+    let printed = stdout(&output);
     for part in parts {
-        assert!(told.contains(out.join(part).to_str().unwrap()), "{part}: {told}");
+        assert!(printed.contains(out.join(part).to_str().unwrap()), "{part}: {printed}");
     }
     let animation = out.join("animation");
     assert_eq!(names(&animation).unwrap(), ["stack.gif", "stack.png"]);
@@ -70,7 +70,7 @@ fn render_refuses_what_it_cannot_mean() {
 }
 
 #[test]
-fn a_run_writes_its_report_on_paper_when_asked() {
+fn a_run_writes_its_report_on_paper_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let place = out.to_str().unwrap();

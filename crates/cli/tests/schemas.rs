@@ -137,9 +137,9 @@ fn listed() -> BTreeSet<String> {
 
 /// Number of checked documents, by the name of their schema.
 #[derive(Default)]
-struct Seen(BTreeMap<String, usize>);
+struct Documents(BTreeMap<String, usize>);
 
-impl Seen {
+impl Documents {
     /// Checks that a text is one document that satisfies the schema that it names.
     fn document(&mut self, what: &str, text: &str) -> Value {
         let value: Value =
@@ -181,7 +181,7 @@ fn path(folder: &Path, name: &str) -> String {
 
 #[test]
 fn every_document_has_the_schema_that_it_names_in_every_outcome() {
-    let mut seen = Seen::default();
+    let mut documents = Documents::default();
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| path(folder.path(), name);
     let write = |name: &str, text: &str| {
@@ -192,25 +192,25 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
     let short = ["--set=run.stop_after_collapse=0.1 s"];
     let outcome = |value: &Value| value["outcome"]["kind"].as_str().unwrap().to_owned();
     let stands = ["run", "demo-napa", "--set=stack.levels=1", "--set=run.duration=1 s"];
-    assert_eq!(outcome(&seen.run(&stands, 0)), "stable");
+    assert_eq!(outcome(&documents.run(&stands, 0)), "stable");
     // Two levels under a sine that no height survives.
     let strong = "motion={ sine = { amplitude = \"12 cm\", period = \"0.8 s\", cycles = 3 } }";
     let weak = ["run", "demo-napa", "--set=stack.levels=2", "--set", strong, "--variants=8"];
-    let fallen = seen.run(&[&weak, &short[..]].concat(), 0);
+    let fallen = documents.run(&[&weak, &short[..]].concat(), 0);
     assert_eq!(outcome(&fallen), "collapse");
     assert!(!fallen["remedy"]["tried"].as_array().unwrap().is_empty());
-    assert_eq!(outcome(&seen.run(&["run", "sliding-block"], 0)), "not-judged");
-    assert_eq!(outcome(&seen.run(&BROKEN, 1)), "invalid");
+    assert_eq!(outcome(&documents.run(&["run", "sliding-block"], 0)), "not-judged");
+    assert_eq!(outcome(&documents.run(&BROKEN, 1)), "invalid");
     let strap = "stack.strap={ levels = 4, ties = \"levels-together\", pretension = \"3 kN\" }";
     let strapped = ["run", "candia-8-barrels", "--set", strap, "--set=run.duration=1 s"];
-    assert!(!seen.run(&strapped, 0)["straps"].as_array().unwrap().is_empty());
+    assert!(!documents.run(&strapped, 0)["straps"].as_array().unwrap().is_empty());
     let in_space = ["run", "demo-napa", "--set=stack.view=spatial", "--set=stack.levels=2"];
     let counted = ["--set=run.duration=9 s", "--variants=2", "--set=motion.scale.factor=2"];
-    let solid = seen.run(&[&in_space, &short[..], &counted].concat(), 0);
+    let solid = documents.run(&[&in_space, &short[..], &counted].concat(), 0);
     assert_eq!(outcome(&solid), "collapse");
     assert!(solid["directions"]["first_away"].is_u64());
     let verified = ["run", "rocking-block", "--verify", "--set=run.duration=1 s"];
-    assert!(seen.run(&verified, 0)["verification"].is_object());
+    assert!(documents.run(&verified, 0)["verification"].is_object());
     #[cfg(unix)]
     {
         let long = [
@@ -221,72 +221,74 @@ fn every_document_has_the_schema_that_it_names_in_every_outcome() {
             "--set=stack.levels=2",
             "--json",
         ];
-        let value = seen.output("stopped", &interrupted(&long), 130);
+        let value = documents.output("stopped", &interrupted(&long), 130);
         assert_eq!(value["run"]["interrupted"], true);
     }
 
-    seen.run(&["check", "candia-8-barrels"], 0);
-    seen.run(&["check", "bouncing-disc"], 0);
+    documents.run(&["check", "candia-8-barrels"], 0);
+    documents.run(&["check", "bouncing-disc"], 0);
     let against = "--against=run.duration=0.5 s";
     let out = at("compared");
-    seen.run(&["compare", "rocking-block", against, "--set=run.duration=0.6 s", "--out", &out], 0);
-    seen.run(&["scenarios"], 0);
-    seen.run(&["scenarios", "list"], 0);
+    documents
+        .run(&["compare", "rocking-block", against, "--set=run.duration=0.6 s", "--out", &out], 0);
+    documents.run(&["scenarios"], 0);
+    documents.run(&["scenarios", "list"], 0);
 
     let study = write("study.toml", &[HEAD, STUDY].concat());
     let done = at("study");
-    seen.run(&["study", "plan", &study], 0);
-    seen.run(&["study", &study, "--out", &done], 0);
-    seen.run(&["study", "status", &done], 0);
-    seen.run(&["study", "collect", &done], 0);
-    seen.run(&["study", "report", &done], 0);
+    documents.run(&["study", "plan", &study], 0);
+    documents.run(&["study", &study, "--out", &done], 0);
+    documents.run(&["study", "status", &done], 0);
+    documents.run(&["study", "collect", &done], 0);
+    documents.run(&["study", "report", &done], 0);
     let hazard = write("hazard.csv", "pgv (cm/s),rate (1/year)\n5,0.1\n20,0.01\n60,0.001\n");
-    seen.run(&["study", "report", &done, "--hazard", &hazard], 0);
+    documents.run(&["study", "report", &done, "--hazard", &hazard], 0);
     let decision = fs::read_to_string(folder.path().join("study/decision.json")).unwrap();
-    seen.document("decision.json", &decision);
+    documents.document("decision.json", &decision);
     // A partly finished study.
     let part = at("part");
     assert!(
         barrelstack(["study", "run-chunk", &study, "--chunk=1", "--out", &part]).status.success()
     );
-    seen.run(&["study", "status", &part], 0);
-    seen.run(&["study", "collect", &part], 4);
+    documents.run(&["study", "status", &part], 0);
+    documents.run(&["study", "collect", &part], 4);
 
     let tilt = write("tilt.csv", "angle (deg)\n25\n26\n24\n25.5\n");
-    seen.run(&["calibrate", "friction", &tilt], 0);
+    documents.run(&["calibrate", "friction", &tilt], 0);
     let press = write("press.csv", "penetration (mm),force (kN)\n1,2\n2,4.1\n3,5.9\n");
-    seen.run(&["calibrate", "stiffness", &press], 0);
+    documents.run(&["calibrate", "stiffness", &press], 0);
     let sag = write("sag.csv", "load (kg),sag (mm)\n135,0.11\n270,0.22\n270,0.23\n");
-    seen.run(&["calibrate", "stiffness", &sag, "--seats=4"], 0);
+    documents.run(&["calibrate", "stiffness", &sag, "--seats=4"], 0);
     let taps = write("taps.csv", "period (s)\n0.41\n0.42\n0.4\n");
     let along = ["--set=stack.view=longitudinal", "--set=stack.levels=2"];
-    seen.run(&[&["calibrate", "stiffness", &taps, "--scenario=demo-napa"][..], &along].concat(), 0);
+    documents
+        .run(&[&["calibrate", "stiffness", &taps, "--scenario=demo-napa"][..], &along].concat(), 0);
 
-    seen.run(&["motion", "info", "napa-college-2014"], 0);
-    seen.run(&["motion", "info", "napa-college-2014", "--all-measures"], 0);
+    documents.run(&["motion", "info", "napa-college-2014"], 0);
+    documents.run(&["motion", "info", "napa-college-2014", "--all-measures"], 0);
 
-    let error = seen.run(&["run", "nowhere.toml"], 2);
+    let error = documents.run(&["run", "nowhere.toml"], 2);
     assert_eq!(error["file"], "nowhere.toml");
     let bad = write("bad.toml", "schema = 1\nextends = \"demo-napa\"\n[stack]\nlevels = 2.5\n");
-    let error = seen.run(&["check", &bad], 2);
+    let error = documents.run(&["check", &bad], 2);
     assert_eq!((&error["line"], &error["status"]), (&Value::from(4), &Value::from(2)));
-    let error = seen.run(&["run", "demo-napa", "--set=run.step=5 ms"], 2);
+    let error = documents.run(&["run", "demo-napa", "--set=run.step=5 ms"], 2);
     assert_eq!(error["change"], "run.step=5 ms");
-    seen.run(&["run", "--levels=3"], 2);
-    seen.run(&["motion", "info", &bad], 2);
+    documents.run(&["run", "--levels=3"], 2);
+    documents.run(&["motion", "info", &bad], 2);
     #[cfg(unix)]
     {
         for command in ["heights", "protect", "score"] {
             let long = [command, "--json", "--quiet", "--out", &at(command)];
-            let error = seen.output("stopped", &interrupted(&long), 130);
+            let error = documents.output("stopped", &interrupted(&long), 130);
             assert!(error["error"].as_str().unwrap().contains("goes on from there"), "{error}");
         }
     }
 
     // Slow documents are checked by the test below.
     let slow = ["heights", "protect", "rockscore", "stability"].map(str::to_owned);
-    let seen: BTreeSet<String> = seen.0.into_keys().chain(slow).collect();
-    assert_eq!(seen, listed());
+    let documents: BTreeSet<String> = documents.0.into_keys().chain(slow).collect();
+    assert_eq!(documents, listed());
 }
 
 #[test]
@@ -310,13 +312,13 @@ fn every_number_has_a_unit_and_every_field_a_meaning() {
 fn what_takes_a_minute_has_its_schema() {
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "heights");
-    let mut seen = Seen::default();
+    let mut documents = Documents::default();
     let few = ["--synthetic=0", "--highest=2", "--barrel=burgundy-228", "--quiet", "--out", &out];
-    let value = seen.run(&[&["heights"][..], &few].concat(), 0);
+    let value = documents.run(&[&["heights"][..], &few].concat(), 0);
     assert_eq!(value["barrel"], "burgundy-228");
     assert_eq!(value["heights"].as_array().unwrap().len(), 2);
     let file = fs::read_to_string(folder.path().join("heights/heights.json")).unwrap();
-    seen.document("heights.json", &file);
+    documents.document("heights.json", &file);
     let out = path(folder.path(), "protect");
     let hazard = folder.path().join("hazard.csv");
     fs::write(&hazard, "pgv (cm/s),rate (1/year)\n5,0.1\n20,0.01\n60,0.001\n200,0.00001\n")
@@ -324,16 +326,16 @@ fn what_takes_a_minute_has_its_schema() {
     let (site, low) = (format!("--site={}", hazard.display()), "--set=stack.levels=2");
     let arguments =
         ["protect", "candia-8-barrels", low, &site, "--count=4", "--rounds=1", "--budget=130"];
-    let value = seen.run(&[&arguments[..], &["--quiet", "--out", &out]].concat(), 0);
+    let value = documents.run(&[&arguments[..], &["--quiet", "--out", &out]].concat(), 0);
     assert_eq!(value["per"], "year");
     assert!(value["protections"].as_array().unwrap().len() > 2);
     let file = fs::read_to_string(folder.path().join("protect/protect.json")).unwrap();
-    seen.document("protect.json", &file);
-    let value = seen.run(&["check", "candia-8-barrels", "--table"], 0);
+    documents.document("protect.json", &file);
+    let value = documents.run(&["check", "candia-8-barrels", "--table"], 0);
     assert_eq!(value["rows"].as_array().unwrap().len(), 7 * 6);
     let out = path(folder.path(), "score");
-    let value = seen.run(&["score", "candia-8-barrels", "--quiet", "--out", &out], 0);
+    let value = documents.run(&["score", "candia-8-barrels", "--quiet", "--out", &out], 0);
     assert_eq!(value["states"].as_array().unwrap().len(), 2);
     let file = fs::read_to_string(folder.path().join("score/rockscore.json")).unwrap();
-    seen.document("rockscore.json", &file);
+    documents.document("rockscore.json", &file);
 }

@@ -47,7 +47,7 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
 
 #[test]
 fn what_space_does_not_know_is_refused_before_any_work() {
-    for (more, told) in [
+    for (more, message) in [
         (&["--verify"][..], "--verify is known in a plane"),
         (&["--set=stack.rack=rack-on-rack"], "has posts"),
         (&["--set=stack.barrel.fill=part"], "wine that sloshes is known in a plane"),
@@ -55,7 +55,7 @@ fn what_space_does_not_know_is_refused_before_any_work() {
     ] {
         let output = barrelstack([&SOLID[..], more].concat());
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-        assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
+        assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
     }
     // Commands that work in a plane say so.
     let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
@@ -130,7 +130,7 @@ fn a_run_in_space_becomes_a_series_for_paraview() {
 fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("out").display().to_string();
-    for (command, told) in [
+    for (command, message) in [
         (
             &["run", "rolling-ball", "--verify"][..],
             "--verify is known in a plane, not yet in space",
@@ -141,7 +141,7 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
     ] {
         let output = barrelstack(command);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-        assert!(stderr(&output).contains(told), "{told}: {}", stderr(&output));
+        assert!(stderr(&output).contains(message), "{message}: {}", stderr(&output));
     }
 }
 
@@ -159,7 +159,7 @@ fn what_works_in_planes_alone_refuses_space_at_its_field_before_any_work() {
     ] {
         let output = barrelstack([words, &["-q", "--out", &out]].concat());
         assert_eq!(output.status.code(), Some(2), "{words:?}: {}", stderr(&output));
-        let told = stderr(&output);
-        assert!(told.contains("mine.toml:4:8: this works in a plane"), "{words:?}: {told}");
+        let message = stderr(&output);
+        assert!(message.contains("mine.toml:4:8: this works in a plane"), "{words:?}: {message}");
     }
 }

@@ -143,13 +143,13 @@ fn an_interrupt_ends_with_a_sentence_that_says_how_to_go_on() {
     assert!(killed.unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    let told = stderr(&output);
-    assert!(told.contains("run the same command again to go on from there"), "{told}");
+    let message = stderr(&output);
+    assert!(message.contains("run the same command again to go on from there"), "{message}");
     assert_eq!(barrelstack(run(&file, &out, "2")).status.code(), Some(0));
 }
 
 #[test]
-fn mistakes_are_told_before_anything_is_made() {
+fn mistakes_are_reported_before_anything_is_made() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let at = out.display().to_string();
@@ -195,7 +195,7 @@ fn mistakes_are_told_before_anything_is_made() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_folder_that_cannot_be_made_is_told_in_plain_words() {
+fn a_folder_that_cannot_be_made_is_reported_in_plain_words() {
     let folder = tempfile::tempdir().unwrap();
     let file = study(folder.path());
     // Nothing can be created below a file; a folder below /proc cannot be created at all.

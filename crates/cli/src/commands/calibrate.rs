@@ -62,20 +62,20 @@ enum Test {
     /// Impacts, slips and falls make responses chaotic within seconds: take a short window of mild
     /// shaking in which things still slide a little (--until), and no collapse.
     Response(ResponseArgs),
-    /// Stiffness, damping and friction together from collapses that were seen, on video or by eye.
+    /// Stiffness, damping and friction together from observed collapses, on video or by eye.
     ///
     /// Each row of the file is a test: `mode` (ejection, rocking, rack-sliding, overturning or stands),
     /// when barrels had fallen (`B4.1 fell (s)` and so on, or `first fall (s)` and `first barrel`),
     /// `loss of seat (s)`, how long it was watched (`until (s)`), and `scenario` where tests differ.
     /// Times count from the start of the motion; `stands` marks what had not fallen; an empty cell was
-    /// not seen.
+    /// not observed.
     ///
     /// Many stacks are simulated, each built a little differently, with parameters spread around those
     /// of the scenario; what made them go as observed is found by weighing them.
     Collapse(CollapseArgs),
 }
 
-/// How the result is printed, and what for.
+/// Output options.
 #[derive(Debug, clap::Args)]
 struct ResultArgs {
     /// Print one JSON document, in SI units, in place of the table.
@@ -108,7 +108,7 @@ struct PairArgs {
     interface: Pair,
 }
 
-/// What is changed in scenarios.
+/// Changes of scenarios.
 #[derive(Debug, clap::Args)]
 struct ChangeArgs {
     /// Change a value of the scenario, such as stack.levels=2; may be repeated.
@@ -181,7 +181,7 @@ struct ResponseArgs {
     scenario: String,
     /// The recorded histories (CSV).
     file: PathBuf,
-    /// What to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
+    /// Parameters to fit: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
     /// (barrel-rack), mu-rg (rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
@@ -200,17 +200,17 @@ struct CollapseArgs {
     scenario: String,
     /// Observations (CSV).
     file: PathBuf,
-    /// What to find: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
+    /// Parameters to find: k and c (of barrel-rack; those of rack-ground keep their ratio to them), mu-br
     /// (barrel-rack), mu-rg (rack-ground).
     #[arg(long, value_delimiter = ',', default_value = "k,c,mu-br,mu-rg", value_name = "NAMES")]
     fit: Vec<Fitted>,
     /// Parameters lie within this factor of those of the scenario.
     #[arg(long, default_value_t = Settings::default().within, value_name = "FACTOR")]
     within: f64,
-    /// How well times were read off, such as "0.05 s" (standard deviation).
+    /// Error of observed times, such as "0.05 s" (standard deviation).
     #[arg(long, default_value = "0.05 s", value_name = "TIME")]
     timing: String,
-    /// How well racks and barrels were put in their places, such as "1 mm" (standard deviation).
+    /// Error of the placement of racks and barrels, such as "1 mm" (standard deviation).
     #[arg(long, default_value = "1 mm", value_name = "LENGTH")]
     placement: String,
     /// Sets of parameters to simulate, each once for every test.
@@ -379,15 +379,16 @@ fn collapsed(args: &CollapseArgs) -> anyhow::Result<Calibration> {
         seed: args.seed,
         lanes: args.lanes.lanes,
     };
-    let seen = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
-    let scenarios: Vec<Scenario> = seen
+    let observations = Observations::read(&Table::load(&args.file)?, &settings.errors)?;
+    let scenarios: Vec<Scenario> = observations
         .scenarios()
         .map(|name| super::load(&args.changes.of(name.unwrap_or(&args.scenario))))
         .collect::<anyhow::Result<_>>()?;
     let progress = Progress::new(true);
-    let found = collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
-        progress.counted(done as u64, of as u64, "runs")
-    });
+    let found =
+        collapse::collapse(&observations, &scenarios, &parameters, &settings, &|done, of| {
+            progress.counted(done as u64, of as u64, "runs")
+        });
     drop(progress);
     found.map_err(|error| placed(error, &scenarios[0], &args.changes.of(&args.scenario)))
 }

@@ -53,7 +53,7 @@ pub(crate) fn check(args: &CheckArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// How firmly the stack of a scenario stands at every height, on its own rack and on those of the catalog.
+/// Tabulates the stability of the stack of a scenario at every height, on its own rack and on those of the catalog.
 fn table(scenario: &Scenario, args: &ScenarioArgs) -> anyhow::Result<StabilityTable> {
     let stack = scenario.stack().filter(|_| !scenario.is_spatial()).with_context(|| {
         "--table is about a stack in its planes: take a scenario with a stack, and stack.view = \"both\", \"transverse\" or \

@@ -41,7 +41,7 @@ pub(crate) struct CompareArgs {
     /// Variants of each stack to run beside it, in place of imperfections.variants; 0 for one run.
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..=4096))]
     variants: Option<u32>,
-    /// What to call a run, in the order of the runs, in place of words for what differs; may be repeated.
+    /// Name of a run, in the order of the runs, in place of a description of its differences; may be repeated.
     #[arg(long, value_name = "WORDS")]
     label: Vec<String>,
     /// Where to write report.html, report.md and figures/; must be new or empty.

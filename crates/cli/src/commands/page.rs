@@ -13,7 +13,7 @@ use crate::printer;
 use crate::progress::Progress;
 use crate::store::{folder_below, store_all, writable};
 
-/// How studies are run, and what the page says.
+/// Execution of studies, and contents of the page.
 #[derive(Debug, clap::Args)]
 pub(super) struct PageArgs {
     #[command(flatten)]

@@ -23,7 +23,7 @@ use crate::progress::Progress;
 pub(crate) struct ProtectArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// How often the site is shaken how hard: a CSV of `pgv (cm/s)` and `rate (1/year)`.
+    /// Hazard curve of the site: a CSV of `pgv (cm/s)` and `rate (1/year)`.
     #[arg(long, value_name = "FILE", conflicts_with = "pgv")]
     site: Option<PathBuf>,
     /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.

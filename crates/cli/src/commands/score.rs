@@ -35,8 +35,8 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     }
     let (options, progress) = args.page.begin(&args.out)?;
     let protocol = Protocol::rockscore();
-    let tell = |done, of| progress.counted(done, of, "runs");
-    let result = score(&scenario, &protocol, &args.out, &options, &tell);
+    let report = |done, of| progress.counted(done, of, "runs");
+    let result = score(&scenario, &protocol, &args.out, &options, &report);
     drop(progress);
     let sheet = match result {
         Err(ScoreError::Study(StudyError::Stopped)) => return Err(Stopped.into()),

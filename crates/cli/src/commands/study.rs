@@ -106,7 +106,7 @@ struct FolderArgs {
     json: bool,
 }
 
-/// What to do with a study.
+/// Actions on a study.
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Run what is missing and collect the table (the same as without `run`).
@@ -212,7 +212,7 @@ fn run(args: &RunArgs) -> anyhow::Result<ExitCode> {
 }
 
 described! {
-    /// What a study will run.
+    /// Plan of a study.
     pub(crate) struct StudyPlan of plan: &(&Study, Following) {
         /// Name and version of this layout.
         schema: &'static str ["study-plan/1"] = "study-plan/1",
@@ -224,11 +224,11 @@ described! {
         study_hash: String = format!("{:016x}", plan.0.hash()),
         /// Cases in all.
         cases: u64 = plan.0.cases(),
-        /// Whether there may be fewer, because what is found decides.
+        /// `true` if there may be fewer, because results decide.
         at_most: bool = plan.0.is_adaptive(),
         /// Motions.
         motions: usize = plan.0.motions(),
-        /// How long the cases are followed.
+        /// End conditions of the cases.
         following: Following = plan.1.clone(),
         /// The chunks.
         chunks: Vec<PlannedChunk> = plan.0.plan().map(|chunk| PlannedChunk::of(&chunk)).collect(),
@@ -246,13 +246,13 @@ described! {
         last: u64 = chunk.last,
     }
 
-    /// How far a study is.
+    /// Progress of a study.
     pub(crate) struct StudyStatus of status: &study::Status {
         /// Name and version of this layout.
         schema: &'static str ["study-status/1"] = "study-status/1",
-        /// What the folder belongs to.
+        /// Provenance of the folder.
         provenance: study::Provenance = status.provenance.clone(),
-        /// How the cases that are done ended.
+        /// Outcomes of the finished cases.
         tally: answer::TallyRow = answer::TallyRow::of(&(status.tally, status.provenance.is_sample())),
         /// Chunks that are still to be run.
         missing: Vec<usize> = status.missing.clone(),

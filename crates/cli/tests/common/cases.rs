@@ -118,16 +118,16 @@ impl Cases {
 
     /// Checks properties of all outputs.
     pub(crate) fn clean(&mut self, what: &str, output: &Output) {
-        let (told, said) = (stdout(output), stderr(output));
+        let (printed, said) = (stdout(output), stderr(output));
         let mut require = |holds: bool, why: &str| {
             if !holds {
                 self.wrong.push(format!("{what:.200}: {why}: {:?} {said:.600}", output.status));
             }
         };
         require(output.status.code().is_some_and(|code| code <= 3), "status");
-        require(!said.contains("panicked") && !told.contains("panicked"), "panic");
+        require(!said.contains("panicked") && !printed.contains("panicked"), "panic");
         let obeyed = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
-        require(!said.contains(obeyed) && !told.contains(obeyed), "control characters");
+        require(!said.contains(obeyed) && !printed.contains(obeyed), "control characters");
         require(said.matches("error:").count() <= 1, "two errors");
         require(said.len() < 4000, "a flood");
     }
@@ -138,7 +138,7 @@ impl Cases {
         let what = format!("{arguments:?}");
         let Some(output) = self.run(arguments) else { return };
         self.clean(&what, &output);
-        let (told, said) = (stdout(&output), stderr(&output));
+        let (printed, said) = (stdout(&output), stderr(&output));
         let mut require = |holds: bool, why: &str| {
             if !holds {
                 self.wrong.push(format!("{what:.200}: {why}: {:?} {said:.600}", output.status));
@@ -147,10 +147,10 @@ impl Cases {
         require(output.status.code() == Some(2), "status");
         require(said.starts_with("error: "), "no error");
         if arguments.contains(&"--json") {
-            let document = serde_json::from_str::<serde_json::Value>(&told);
+            let document = serde_json::from_str::<serde_json::Value>(&printed);
             require(document.is_ok_and(|document| document["schema"] == "error/1"), "no document");
         } else {
-            require(told.is_empty(), "a result");
+            require(printed.is_empty(), "a result");
         }
         require(NEXT.iter().any(|word| said.contains(word)), "no next move");
         for word in words {

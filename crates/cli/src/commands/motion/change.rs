@@ -40,7 +40,7 @@ pub(super) struct ConvertArgs {
     choice: Choice,
     #[command(flatten)]
     output: Output,
-    /// What the motions of a folder are written as.
+    /// Format in which the motions of a folder are written.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
     #[command(flatten)]
@@ -59,7 +59,7 @@ pub(super) fn convert(args: &ConvertArgs) -> anyhow::Result<ExitCode> {
             args.form.write(source, out, &chosen)?;
             Ok(Worked::as_read(chosen))
         };
-        return folder::run(&batch, &work)?.tell();
+        return folder::run(&batch, &work)?.print_summary();
     }
     let target = args.output.prepare()?;
     let read = args.input.read()?;

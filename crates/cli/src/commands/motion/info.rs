@@ -81,7 +81,7 @@ fn table(args: &InfoArgs, out: &Path) -> anyhow::Result<ExitCode> {
         );
     }
     let batch = Batch::new(&args.input, out, &args.folder, "info".to_owned());
-    folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.tell()
+    folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?.print_summary()
 }
 
 /// Combines neighboring files of one event, station and step to one record.
@@ -269,7 +269,7 @@ fn stated(record: &Record) -> Table {
 }
 
 described! {
-    /// What records hold. Lengths in m, times in s, directions in degrees clockwise from north.
+    /// Contents of records. Lengths in m, times in s, directions in degrees clockwise from north.
     pub(crate) struct MotionInfo {
         /// Name and version of this layout.
         schema: &'static str ["motion-info/1"],
@@ -283,19 +283,19 @@ described! {
         file: String = found.0.file.clone(),
         /// The form of the file.
         format: &'static str = found.0.format,
-        /// The event, as the file tells.
+        /// The event, as stated in the file.
         event: String = found.0.event.clone(),
-        /// The station, as the file tells.
+        /// The station, as stated in the file.
         station: String = found.0.station.clone(),
-        /// Whether it is raw or corrected.
+        /// Stage of processing: raw or corrected.
         stage: String = found.0.stage.to_string(),
         /// Its components.
         channels: Vec<ChannelInfo> = found.1,
         /// Peaks over all horizontal directions, where all measures are requested.
         over_all_directions: Vec<RotatedInfo> = found.2.iter().map(RotatedInfo::of).collect(),
-        /// What is wrong or doubtful.
+        /// Warnings.
         warnings: Vec<String> = found.0.warnings.iter().map(ToString::to_string).collect(),
-        /// What was done to it.
+        /// Processing notes.
         notes: Vec<String> = found.0.notes.clone(),
     }
 
@@ -305,7 +305,7 @@ described! {
         name: String = found.0.name.clone(),
         /// Its direction, clockwise from north.
         azimuth: Option<f64> as "deg" = found.0.direction.azimuth,
-        /// Whether it is vertical.
+        /// `true` if it is vertical.
         vertical: bool = found.0.is_vertical(),
         /// Universal time of the first sample.
         start: Option<String> = found.0.start.map(|start| start.to_string()),
@@ -347,7 +347,7 @@ described! {
         stated: f64 as "SI" = peak.stated,
         /// As measured, in SI units.
         measured: f64 as "SI" = peak.measured,
-        /// Whether the two agree.
+        /// `true` if the two agree.
         agrees: bool = peak.agrees(),
     }
 

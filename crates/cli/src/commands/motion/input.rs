@@ -48,7 +48,7 @@ pub(super) struct Input {
     /// without it files that end with .xml beside a file of counts are looked into.
     #[arg(long, value_name = "PATH")]
     station_xml: Option<PathBuf>,
-    /// What SEED and SAC files of other instruments than accelerometers hold; it is differentiated.
+    /// Quantity in SEED and SAC files of instruments other than accelerometers; it is differentiated.
     #[arg(long = "as", value_enum, value_name = "QUANTITY")]
     recorded: Option<Recorded>,
 }
@@ -83,7 +83,7 @@ pub(super) struct Choice {
 pub(super) enum Chain {
     /// The numbers as read.
     None,
-    /// What a scenario does: compact for raw records, nothing for the others.
+    /// As in a scenario: compact for raw records, nothing for the others.
     Default,
     /// Pre-event mean, taper of 2 %, zero-phase high-pass at 0.1 Hz without its pads, ends closed.
     Compact,

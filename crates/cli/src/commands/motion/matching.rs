@@ -37,7 +37,7 @@ pub(super) struct MatchArgs {
     /// scaling only.
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
-    /// How one component is changed; both together take amplitudes first, then wavelets.
+    /// Method for one component; both together take amplitudes first, then wavelets.
     #[arg(long, value_enum, default_value_t = Method::Time)]
     method: Method,
     /// Shortest period matched.
@@ -123,7 +123,7 @@ pub(super) fn match_spectrum(args: &MatchArgs) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// What of a record is matched.
+/// Part of a record that is matched.
 enum Part {
     /// The channel with this index.
     One(usize),

@@ -44,12 +44,12 @@ pub(crate) use info::MotionInfo;
 #[derive(Debug, clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct MotionArgs {
-    /// What to do.
+    /// Action on the motion.
     #[command(subcommand)]
     command: MotionCommand,
 }
 
-/// What to do with a motion.
+/// Actions on a motion.
 #[derive(Debug, Subcommand)]
 enum MotionCommand {
     /// Say what a file holds: header, channels, peaks stated and found, measures of intensity.

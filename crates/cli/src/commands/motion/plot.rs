@@ -136,7 +136,7 @@ fn folders(args: &PlotArgs) -> anyhow::Result<ExitCode> {
         }
         Ok(Worked::done(chosen))
     };
-    folder::run(&batch, &work)?.tell()
+    folder::run(&batch, &work)?.print_summary()
 }
 
 fn is_file(output: &Path) -> bool {

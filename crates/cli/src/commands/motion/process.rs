@@ -46,7 +46,7 @@ pub(super) struct ProcessArgs {
     /// Order of the Butterworth filter, which runs forth and back.
     #[arg(long, value_name = "NUMBER")]
     order: Option<u32>,
-    /// What becomes of the zeros added for the filter.
+    /// Treatment of the zeros added for the filter.
     #[arg(long, value_enum)]
     pads: Option<Fate>,
     /// Bring the last velocity and displacement to zero by the smallest smooth acceleration.
@@ -62,7 +62,7 @@ pub(super) struct ProcessArgs {
     rotate: Option<Axes>,
     #[command(flatten)]
     output: Output,
-    /// What the motions of a folder are written as.
+    /// Format in which the motions of a folder are written.
     #[arg(long, value_enum, default_value_t = Form::Txt)]
     form: Form,
     /// Draw before and after: as panels (.png, .svg, .pdf), or as a page (.html).
@@ -107,9 +107,9 @@ typed! {
     enum Mean of MeanRemoval {
         /// None.
         Keep = Self::Keep,
-        /// That of the quiet part before the first arrival.
+        /// Mean of the quiet part before the first arrival.
         PreEvent = Self::PreEvent,
-        /// That of the whole record.
+        /// Mean of the whole record.
         Whole = Self::Whole,
     }
 }
@@ -262,5 +262,5 @@ fn folders(args: &ProcessArgs) -> anyhow::Result<ExitCode> {
         args.form.write(source, out, &after)?;
         Ok(Worked::done(after))
     };
-    folder::run(&batch, &work)?.tell()
+    folder::run(&batch, &work)?.print_summary()
 }

@@ -17,12 +17,12 @@ use crate::typed::word;
 /// Arguments of `synth`.
 #[derive(Debug, clap::Args)]
 pub(super) struct SynthArgs {
-    /// What is made.
+    /// Kind of synthetic motion.
     #[command(subcommand)]
     kind: Kind,
 }
 
-/// What every synthetic motion has.
+/// Options of every synthetic motion.
 #[derive(Debug, clap::Args)]
 struct Common {
     /// Step of the file; without it 0.005 s for random motions, a 400th of the period for pulses.
@@ -35,7 +35,7 @@ struct Common {
     output: Output,
 }
 
-/// What is drawn at random.
+/// Options of random motions.
 #[derive(Debug, clap::Args)]
 struct Seed {
     /// Seed of the random numbers: the same seed gives the same motion on every machine.
@@ -43,7 +43,7 @@ struct Seed {
     seed: u64,
 }
 
-/// What is made.
+/// Kind of synthetic motion.
 #[derive(Debug, Subcommand)]
 enum Kind {
     /// Harmonic displacement with ramps at both ends.

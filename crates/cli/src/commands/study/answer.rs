@@ -177,35 +177,35 @@ pub(super) fn status(status: &Status) -> Vec<String> {
 }
 
 described! {
-    /// What a study says of its cases.
+    /// Results of a study.
     pub(crate) struct StudyResult of found: &(&Answer, &Provenance) {
         /// Name and version of this layout.
         schema: &'static str ["study-result/1"] = "study-result/1",
-        /// What the rows of the study come from.
+        /// Provenance of the rows of the study.
         provenance: Provenance = found.1.clone(),
-        /// How its cases ended.
+        /// Outcomes of its cases.
         tally: TallyRow = TallyRow::of(&(found.0.tally, found.1.is_sample())),
-        /// What is to be known of cases that were not followed to their end.
+        /// Notes on cases that were not followed to their end.
         notes: Vec<String> = found.0.endings.sentences(),
-        /// How cases ended at each level that several share.
+        /// Outcomes of cases at each level that several share.
         levels: Vec<LevelTally> = found.0.levels().iter().map(LevelTally::of).collect(),
     }
 
-    /// How the cases of one level ended.
+    /// Outcomes of the cases of one level.
     pub(crate) struct LevelTally of found: &(f64, Tally) {
         /// The level.
         level: f64 as "of the measure" = found.0,
-        /// How they ended.
+        /// Their outcomes.
         tally: TallyRow = TallyRow::of(&(found.1, true)),
     }
 
-    /// How cases ended.
+    /// Outcomes of cases.
     pub(crate) struct TallyRow of found: &(Tally, bool) {
         /// Cases in all.
         cases: u64 = found.0.cases,
-        /// Those with a verdict.
+        /// Cases with a verdict.
         judged: u64 = found.0.judged,
-        /// Those that collapsed.
+        /// Cases that collapsed.
         collapsed: u64 = found.0.collapsed,
         /// The chance of collapse; null where the cases are no sample.
         collapse: Option<Fraction> = found.0.collapse().filter(|_| found.1).map(|at| Fraction::of(&at)),

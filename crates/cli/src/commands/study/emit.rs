@@ -54,7 +54,7 @@ fn quoted(word: &str) -> String {
 /// Returns an absolute path, since jobs start in folders of their own.
 fn absolute(path: &Path) -> anyhow::Result<String> {
     let whole = std::path::absolute(path)
-        .with_context(|| format!("cannot tell where {} is", path.display()))?;
+        .with_context(|| format!("cannot find the absolute path of {}", path.display()))?;
     Ok(whole.display().to_string())
 }
 
@@ -96,7 +96,7 @@ pub(super) fn emit(args: &EmitArgs) -> anyhow::Result<()> {
     let name = &args.which.study;
     let chunks = super::load(name)?.chunk_count();
     let file = Path::new(name);
-    let program = std::env::current_exe().context("cannot tell where this program is")?;
+    let program = std::env::current_exe().context("cannot find the path of this program")?;
     let job = Job {
         program: program.display().to_string(),
         study: if file.is_file() { absolute(file)? } else { name.clone() },

@@ -17,7 +17,7 @@ pub(super) struct ExportArgs {
     /// Folder for the files.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// What the other program calls a stack (its taxonomy, or the identity of its component).
+    /// Name of a stack in the other program (its taxonomy, or the identity of its component).
     #[arg(long, value_name = "NAME", default_value = "wine.barrel.stack")]
     asset: String,
 }

@@ -34,7 +34,7 @@ const PERIODS: [f64; 20] = [
 /// Maximum number of refused files listed on the terminal; the table has all.
 const NAMED: usize = 5;
 
-/// What goes with folders.
+/// Options for folders.
 #[derive(Debug, clap::Args)]
 pub(super) struct FolderArgs {
     /// Flatfile as CSV: of NGA-West2, joined by the record sequence number in the names of files, or of
@@ -234,7 +234,7 @@ impl Measurements {
     }
 
     /// Prints a summary and returns the exit status: 130 if it was stopped.
-    pub(super) fn tell(&self) -> anyhow::Result<ExitCode> {
+    pub(super) fn print_summary(&self) -> anyhow::Result<ExitCode> {
         let before = (self.before > 0).then(|| format!(" ({} of them before)", self.before));
         let mut lines = vec![format!(
             "{} measured{}, {} refused",

@@ -65,7 +65,7 @@ enum Pulses {
     Any,
     /// Pulse-like ones.
     Only,
-    /// Those without a pulse.
+    /// Records without a pulse.
     None,
 }
 

@@ -36,7 +36,7 @@ Example:
 pub(super) struct SelectArgs {
     #[command(flatten)]
     input: Input,
-    /// What the spectra shall look like; the kinds are below.
+    /// Target of the spectra; the kinds are below.
     #[arg(long, value_name = "TARGET")]
     target: String,
     /// Period at which Sa is given, one of the table's.
@@ -54,7 +54,7 @@ pub(super) struct SelectArgs {
     /// Longest period that counts.
     #[arg(long, value_name = "TIME", default_value = "5 s")]
     longest: String,
-    /// How many records; without it 30, or as many as there are and reach the target.
+    /// Number of records; without it 30, or as many as there are and reach the target.
     #[arg(long, value_name = "NUMBER")]
     count: Option<usize>,
     /// Which spectrum of a record counts.
@@ -117,7 +117,7 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let batch = Batch::new(&args.input, &args.out, &args.folder, "select".to_owned());
     let batch = Batch { periods: Some(periods.clone()), ..batch };
     let found = folder::run(&batch, &|_, record| Ok(Worked::as_read(record.clone())))?;
-    let status = found.tell()?;
+    let status = found.print_summary()?;
     if status != ExitCode::SUCCESS {
         return Ok(status);
     }
