@@ -23,9 +23,9 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::errors;
-use crate::listen::listening;
+use crate::interruptible::run_interruptible;
 use crate::page::Page;
-use crate::scenario::{Scenario, told, with_variants};
+use crate::scenario::{Scenario, report_advance, with_variants};
 
 /// Runs scenarios and compares them; unnamed ones are named by their differences.
 #[pyfunction]
@@ -45,17 +45,19 @@ pub(crate) fn compare(
         let found = labels(&all);
         all.iter_mut().zip(found).for_each(|((name, _), label)| *name = label);
     }
-    let compared = listening(py, progress, |hear| {
+    let compared = run_interruptible(py, progress, |state| {
         let mut answers = Vec::new();
         for (at, (name, scenario)) in all.iter().enumerate() {
-            let answer = variants::answer(scenario, RunChoice::Typical, &mut |now| told(hear, now));
+            let answer = variants::answer(scenario, RunChoice::Typical, &mut |now| {
+                report_advance(state, now)
+            });
             answers.push((name.clone(), answer.map_err(|failure| (failure, at))?));
-            if hear.stopped() {
+            if state.stopped() {
                 break;
             }
         }
-        let answers =
-            aligned(answers, &mut |now| told(hear, now)).map_err(|failure| (failure, 0))?;
+        let answers = aligned(answers, &mut |now| report_advance(state, now))
+            .map_err(|failure| (failure, 0))?;
         Ok(sides(answers))
     })?;
     let compared =
@@ -78,9 +80,9 @@ pub(crate) fn heights(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
     let request = HeightsRequest { rack, barrel, records, synthetic, seed, highest };
-    let found = listening(py, progress, |hear| {
+    let found = run_interruptible(py, progress, |state| {
         all_heights(&request, &folder, &RunOptions::default(), &|done, of| {
-            hear.tell(done as f64, of as f64, "runs")
+            state.report(done as f64, of as f64, "runs")
         })
     })?;
     let found = found.map_err(|error| match error {
@@ -89,7 +91,7 @@ pub(crate) fn heights(
         | HeightsError::Barrel(..)
         | HeightsError::Levels(_)
         | HeightsError::Stack(_)
-        | HeightsError::Decision(_)) => errors::told(other),
+        | HeightsError::Decision(_)) => errors::study_result(other),
     })?;
     let mut document = found.document.clone();
     document.warnings.clone_from(&found.warnings);
@@ -114,7 +116,7 @@ pub(crate) fn protect(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
     let shaking = match (site, velocities) {
-        (Some(file), _) => Shaking::Site(SiteHazard::load(&file).map_err(errors::told)?),
+        (Some(file), _) => Shaking::Site(SiteHazard::load(&file).map_err(errors::study_result)?),
         (None, Some(velocities)) => Shaking::Levels(velocities),
         (None, None) => Shaking::Levels(VELOCITIES.to_vec()),
     };
@@ -128,10 +130,10 @@ pub(crate) fn protect(
         budget,
         seed,
     };
-    let found = listening(py, progress, |hear| {
-        let tell = |Reached { done, of, .. }| hear.tell(done as f64, of as f64, "runs");
-        let mut found = rank(&request, &folder, &RunOptions::default(), &tell)?;
-        found.show_before_and_after(&mut |now| told(hear, now))?;
+    let found = run_interruptible(py, progress, |state| {
+        let report = |Reached { done, of, .. }| state.report(done as f64, of as f64, "runs");
+        let mut found = rank(&request, &folder, &RunOptions::default(), &report)?;
+        found.show_before_and_after(&mut |now| report_advance(state, now))?;
         Ok(found)
     })?;
     let found = found.map_err(|error| match error {
@@ -141,7 +143,7 @@ pub(crate) fn protect(
         ProtectError::Stack(failure) => errors::run(&failure, &request.scenario),
         other @ (ProtectError::NoStack(_)
         | ProtectError::Hazard { .. }
-        | ProtectError::Decision(_)) => errors::told(other),
+        | ProtectError::Decision(_)) => errors::study_result(other),
     })?;
     Page::of(&found.to_document(), found.document)
 }
@@ -154,18 +156,18 @@ pub(crate) fn score(
     folder: PathBuf,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
-    let sheet = listening(py, progress, |hear| {
-        let tell = |done: u64, of: u64| hear.tell(done as f64, of as f64, "runs");
+    let sheet = run_interruptible(py, progress, |state| {
+        let report = |done: u64, of: u64| state.report(done as f64, of as f64, "runs");
         let protocol = Protocol::rockscore();
-        score_of(&scenario.inner, &protocol, &folder, &RunOptions::default(), &tell)
+        score_of(&scenario.inner, &protocol, &folder, &RunOptions::default(), &report)
     })?;
     let sheet = sheet.map_err(|error| match error {
         ScoreError::Study(error) => errors::study(error),
         ScoreError::Ground(error) => errors::ground(&error),
         ScoreError::Stack(failure) => errors::run(&failure, &scenario.inner),
-        ScoreError::State { ref source, .. } => errors::told(format!("{error}: {source}")),
-        ScoreError::Curve { ref source, .. } => errors::told(format!("{error}: {source}")),
-        other @ (ScoreError::NoStack(_) | ScoreError::Decision(_)) => errors::told(other),
+        ScoreError::State { ref source, .. } => errors::study_result(format!("{error}: {source}")),
+        ScoreError::Curve { ref source, .. } => errors::study_result(format!("{error}: {source}")),
+        other @ (ScoreError::NoStack(_) | ScoreError::Decision(_)) => errors::study_result(other),
     })?;
     Page::of(&sheet.to_document(), sheet.document)
 }
@@ -217,9 +219,9 @@ pub(crate) fn reproduce(
     studies: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Page> {
-    let found = listening(py, progress, |hear| {
+    let found = run_interruptible(py, progress, |state| {
         run_all(record.as_deref(), studies, &|done, of| -> ControlFlow<()> {
-            hear.tell(done as f64, of as f64, "runs")
+            state.report(done as f64, of as f64, "runs")
         })
     })?;
     let found = found.map_err(|error| match error {

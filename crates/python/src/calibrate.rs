@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors;
-use crate::listen::listening;
+use crate::interruptible::run_interruptible;
 use crate::page::Page;
 use crate::scenario::Scenario;
 
@@ -109,9 +109,9 @@ pub(crate) fn calibrate_response(
     let parameters = parameters(&fit)?;
     let until = until.map(|until| positive("until", until, Dimension::TIME)).transpose()?;
     let table = table(name, text)?;
-    let found = listening(py, progress, |hear| {
+    let found = run_interruptible(py, progress, |state| {
         response::response(&scenario.inner, &table, &parameters, until, &|done| {
-            hear.tell(done as f64, f64::NAN, "simulations")
+            state.report(done as f64, f64::NAN, "simulations")
         })
     })?;
     page(found, Some(scenario))
@@ -149,10 +149,10 @@ pub(crate) fn calibrate_collapse(
         seed,
         lanes: None,
     };
-    let seen =
+    let observations =
         Observations::read(&table(name, text)?, &settings.errors).map_err(errors::general)?;
     let mut scenarios = Vec::new();
-    for named in seen.scenarios() {
+    for named in observations.scenarios() {
         let Some(named) = named else {
             scenarios.push((*scenario.inner).clone());
             continue;
@@ -163,9 +163,9 @@ pub(crate) fn calibrate_collapse(
         })?;
         scenarios.push((*found.inner).clone());
     }
-    let found = listening(py, progress, |hear| {
-        collapse::collapse(&seen, &scenarios, &parameters, &settings, &|done, of| {
-            hear.tell(done as f64, of as f64, "runs")
+    let found = run_interruptible(py, progress, |state| {
+        collapse::collapse(&observations, &scenarios, &parameters, &settings, &|done, of| {
+            state.report(done as f64, of as f64, "runs")
         })
     })?;
     page(found, Some(scenario))

@@ -118,7 +118,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
         | StudyError::Folder { folder: path, .. } => {
             raise("StudyError", error.to_string(), Spot::at(path))
         }
-        // Only a signal stops it; the caught signal is raised by `listening`.
+        // Only a signal stops it; the caught signal is raised by `run_interruptible`.
         StudyError::Stopped => PyKeyboardInterrupt::new_err(()),
         StudyError::BuiltIn(_) | StudyError::Table(_) | StudyError::Chunk(_) => {
             raise("StudyError", error.to_string(), Spot::default())
@@ -127,7 +127,7 @@ pub(crate) fn study(error: StudyError) -> PyErr {
 }
 
 /// Converts the error of a study that supports no decision or cannot be written.
-pub(crate) fn told<E: ToString>(error: E) -> PyErr {
+pub(crate) fn study_result<E: ToString>(error: E) -> PyErr {
     raise("StudyError", error.to_string(), Spot::default())
 }
 

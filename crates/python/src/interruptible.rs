@@ -9,13 +9,13 @@ use std::time::Duration;
 use pyo3::prelude::*;
 
 /// Polling interval for signals; far below the promised second.
-pub(crate) const LISTEN: Duration = Duration::from_millis(50);
+pub(crate) const POLL: Duration = Duration::from_millis(50);
 
 /// Progress and cancellation of work.
 #[derive(Default)]
-pub(crate) struct Hear {
+pub(crate) struct ProgressState {
     stop: AtomicBool,
-    told: Mutex<Option<Latest>>,
+    latest: Mutex<Option<Latest>>,
 }
 
 /// Latest progress: amount done, total, and unit.
@@ -26,10 +26,11 @@ struct Latest {
     what: &'static str,
 }
 
-impl Hear {
+impl ProgressState {
     /// Reports the progress of the work.
-    pub(crate) fn tell(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
-        *self.told.lock().unwrap_or_else(PoisonError::into_inner) = Some(Latest { done, of, what });
+    pub(crate) fn report(&self, done: f64, of: f64, what: &'static str) -> ControlFlow<()> {
+        *self.latest.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Latest { done, of, what });
         if self.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
@@ -39,9 +40,9 @@ impl Hear {
     }
 
     fn pass_on(&self, last: &mut Option<Latest>, progress: &Bound<'_, PyAny>) -> PyResult<()> {
-        let told = *self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(Latest { done, of, what }) = told.filter(|_| told != *last) {
-            *last = told;
+        let latest = *self.latest.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(Latest { done, of, what }) = latest.filter(|_| latest != *last) {
+            *last = latest;
             progress.call1((done, of, what))?;
         }
         Ok(())
@@ -50,40 +51,39 @@ impl Hear {
 
 /// Runs work on another thread without the lock; once it has stopped, raises the exception of a signal or of
 /// `progress`.
-pub(crate) fn listening<T: Send>(
+pub(crate) fn run_interruptible<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&Hear) -> T + Send,
+    work: impl FnOnce(&ProgressState) -> T + Send,
 ) -> PyResult<T> {
-    let hear = Hear::default();
+    let state = ProgressState::default();
     let mut last = None;
     let mut raised = None;
     let done = std::thread::scope(|scope| {
         let (give, take) = sync_channel(1);
-        let hear = &hear;
+        let state = &state;
         let worker = scope.spawn(move || {
             // The receiver is dropped only after it has received.
-            let _ = give.send(work(hear));
+            let _ = give.send(work(state));
         });
         let take = Mutex::new(take);
         loop {
-            let got = py.detach(|| {
-                take.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LISTEN)
-            });
+            let got = py
+                .detach(|| take.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(POLL));
             match got {
                 Ok(done) => break Ok(done),
                 Err(RecvTimeoutError::Disconnected) => break Err(worker.join()),
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if raised.is_none() {
-                let heard = py.check_signals();
-                let heard = heard.and_then(|()| match progress {
-                    Some(progress) => hear.pass_on(&mut last, progress),
+                let checked = py.check_signals();
+                let checked = checked.and_then(|()| match progress {
+                    Some(progress) => state.pass_on(&mut last, progress),
                     None => Ok(()),
                 });
-                if let Err(error) = heard {
+                if let Err(error) = checked {
                     raised = Some(error);
-                    hear.stop.store(true, Ordering::Relaxed);
+                    state.stop.store(true, Ordering::Relaxed);
                 }
             }
         }
@@ -94,7 +94,7 @@ pub(crate) fn listening<T: Send>(
     match done {
         Ok(done) => {
             if let Some(progress) = progress {
-                hear.pass_on(&mut last, progress)?;
+                state.pass_on(&mut last, progress)?;
             }
             Ok(done)
         }

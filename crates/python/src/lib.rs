@@ -6,10 +6,10 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "functions take what the interpreter gives")]
 
-mod ask;
+mod analyses;
 mod calibrate;
 mod errors;
-mod listen;
+mod interruptible;
 mod page;
 mod record;
 mod run;
@@ -24,7 +24,7 @@ mod view;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::ask::{compare, heights, protect, reproduce, score, select};
+    use crate::analyses::{compare, heights, protect, reproduce, score, select};
     #[pymodule_export]
     use crate::calibrate::{
         calibrate_collapse, calibrate_drop, calibrate_friction, calibrate_response,

@@ -76,8 +76,8 @@ fn chosen<T: Copy, const N: usize>(
             "there is no {what} {other:?}; there are {known}"
         )));
     }
-    let asked = |one: &T| names.is_empty() || names.iter().any(|given| *given == name(*one));
-    Ok(all.into_iter().filter(asked).collect())
+    let requested = |one: &T| names.is_empty() || names.iter().any(|given| *given == name(*one));
+    Ok(all.into_iter().filter(requested).collect())
 }
 
 fn missing(what: &str) -> PyErr {

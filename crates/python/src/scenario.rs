@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors;
-use crate::listen::{Hear, LISTEN, listening};
+use crate::interruptible::{POLL, ProgressState, run_interruptible};
 use crate::record::{Record, of_motion};
 use crate::run::{Glance, Run};
 use crate::space::SpatialRun;
@@ -118,19 +118,20 @@ impl Scenario {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Run> {
         let (scenario, count) = with_variants(&self.inner, variants)?;
-        let asked = asked(variant, count)?;
-        let answer = listening(py, progress, |hear| {
-            let mut answer = variants::answer(&scenario, asked, &mut |now| told(hear, now))?;
-            if remedy && !hear.stopped() {
+        let choice = run_choice(variant, count)?;
+        let answer = run_interruptible(py, progress, |state| {
+            let mut answer =
+                variants::answer(&scenario, choice, &mut |now| report_advance(state, now))?;
+            if remedy && !state.stopped() {
                 let found = variants::remedy(&answer, &|done| {
-                    hear.tell(done as f64, f64::NAN, "runs of what would have helped")
+                    state.report(done as f64, f64::NAN, "runs of what would have helped")
                 })?;
                 answer.decides.summary.remedy = found;
             }
             let mut repeated: Option<Verification> = None;
-            if repeats && !hear.stopped() {
+            if repeats && !state.stopped() {
                 let found = verify(&answer.decides.run, &mut |now| {
-                    hear.tell(now.time, now.end_time, "s of repeats")
+                    state.report(now.time, now.end_time, "s of repeats")
                 })?;
                 answer.decides.summary.verification = Some(found.clone());
                 repeated = Some(found);
@@ -157,13 +158,14 @@ impl Scenario {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<SpatialRun> {
         let (scenario, count) = with_variants(&self.inner, variants)?;
-        let asked = asked(variant, count)?;
-        let answer = listening(py, progress, |hear| {
-            let mut answer =
-                barrelstack_space::answer(&scenario, asked, &mut |now| told(hear, now))?;
-            if remedy && !hear.stopped() {
+        let choice = run_choice(variant, count)?;
+        let answer = run_interruptible(py, progress, |state| {
+            let mut answer = barrelstack_space::answer(&scenario, choice, &mut |now| {
+                report_advance(state, now)
+            })?;
+            if remedy && !state.stopped() {
                 answer.summary.remedy = barrelstack_space::variants::remedy(&answer, &|done| {
-                    hear.tell(done as f64, f64::NAN, "runs of what would have helped")
+                    state.report(done as f64, f64::NAN, "runs of what would have helped")
                 })?;
             }
             Ok(answer)
@@ -188,19 +190,19 @@ impl Scenario {
             let mut listened = Instant::now();
             let mut eye = |glance: barrelstack::watch::Glance<'_>| {
                 let due = glance.steps.is_multiple_of(every.get());
-                if !due && listened.elapsed() < LISTEN {
+                if !due && listened.elapsed() < POLL {
                     return ControlFlow::Continue(());
                 }
                 listened = Instant::now();
-                let told = Python::attach(|py| {
+                let observed = Python::attach(|py| {
                     py.check_signals()?;
                     if !due {
                         return Ok(false);
                     }
-                    let seen = Bound::new(py, Glance::of(py, &glance)?)?;
-                    look.bind(py).call1((seen,))?.is_truthy()
+                    let view = Bound::new(py, Glance::of(py, &glance)?)?;
+                    look.bind(py).call1((view,))?.is_truthy()
                 });
-                match told {
+                match observed {
                     Ok(false) => ControlFlow::Continue(()),
                     Ok(true) => ControlFlow::Break(()),
                     Err(error) => {
@@ -209,7 +211,7 @@ impl Scenario {
                     }
                 }
             };
-            // At every step, so that Ctrl-C is heard between two calls.
+            // At every step, so that Ctrl-C is handled between two calls.
             let run =
                 stated.run_before(stated.ground()?, Pace::Steps(NonZero::<u64>::MIN), &mut eye)?;
             let summary = Summary::of(&run, None);
@@ -228,7 +230,7 @@ impl Scenario {
 }
 
 /// Returns the selection of the variant to show, among a number of variants.
-fn asked(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
+fn run_choice(variant: Option<u32>, count: u32) -> PyResult<RunChoice> {
     match variant {
         Some(number) if number > count => Err(PyValueError::new_err(format!(
             "there is no variant {number}: there are variants 1 to {count}, and 0 is the stack as it is stated"
@@ -260,11 +262,11 @@ pub(crate) fn with_variants(
 }
 
 /// Reports the progress of a run and its variants.
-pub(crate) fn told(hear: &Hear, now: Advance) -> ControlFlow<()> {
+pub(crate) fn report_advance(state: &ProgressState, now: Advance) -> ControlFlow<()> {
     match now {
-        Advance::Variants { done, of } => hear.tell(done as f64, of as f64, "variants"),
+        Advance::Variants { done, of } => state.report(done as f64, of as f64, "variants"),
         Advance::First { .. } => ControlFlow::Continue(()),
-        Advance::Run(now) => hear.tell(now.time, now.end_time, "s"),
+        Advance::Run(now) => state.report(now.time, now.end_time, "s"),
     }
 }
 

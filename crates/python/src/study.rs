@@ -14,7 +14,7 @@ use barrelstack_campaign::study::{
 use pyo3::prelude::*;
 
 use crate::errors;
-use crate::listen::{Hear, listening};
+use crate::interruptible::{ProgressState, run_interruptible};
 use crate::page::Page;
 use crate::record::{Record, of_motion};
 use crate::table::Table;
@@ -95,8 +95,8 @@ impl Study {
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         let options = RunOptions { threads, lanes: None };
-        let done = listening(py, progress, |hear| {
-            self.inner.run_all(&folder, &options, &|now| told(hear, now))?;
+        let done = run_interruptible(py, progress, |state| {
+            self.inner.run_all(&folder, &options, &|now| report_cases(state, now))?;
             collect(&folder, &mut |_, _| Ok(())).map(drop)
         })?;
         done.map_err(errors::study)
@@ -104,8 +104,8 @@ impl Study {
 
     /// Runs one chunk, unless its shard exists; returns `true` if it was run.
     fn run_chunk(&self, py: Python<'_>, folder: PathBuf, chunk: usize) -> PyResult<bool> {
-        let done = listening(py, None, |hear| {
-            self.inner.run_chunk(&folder, chunk, Width::widest(), &|| hear.stopped())
+        let done = run_interruptible(py, None, |state| {
+            self.inner.run_chunk(&folder, chunk, Width::widest(), &|| state.stopped())
         })?;
         Ok(done.map_err(errors::study)? != ChunkRun::Before)
     }
@@ -127,8 +127,8 @@ impl Study {
     }
 }
 
-fn told(hear: &Hear, now: &Progress) -> ControlFlow<()> {
-    hear.tell((now.before + now.now) as f64, now.cases as f64, "cases")
+fn report_cases(state: &ProgressState, now: &Progress) -> ControlFlow<()> {
+    state.report((now.before + now.now) as f64, now.cases as f64, "cases")
 }
 
 /// Returns names and texts of the bundled studies.
@@ -158,7 +158,7 @@ pub(crate) fn provenance(py: Python<'_>, folder: PathBuf) -> PyResult<(String, V
 }
 
 fn request(hazard: Option<&Path>, years: Option<f64>) -> PyResult<Request> {
-    let hazard = hazard.map(SiteHazard::load).transpose().map_err(errors::told)?;
+    let hazard = hazard.map(SiteHazard::load).transpose().map_err(errors::study_result)?;
     Ok(Request { hazard, years })
 }
 
@@ -171,7 +171,8 @@ pub(crate) fn decision(
     years: Option<f64>,
 ) -> PyResult<Page> {
     let request = request(hazard.as_deref(), years)?;
-    let (decision, _) = py.detach(|| decide_folder(&folder, &request)).map_err(errors::told)?;
+    let (decision, _) =
+        py.detach(|| decide_folder(&folder, &request)).map_err(errors::study_result)?;
     Page::of(&decision.to_document(), decision.document)
 }
 
@@ -183,7 +184,7 @@ pub(crate) fn export(
     asset: &str,
 ) -> PyResult<(Vec<NamedText>, Vec<String>)> {
     let decided = py.detach(|| decide_folder(&folder, &Request::default()));
-    let (decision, made) = decided.map_err(errors::told)?;
-    let found = exported(&decision, &made, asset).map_err(errors::told)?;
+    let (decision, made) = decided.map_err(errors::study_result)?;
+    let found = exported(&decision, &made, asset).map_err(errors::study_result)?;
     Ok((found.files, found.notes))
 }

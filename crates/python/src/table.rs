@@ -29,7 +29,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyAnyMethods, PyBool, PyBytes, PyCapsule, PyFloat, PyInt, PyString};
 
 use crate::errors;
-use crate::listen::listening;
+use crate::interruptible::run_interruptible;
 use crate::record::Record;
 use crate::scenario::{Scenario, bytes};
 use crate::view::Numbers;
@@ -441,7 +441,7 @@ pub(crate) fn ensemble(
     let count = cases.__len__();
     let all =
         Cases { base: &base.inner, columns: &cases.columns, records, grounds: Grounds::default() };
-    let found = listening(py, progress, |hear| {
+    let found = run_interruptible(py, progress, |state| {
         // Fail early: check every row before the work.
         let numbers: Vec<usize> = (0..count).collect();
         let kinds =
@@ -463,10 +463,10 @@ pub(crate) fn ensemble(
             None,
             &|_| {
                 let now = done.fetch_add(1, Ordering::Relaxed) + 1;
-                let _: ControlFlow<()> = hear.tell(now as f64, count as f64, "cases");
+                let _: ControlFlow<()> = state.report(now as f64, count as f64, "cases");
                 ControlFlow::Continue(())
             },
-            &|| hear.stopped(),
+            &|| state.stopped(),
         );
         Ok(table)
     })?;

@@ -30,16 +30,16 @@ def by_command(command: str, *words: str) -> Any:
 def test_a_comparison_has_the_numbers_of_the_command(command: str, tmp_path: Path) -> None:
     sets = ["stack.levels=3", "run.duration='5 s'"]
     words = [word for one in sets for word in ("--set", one)]
-    told = by_command(
+    printed = by_command(
         command, "compare", "candia-8-barrels", *words, "--against", "stack.levels=2", "--variants", "6",
         "--out", str(tmp_path / "out"), "--quiet",
     )  # fmt: skip
     stack = Scenario.load("candia-8-barrels").set({"stack.levels": 3, "run.duration": "5 s"})
     found = compare([stack, stack.set("stack.levels", 2)], variants=6)
-    for document in (told, found.document):
+    for document in (printed, found.document):
         for run in document["runs"]:
             run["summary"]["run"].pop("wall_seconds", None)
-    assert found.document == told
+    assert found.document == printed
     assert [one.path for one in found.differences] == ["stack.levels"]
     assert found.html() == (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     found.report(tmp_path / "both.pdf")
@@ -52,18 +52,18 @@ def test_a_comparison_has_the_numbers_of_the_command(command: str, tmp_path: Pat
 
 def test_protections_are_those_of_the_command(command: str, tmp_path: Path) -> None:
     words = ["--set", "stack.levels=2", "--pgv", "50 cm/s", "--count", "4", "--rounds", "1", "--budget", "60", "--quiet"]
-    told = by_command(command, "protect", "candia-8-barrels", *words, "--out", str(tmp_path / "theirs"))
+    printed = by_command(command, "protect", "candia-8-barrels", *words, "--out", str(tmp_path / "theirs"))
     # The studies are those of the command: another request would refuse their folders.
     shutil.copytree(tmp_path / "theirs", tmp_path / "ours")
     stack = Scenario.load("candia-8-barrels").set("stack.levels", 2)
     start = time.perf_counter()
     found = protect(stack, tmp_path / "ours", pgv=["50 cm/s"], count=4, rounds=1, budget=60.0)
     print(f"{len(found.table)} protections read and drawn in {time.perf_counter() - start:.1f} s")
-    assert found.document == told
+    assert found.document == printed
     assert found.html() == (tmp_path / "theirs" / "index.html").read_text(encoding="utf-8")
     names = found.table["name"]
-    assert found.table["barrels_fallen"] == [one["barrels_fallen"]["mean"] for one in told["protections"]]
-    assert found.changes(names[0]) == told["protections"][0]["changes"]
+    assert found.table["barrels_fallen"] == [one["barrels_fallen"]["mean"] for one in printed["protections"]]
+    assert found.changes(names[0]) == printed["protections"][0]["changes"]
     with pytest.raises(ValueError, match="site or pgv"):
         protect(stack, tmp_path / "no", site="hazard.csv", pgv=["1 m/s"])
     with pytest.raises(barrelstack.StudyError, match="free scene"):
@@ -72,13 +72,13 @@ def test_protections_are_those_of_the_command(command: str, tmp_path: Path) -> N
 
 @pytest.mark.heavy
 def test_a_score_is_that_of_the_command(command: str, tmp_path: Path) -> None:
-    told = by_command(command, "score", "demo-napa", "--out", str(tmp_path / "theirs"), "--quiet")
+    printed = by_command(command, "score", "demo-napa", "--out", str(tmp_path / "theirs"), "--quiet")
     shutil.copytree(tmp_path / "theirs", tmp_path / "ours")
     found = score("demo-napa", tmp_path / "ours")
-    assert found.document == told
-    assert found.score == told["score"]
+    assert found.document == printed
+    assert found.score == printed["score"]
     assert found.html() == (tmp_path / "theirs" / "index.html").read_text(encoding="utf-8")
-    assert len(found.table) == len(told["states"])
+    assert len(found.table) == len(printed["states"])
 
 
 def test_a_free_scene_has_no_score(tmp_path: Path) -> None:
@@ -88,10 +88,12 @@ def test_a_free_scene_has_no_score(tmp_path: Path) -> None:
 
 @pytest.mark.heavy
 def test_heights_are_those_of_the_command(command: str, tmp_path: Path) -> None:
-    told = by_command(command, "heights", "--synthetic=0", "--highest=2", "--out", str(tmp_path / "theirs"), "--quiet")
+    printed = by_command(
+        command, "heights", "--synthetic=0", "--highest=2", "--out", str(tmp_path / "theirs"), "--quiet"
+    )
     found = heights(tmp_path / "ours", synthetic=0, highest=2)
-    assert found.document == told
-    assert len(found.table) == sum(len(height["at"]) for height in told["heights"])
+    assert found.document == printed
+    assert len(found.table) == sum(len(height["at"]) for height in printed["heights"])
 
 
 def test_an_unknown_rack_has_no_heights(tmp_path: Path) -> None:
@@ -135,10 +137,10 @@ def test_a_calibration_has_the_numbers_of_the_command(
 ) -> None:
     path = tmp_path / "test.csv"
     path.write_text(text)
-    told = by_command(command, "calibrate", test, str(path), *words)
+    printed = by_command(command, "calibrate", test, str(path), *words)
     make = getattr(Calibration, test)
     found = make(path, **more)
-    assert found.document == told
+    assert found.document == printed
     head, *rows = [line.split(",") for line in text.strip().split("\n")]
     columns = {name: [float(row[at]) for row in rows] for at, name in enumerate(head)}
     assert make(columns, **more).estimates == found.estimates
@@ -146,7 +148,7 @@ def test_a_calibration_has_the_numbers_of_the_command(
     assert "barrel-rack" in found.scenario or "rack-ground" in found.scenario
 
 
-def test_what_is_wrong_with_a_test_is_told() -> None:
+def test_errors_of_a_test_are_raised() -> None:
     with pytest.raises(barrelstack.Error, match='found "tilt"'):
         Calibration.friction({"tilt (deg)": [20.0, 21.0]})
     with pytest.raises(ValueError, match="both or none"):

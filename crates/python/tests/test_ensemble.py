@@ -13,29 +13,29 @@ MU = "interface.rack-ground.friction.coefficient"
 
 
 @pytest.fixture(scope="module")
-def told() -> Table:
+def table() -> Table:
     return ensemble([{MU: mu, "motion.scale.factor": f} for mu in (0.2, 0.4) for f in (0.5, 1.0)], BASE)
 
 
-def test_a_polars_frame_gives_the_table_of_a_list(told: Table) -> None:
+def test_a_polars_frame_gives_the_table_of_a_list(table: Table) -> None:
     pl = pytest.importorskip("polars", reason="no polars")
     frame = pl.DataFrame({MU: [0.2, 0.2, 0.4, 0.4], "motion.scale.factor": [0.5, 1.0, 0.5, 1.0]})
     found = ensemble(frame, BASE)
-    assert found.to_csv() == told.to_csv()
+    assert found.to_csv() == table.to_csv()
     back = pl.DataFrame(found)
-    assert back["outcome"].to_list() == told["outcome"]
+    assert back["outcome"].to_list() == table["outcome"]
     assert back["steps"].dtype == pl.Int64
 
 
-def test_pandas_and_pyarrow_are_read_and_read_it(told: Table) -> None:
+def test_pandas_and_pyarrow_are_read_and_read_it(table: Table) -> None:
     pd = pytest.importorskip("pandas", reason="no pandas")
     pa = pytest.importorskip("pyarrow", reason="no pyarrow")
     frame = pd.DataFrame({MU: np.float32([0.25, 0.5]), "stack.levels": np.int8([2, 3])})
     by_pandas = ensemble(frame, BASE)
     by_arrow = ensemble(pa.table({MU: [0.25, 0.5], "stack.levels": [2, 3]}), BASE)
     assert by_pandas.to_csv() == by_arrow.to_csv()
-    assert pd.DataFrame.from_arrow(told).shape == (4, len(told.columns))
-    assert pa.table(told).column_names == list(told)
+    assert pd.DataFrame.from_arrow(table).shape == (4, len(table.columns))
+    assert pa.table(table).column_names == list(table)
 
 
 def test_a_column_of_numbers_may_state_its_unit_and_cells_may_be_empty() -> None:
@@ -60,7 +60,7 @@ def test_a_record_shakes_its_case_as_it_shakes_a_run() -> None:
         ensemble([{"record": "x"}], BASE)
 
 
-def test_what_is_wrong_with_a_row_is_told_before_the_work() -> None:
+def test_errors_of_a_row_are_raised_before_the_work() -> None:
     with pytest.raises(ScenarioError, match="must be") as caught:
         ensemble([{"stack.levels": 2}, {"stack.levels": -9}], BASE)
     assert caught.value.row == 1
@@ -87,14 +87,14 @@ def test_cases_of_many_topologies_keep_their_order() -> None:
         assert len({found["steps"][at] for at in rows}) == 1
 
 
-def test_columns_say_what_they_mean(told: Table) -> None:
-    meanings = {column.name: column for column in told.columns}
+def test_columns_say_what_they_mean(table: Table) -> None:
+    meanings = {column.name: column for column in table.columns}
     assert meanings["first_loss"].unit == "s"
     assert "left its seat" in meanings["first_loss"].meaning
-    assert np.isnan(told.numbers("first_fall")).sum() == told["first_fall"].count(None)
+    assert np.isnan(table.numbers("first_fall")).sum() == table["first_fall"].count(None)
     with pytest.raises(KeyError):
-        told["no such"]
+        table["no such"]
     with pytest.raises(TypeError, match="holds texts"):
-        told.numbers("outcome")
-    assert len(told) == 4
+        table.numbers("outcome")
+    assert len(table) == 4
     assert barrelstack.__version__ in ("0.1.0",)

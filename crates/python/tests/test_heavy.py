@@ -190,17 +190,17 @@ def slurm(tmp_path: Path) -> Iterator[dict[str, str]]:
     children += [subprocess.Popen([daemon, "-D"], **quiet) for daemon in ("slurmctld", "slurmd")]
     try:
         for _ in range(20):
-            told = subprocess.run(
+            done = subprocess.run(
                 ["timeout", "5", "sinfo", "-h", "-o", "%T"], env=environment, capture_output=True, text=True, check=False
             )
-            if told.stdout.strip().startswith("idle"):
+            if done.stdout.strip().startswith("idle"):
                 break
             if any(child.poll() is not None for child in children):
                 logs = [(tmp_path / log).read_text()[-400:] for log in ("ctld.log", "d.log") if (tmp_path / log).exists()]
                 pytest.skip("Slurm's daemons do not stay: " + " | ".join(logs))
             time.sleep(0.5)
         else:
-            pytest.skip(f"Slurm's node does not come up: {told.stdout} {told.stderr}")
+            pytest.skip(f"Slurm's node does not come up: {done.stdout} {done.stderr}")
         yield environment
     finally:
         for child in children:

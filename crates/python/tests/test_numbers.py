@@ -35,15 +35,15 @@ def test_every_number_of_a_summary_has_the_bits_of_the_command(
     command: str, name: str, changes: list[str]
 ) -> None:
     sets = [word for change in changes for word in ("--set", change)]
-    told = by_command(command, "run", name, *sets, "--no-remedy", "--json", "--quiet")
+    printed = by_command(command, "run", name, *sets, "--no-remedy", "--json", "--quiet")
     scenario = Scenario.load(name)
     for change in changes:
         path, value = change.split("=")
         scenario = scenario.set(path, json.loads(value.replace("'", '"')))
     found = scenario.run().summary
     # Wall-clock times are not results.
-    told["run"].pop("wall_seconds", None), found["run"].pop("wall_seconds", None)
-    assert found == told
+    printed["run"].pop("wall_seconds", None), found["run"].pop("wall_seconds", None)
+    assert found == printed
     assert len(json.dumps(found)) > 1000
 
 
@@ -51,12 +51,12 @@ def test_every_number_of_a_summary_has_the_bits_of_the_command(
 def test_what_would_have_helped_is_what_the_command_finds(command: str) -> None:
     changes = {"stack.levels": 4, "imperfections.variants": 6, "stack.view": "transverse"}
     sets = [word for path, value in changes.items() for word in ("--set", f"{path}={value}")]
-    told = by_command(command, "run", "demo-napa", *sets, "--json", "--quiet")["remedy"]
+    printed = by_command(command, "run", "demo-napa", *sets, "--json", "--quiet")["remedy"]
     found = Scenario.load("demo-napa").set(changes).run(remedy=True).summary["remedy"]
-    assert told is not None
+    assert printed is not None
     # Only the command suggests arguments.
-    told.pop("comparison"), found.pop("comparison")
-    assert found == told
+    printed.pop("comparison"), found.pop("comparison")
+    assert found == printed
 
 
 STUDY = """
@@ -87,32 +87,32 @@ def test_the_table_of_a_study_is_byte_for_byte_that_of_the_command(command: str,
     file.write_text(STUDY)
     subprocess.run([command, "study", str(file), "--out", str(tmp_path / "a"), "--quiet"], check=True, capture_output=True)
     study = Study.load(file)
-    told: list[tuple[float, float, str]] = []
-    table = study.run(tmp_path / "b", progress=lambda *now: told.append(now))
+    reports: list[tuple[float, float, str]] = []
+    table = study.run(tmp_path / "b", progress=lambda *now: reports.append(now))
     for name in ("table.csv", "table.parquet", "provenance.json", "columns.csv"):
         assert (tmp_path / "b" / name).read_bytes() == (tmp_path / "a" / name).read_bytes(), name
     assert table.to_csv() == (tmp_path / "a" / "table.csv").read_text()
     assert table["outcome"] == study.table()["outcome"]
-    assert told[-1] == (12.0, 12.0, "cases")
+    assert reports[-1] == (12.0, 12.0, "cases")
     assert study.plan(tmp_path / "b") == []
 
 
 def test_cases_of_a_table_have_the_bits_of_single_runs_and_of_a_study(tmp_path: Path) -> None:
     study = Study(STUDY)
-    told = study.table()
+    expected = study.table()
     cases = [
         {"interface.rack-ground.friction.coefficient": mu, "stack.levels": levels, "motion.scale.pgv (m/s)": level}
         for mu, levels, level in zip(
-            told["interface.rack-ground.friction.coefficient"], told["stack.levels"], told["level"], strict=True
+            expected["interface.rack-ground.friction.coefficient"], expected["stack.levels"], expected["level"], strict=True
         )
     ]
     base = Scenario.load("candia-8-barrels").set(
         {"run.duration": "6 s", "motion": {"bundled": "napa-college-2014"}}
     )
     table = barrelstack.ensemble(cases, base)
-    for column in told.columns:
+    for column in expected.columns:
         if column.role in ("outcome", "demand", "run"):
-            assert table[column.name] == told[column.name], column.name
+            assert table[column.name] == expected[column.name], column.name
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         changes = {path.removesuffix(" (m/s)"): value for path, value in cases[5].items()}

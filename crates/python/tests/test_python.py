@@ -1,4 +1,4 @@
-"""What Python expects of every package: tables for pandas, pickles, copies, one family of exceptions, types."""
+"""Expectations of Python on every package: tables for pandas, pickles, copies, one family of exceptions, types."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ def test_a_scale_reaches_its_target_with_its_unit(napa: Record) -> None:
     assert "scaled by" in napa.scale(2.0).notes[-1]
 
 
-def test_processing_is_told_step_by_step(napa: Record) -> None:
+def test_processing_is_listed_step_by_step(napa: Record) -> None:
     assert napa.stage == "raw"
     done = napa.process("compact", high_pass=0.2)
     assert done.stage == "corrected"

@@ -82,9 +82,9 @@ def test_records_without_the_spectrum_are_left_out(library: Path) -> None:
     with pytest.warns(BarrelstackWarning):
         records = read_folder(library)
     # One of the twelve has two components, and so a median over directions.
-    with pytest.warns(BarrelstackWarning, match="no rotd50 spectrum") as told, pytest.raises(RecordError):
+    with pytest.warns(BarrelstackWarning, match="no rotd50 spectrum") as caught, pytest.raises(RecordError):
         select(records, ([0.5, 1.0], [2.0, 1.0], [0.6, 0.6]), count=5)
-    assert len([one for one in told if "left out" in str(one.message)]) == 11
+    assert len([one for one in caught if "left out" in str(one.message)]) == 11
     with pytest.raises(ValueError, match="level"):
         select(records, ([0.5, 1.0], [2.0, 1.0], [0.6, 0.6]), at=1.0, level="60 cm/s", spectrum="h1", count=5)
     with pytest.raises(OSError, match="nowhere"):
@@ -148,12 +148,12 @@ def test_every_command_has_its_place_in_the_package(command: str, tmp_path: Path
     names = {path.stem.removeprefix("barrelstack-") for path in tmp_path.glob("barrelstack-*.1")}
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     rows = [line.split("|")[1:4] for line in text.splitlines() if line.startswith("| `")]
-    told = {word.replace(" ", "-") for row in rows for word in re.findall(r"`([a-z -]+)`", row[0])}
+    documented = {word.replace(" ", "-") for row in rows for word in re.findall(r"`([a-z -]+)`", row[0])}
     # A command with subcommands is represented by these; each motion of `synth` is one of its kinds.
     groups = {name for name in names if any(other.startswith(f"{name}-") for other in names)}
     alone = {name for name in names if not name.startswith("motion-synth-")}
-    assert alone - groups - told == set()
-    assert told - names == set()
+    assert alone - groups - documented == set()
+    assert documented - names == set()
     for row in rows:
         for word in re.findall(r"`([A-Za-z_.]+)", row[1]):
             thing = barrelstack

@@ -50,11 +50,11 @@ def test_histories_say_what_the_frames_say(run: Run) -> None:
     frames, time = run.frames, run.histories.time
     body = frames.bodies.index("B2.1")
     ground = frames.poses[:, 0, 0]
-    way = frames.poses[:, body, 0] - ground - (frames.poses[0, body, 0] - ground[0])
+    displacement = frames.poses[:, body, 0] - ground - (frames.poses[0, body, 0] - ground[0])
     # Both have their own rates: at common times they hold the same state.
     common, of_frames, of_histories = np.intersect1d(frames.time, time, return_indices=True)
     assert len(common) > 20
-    apart = run.histories["B2.1_displacement_x"][of_histories] - way[of_frames]
+    apart = run.histories["B2.1_displacement_x"][of_histories] - displacement[of_frames]
     # Measured 1e-16 m.
     assert np.abs(apart).max() < 1e-12
     assert frames.poses.shape == (len(frames.time), len(frames.bodies), 3)
@@ -113,7 +113,7 @@ def test_a_plot_has_units_and_names(run: Run) -> None:
     assert any("B2.1" in text.get_text() for text in ax.get_legend().get_texts())
 
 
-def test_both_planes_are_told_with_the_deciding_one_first() -> None:
+def test_both_planes_are_listed_with_the_deciding_one_first() -> None:
     demo = Scenario.load("demo-napa").set({"stack.levels": 2, "run.duration": "3 s"})
     with pytest.warns(barrelstack.BarrelstackWarning):
         run = demo.run(variants=2)
@@ -125,12 +125,12 @@ def test_both_planes_are_told_with_the_deciding_one_first() -> None:
     assert run.variants["variant"] == [0, 1, 2]
 
 
-def test_progress_is_told_and_what_it_raises_ends_the_run() -> None:
+def test_progress_is_reported_and_what_it_raises_ends_the_run() -> None:
     scenario = Scenario.load("candia-8-barrels")
-    told: list[tuple[float, float, str]] = []
-    scenario.run(variants=8, progress=lambda *now: told.append(now))
-    assert {what for _, _, what in told} <= {"variants", "s"}
-    assert told
+    reports: list[tuple[float, float, str]] = []
+    scenario.run(variants=8, progress=lambda *now: reports.append(now))
+    assert {what for _, _, what in reports} <= {"variants", "s"}
+    assert reports
 
     def refuse(*_: object) -> None:
         raise RuntimeError("enough")
@@ -140,18 +140,18 @@ def test_progress_is_told_and_what_it_raises_ends_the_run() -> None:
 
 
 def test_an_observer_sees_every_so_many_steps_and_stops_the_run() -> None:
-    seen: list[tuple[float, int, float]] = []
+    glances: list[tuple[float, int, float]] = []
 
     def look(glance: barrelstack.Glance) -> bool:
-        seen.append((glance.time, glance.steps, glance.twists[1, 0]))
+        glances.append((glance.time, glance.steps, glance.twists[1, 0]))
         return bool(glance.twists[1, 0] < 0.5)
 
     with pytest.warns(barrelstack.BarrelstackWarning, match="stopped"):
         run = Scenario.load("sliding-block").observe(look, every=10)
     assert run.interrupted
-    assert [steps for _, steps, _ in seen] == [10 * at for at in range(len(seen))]
+    assert [steps for _, steps, _ in glances] == [10 * at for at in range(len(glances))]
     # Half of 1 m/s is lost after 0.5 / (0.3 g) s; measured within one call, 10 steps.
-    assert abs(seen[-1][0] - 0.5 / (0.3 * 9.80665)) < 0.005
+    assert abs(glances[-1][0] - 0.5 / (0.3 * 9.80665)) < 0.005
 
     def fail(_: barrelstack.Glance) -> None:
         raise LookupError("mine")

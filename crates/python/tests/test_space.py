@@ -35,12 +35,12 @@ def test_every_number_has_the_bits_of_the_command(
         [command, "run", name, *sets, "--json", "--quiet"], capture_output=True, text=True, check=False
     )
     assert done.stdout, done.stderr
-    told = json.loads(done.stdout)
+    printed = json.loads(done.stdout)
     scenario = Scenario.load(name)
     found = (scenario.set(changes) if changes else scenario).run_in_space().summary
     # Wall-clock times are not results.
-    told["run"].pop("wall_seconds"), found["run"].pop("wall_seconds")
-    assert found == told
+    printed["run"].pop("wall_seconds"), found["run"].pop("wall_seconds")
+    assert found == printed
     assert found["schema"] == "space/1"
 
 
@@ -51,22 +51,22 @@ def test_frames_end_where_the_summary_says(run: SpatialRun) -> None:
     assert frames.twists.shape == (len(frames.time), len(frames.bodies), 6)
     lengths = np.linalg.norm(frames.poses[:, :, 3:], axis=2)
     assert np.abs(lengths - 1).max() < 1e-12  # measured 2e-16
-    told = {body["name"]: body["position"] for body in run.summary["bodies"]}
+    positions = {body["name"]: body["position"] for body in run.summary["bodies"]}
     last = dict(zip(frames.bodies, frames.poses[-1, :, :3], strict=True))
     assert frames.time[-1] == run.summary["run"]["end_time"]
-    for name, place in told.items():
+    for name, place in positions.items():
         assert (last[name] == place).all(), name
 
 
-def test_variants_tell_directions(run: SpatialRun) -> None:
+def test_variants_state_directions(run: SpatialRun) -> None:
     table = run.variants
     assert table is not None
     assert table["variant"] == [0, 1, 2, 3, 4]
     assert {"outcome", "heading", "debris_right", "debris_left", "debris_away", "debris_near"} <= set(table)
     assert run.ensemble is not None
     assert run.directions is not None
-    fell = [way for way in table["heading"][1:] if way is not None]
-    first = [run.directions[f"first_{way}"] for way in ("right", "left", "away", "near")]
+    fell = [heading for heading in table["heading"][1:] if heading is not None]
+    first = [run.directions[f"first_{heading}"] for heading in ("right", "left", "away", "near")]
     assert sum(first) == len(fell)
     assert run.outcome.heading == table["heading"][0]
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, cast
 
 from . import _native
 from ._page import Page
-from ._progress import Progress, told
+from ._progress import Progress, reporting
 from ._quantity import plain
 from ._scenario import Scenario
 
@@ -202,8 +202,8 @@ class Calibration(Page):
             Within a second of Ctrl-C.
         """
         end = None if until is None else plain(until)
-        with told(progress, "calibration from a response") as hear:
-            return cls(_native.calibrate_response(scenario._shaken, *_text(measured), list(fit), end, hear))
+        with reporting(progress, "calibration from a response") as report:
+            return cls(_native.calibrate_response(scenario._shaken, *_text(measured), list(fit), end, report))
 
     @classmethod
     def collapse(
@@ -256,7 +256,7 @@ class Calibration(Page):
             Within a second of Ctrl-C.
         """
         named = [(name, one._shaken) for name, one in (others or {}).items()]
-        with told(progress, "calibration from collapses") as hear:
+        with reporting(progress, "calibration from collapses") as report:
             return cls(
                 _native.calibrate_collapse(
                     scenario._shaken,
@@ -268,6 +268,6 @@ class Calibration(Page):
                     plain(placement),
                     simulations,
                     seed,
-                    hear,
+                    report,
                 )
             )

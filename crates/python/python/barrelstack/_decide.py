@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from . import _native
 from ._page import Page, table_of
-from ._progress import Progress, told
+from ._progress import Progress, reporting
 from ._quantity import plain
 from ._scenario import Scenario
 from ._table import Table
@@ -80,9 +80,9 @@ def compare(
     """
     named = isinstance(runs, Mapping)
     pairs = list(runs.items()) if isinstance(runs, Mapping) else [(one.title, one) for one in runs]
-    with told(progress, f"comparison of {len(pairs)} runs") as hear:
+    with reporting(progress, f"comparison of {len(pairs)} runs") as report:
         native = [(name, one._shaken) for name, one in pairs]
-        return Comparison(_native.compare(native, named, variants, hear))
+        return Comparison(_native.compare(native, named, variants, report))
 
 
 class Heights(Page):
@@ -149,9 +149,9 @@ def heights(
     -----
     The numbers are those of ``barrelstack heights``, bit for bit.
     """
-    with told(progress, "heights") as hear:
+    with reporting(progress, "heights") as report:
         files = [os.fspath(path) for path in records]
-        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, highest, hear))
+        return Heights(_native.heights(os.fspath(folder), rack, barrel, files, synthetic, seed, highest, report))
 
 
 class Protections(Page):
@@ -267,7 +267,7 @@ def protect(
         raise ValueError("a site says how hard it is shaken: give site or pgv")
     stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
     levels = None if pgv is None else sorted({_native.measured("pgv", plain(one)) for one in pgv})
-    with told(progress, f"protections of {stack.title!r}") as hear:
+    with reporting(progress, f"protections of {stack.title!r}") as report:
         return Protections(
             _native.protect(
                 stack._shaken,
@@ -280,7 +280,7 @@ def protect(
                 rounds,
                 budget,
                 seed,
-                hear,
+                report,
             )
         )
 
@@ -340,8 +340,8 @@ def score(scenario: Scenario | str, folder: Path, *, progress: Progress = None) 
     The numbers are those of ``barrelstack score``, bit for bit.
     """
     stack = scenario if isinstance(scenario, Scenario) else Scenario.load(scenario)
-    with told(progress, f"RockScore of {stack.title!r}") as hear:
-        return RockScore(_native.score(stack._shaken, os.fspath(folder), hear))
+    with reporting(progress, f"RockScore of {stack.title!r}") as report:
+        return RockScore(_native.score(stack._shaken, os.fspath(folder), report))
 
 
 class Reproduction(Page):
@@ -383,5 +383,5 @@ def reproduce(record: Path | None = None, *, studies: bool = True, progress: Pro
     -----
     Candia, de la Llera and Almazán (2008), 14th World Conference on Earthquake Engineering.
     """
-    with told(progress, "the cases of the paper") as hear:
-        return Reproduction(_native.reproduce(None if record is None else os.fspath(record), studies, hear))
+    with reporting(progress, "the cases of the paper") as report:
+        return Reproduction(_native.reproduce(None if record is None else os.fspath(record), studies, report))

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _native
-from ._progress import Progress, told
+from ._progress import Progress, reporting
 from ._quantity import plain
 from ._record import Record
 from ._scenario import Scenario
@@ -84,5 +84,5 @@ def ensemble(
         )
     scenario = base if isinstance(base, Scenario) else Scenario.load(base)
     native = {name: record._native for name, record in known.items()}
-    with told(progress, f"ensemble of {len(table)} cases") as hear:
-        return Table(_native.ensemble(scenario._shaken, table, native, hear))
+    with reporting(progress, f"ensemble of {len(table)} cases") as report:
+        return Table(_native.ensemble(scenario._shaken, table, native, report))

@@ -107,7 +107,7 @@ class BarrelstackWarning(UserWarning):
 
 
 def _of_package(error: BaseException) -> bool:
-    """Whether an exception was raised by the package itself and not by a callback or another package."""
+    """Returns True if an exception was raised by the package itself and not by a callback or another package."""
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next

@@ -1,4 +1,4 @@
-"""What is left of a run when it is pickled: everything that was read from it."""
+"""Pickled run: everything that was read from it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Kept"]
 class Kept:
     """The answers of a native run without the run, under the same names.
 
-    Its page and all its numbers are there. What is made of the run itself, such as pictures, asks for the run.
+    Its page and all its numbers are there. What is made of the run itself, such as pictures, needs the run.
 
     Parameters
     ----------

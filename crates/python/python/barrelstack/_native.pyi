@@ -10,7 +10,7 @@ from typing_extensions import CapsuleType
 
 _Array = NDArray[np.float64]
 _Peaks = tuple[tuple[float, float], tuple[float, float]]
-_Told = Callable[[float, float, str], object]
+_Report = Callable[[float, float, str], object]
 
 __all__ = [
     "Glance",
@@ -79,12 +79,12 @@ class Scenario:
         variant: int | None,
         remedy: bool,
         repeats: bool,
-        progress: _Told | None,
+        progress: _Report | None,
     ) -> Run: ...
     @property
     def is_spatial(self) -> bool: ...
     def run_in_space(
-        self, variants: int | None, variant: int | None, remedy: bool, progress: _Told | None
+        self, variants: int | None, variant: int | None, remedy: bool, progress: _Report | None
     ) -> SpatialRun: ...
     def run_before(self, every: int, look: Callable[[Glance], object]) -> Run: ...
 
@@ -270,7 +270,7 @@ class Study:
         self,
         folder: str | os.PathLike[str],
         threads: int | None,
-        progress: _Told | None,
+        progress: _Report | None,
     ) -> None: ...
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool: ...
     def records(self) -> list[tuple[str, Record]]: ...
@@ -306,7 +306,7 @@ def ensemble(
     base: Scenario,
     cases: Table,
     records: dict[str, Record],
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Table: ...
 def read_table(folder: str | os.PathLike[str], write: bool) -> Table: ...
 def provenance(folder: str | os.PathLike[str]) -> tuple[str, list[int]]: ...
@@ -320,7 +320,7 @@ def compare(
     scenarios: list[tuple[str, Scenario]],
     named: bool,
     variants: int | None,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def heights(
     folder: str | os.PathLike[str],
@@ -330,7 +330,7 @@ def heights(
     synthetic: int,
     seed: int,
     highest: int,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def protect(
     scenario: Scenario,
@@ -343,12 +343,12 @@ def protect(
     rounds: int,
     budget: float | None,
     seed: int,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def score(
     scenario: Scenario,
     folder: str | os.PathLike[str],
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def group_files(paths: list[str]) -> list[tuple[str, list[str]]]: ...
 def select(
@@ -364,7 +364,7 @@ def select(
 def reproduce(
     record: str | os.PathLike[str] | None,
     studies: bool,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def calibrate_stiffness(name: str, text: str, nodes: int, interface: str) -> Page: ...
 def calibrate_drop(
@@ -381,7 +381,7 @@ def calibrate_response(
     text: str,
     fit: list[str],
     until: str | None,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...
 def calibrate_collapse(
     scenario: Scenario,
@@ -394,5 +394,5 @@ def calibrate_collapse(
     placement: str,
     simulations: int,
     seed: int,
-    progress: _Told | None,
+    progress: _Report | None,
 ) -> Page: ...

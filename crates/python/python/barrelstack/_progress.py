@@ -9,15 +9,15 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TextIO
 
-__all__ = ["Progress", "told"]
+__all__ = ["Progress", "reporting"]
 
 logger = logging.getLogger("barrelstack")
 
 #: Progress callback: amount done, total (not a number where unknown), and unit.
-Told = Callable[[float, float, str], object]
+Report = Callable[[float, float, str], object]
 
 #: True for a bar, False or None for silence, or a progress callback.
-Progress = bool | Told | None
+Progress = bool | Report | None
 
 
 class _Plain:
@@ -70,7 +70,7 @@ def _bar() -> _Plain | _Tqdm:
     return _Tqdm(tqdm)
 
 
-class told:
+class reporting:
     """Runs named work whose progress is shown, passed on or ignored; also logs it to :mod:`logging`.
 
     Parameters
@@ -84,9 +84,9 @@ class told:
     def __init__(self, progress: Progress, name: str) -> None:
         self.name = name
         self.bar = _bar() if progress is True else None
-        self.call: Told | None = self.bar.at if self.bar else progress if callable(progress) else None
+        self.call: Report | None = self.bar.at if self.bar else progress if callable(progress) else None
 
-    def __enter__(self) -> Told | None:
+    def __enter__(self) -> Report | None:
         logger.debug("%s: begins", self.name)
         return self.call
 

@@ -357,7 +357,7 @@ class Record:
         """The components, in the order of the file; accelerations are views without copies."""
         facts = self._native.channels()
         return [
-            Channel(*told, self._native.acceleration(at)) for at, told in enumerate(facts)
+            Channel(*fact, self._native.acceleration(at)) for at, fact in enumerate(facts)
         ]
 
     def __getitem__(self, component: str) -> Channel:

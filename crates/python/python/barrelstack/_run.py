@@ -293,7 +293,7 @@ class Run:
 
     @property
     def interrupted(self) -> bool:
-        """Whether an observer stopped it."""
+        """True if an observer stopped it."""
         return self._native.interrupted
 
     @property
@@ -451,7 +451,7 @@ class Run:
 
 
 class _KeptRun(Kept):
-    """What is left of a run in one plane, with the other plane where there is one."""
+    """Pickled run in one plane, with the other plane where there is one."""
 
     def __init__(self, native: _native.Run, alone: bool = False) -> None:
         rows = {
@@ -480,5 +480,5 @@ class _KeptRun(Kept):
 
 
 def _kept(native: Any) -> Any:
-    """What is pickled of a run."""
+    """Pickled state of a run."""
     return native if isinstance(native, _KeptRun) else _KeptRun(native)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from . import _native
-from ._progress import Progress, told
+from ._progress import Progress, reporting
 from ._quantity import literal, plain
 from ._record import Record
 from ._run import Glance, Run, warn
@@ -119,7 +119,7 @@ class Section:
 
     def __repr__(self) -> str:
         start = f"{self._path}." if self._path else ""
-        rows = [(path, *told) for path, told in self._fields.items() if path.startswith(start)]
+        rows = [(path, *described) for path, described in self._fields.items() if path.startswith(start)]
         return "\n".join(f"{path} = {value}    # {meaning}" for path, value, meaning in rows)
 
 
@@ -370,8 +370,8 @@ class Scenario:
             return self.with_record(record).run(
                 None, variants, progress, variant=variant, remedy=remedy, verify=verify
             )
-        with told(progress, f"run of {self.title!r}") as hear:
-            run = Run(self._shaken.run(variants, variant, remedy, verify, hear))
+        with reporting(progress, f"run of {self.title!r}") as report:
+            run = Run(self._shaken.run(variants, variant, remedy, verify, report))
         warn(run.warnings)
         return run
 
@@ -433,8 +433,8 @@ class Scenario:
             return self.with_record(record).run_in_space(
                 None, variants, progress, variant=variant, remedy=remedy
             )
-        with told(progress, f"run of {self.title!r} in space") as hear:
-            run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, hear), self.to_toml())
+        with reporting(progress, f"run of {self.title!r} in space") as report:
+            run = SpatialRun(self._shaken.run_in_space(variants, variant, remedy, report), self.to_toml())
         warn(run.warnings)
         return run
 

@@ -151,7 +151,7 @@ class SpatialRun:
 
 
 class _KeptRun(Kept):
-    """What is left of a run in space."""
+    """Pickled run in space."""
 
     def __init__(self, native: _native.SpatialRun) -> None:
         answers = ("summary", "bodies", "frame_times", "poses", "twists", "html")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._page import Page
-from ._progress import Progress, told
+from ._progress import Progress, reporting
 from ._quantity import literal
 from ._record import Record
 from ._table import Table
@@ -298,8 +298,8 @@ class Study:
         StudyError
             When the folder belongs to something else or cannot be written.
         """
-        with told(progress, f"study {self.title!r}") as hear:
-            self._native.run(os.fspath(folder), workers, hear)
+        with reporting(progress, f"study {self.title!r}") as report:
+            self._native.run(os.fspath(folder), workers, report)
         return self.collect(folder)
 
     def run_chunk(self, folder: str | os.PathLike[str], chunk: int) -> bool:
@@ -359,7 +359,7 @@ class Study:
 
         place = os.path.abspath(folder)
         missing = self.plan(place)
-        with told(progress, f"study {self.title!r} on {client}") as hear:
+        with reporting(progress, f"study {self.title!r} on {client}") as report:
             done, of = 0, sum(chunk.cases for chunk in missing)
             futures = {
                 client.submit(
@@ -376,8 +376,8 @@ class Study:
                 for future in as_completed(futures):
                     future.result()
                     done += futures[future].cases
-                    if hear:
-                        hear(done, of, "cases")
+                    if report:
+                        report(done, of, "cases")
             finally:
                 client.cancel(list(futures))
         return self.collect(place, write=True)
