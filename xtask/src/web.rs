@@ -12,8 +12,8 @@ use crate::steps::{cargo, target};
 /// The target of browsers.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// What the page gives, and all that the engine may ask of it.
-const GIVEN: [&str; 1] = ["page.told"];
+/// Functions that the page provides, the only imports allowed to the engine.
+const GIVEN: [&str; 1] = ["page.progress"];
 
 /// Where Debian's packages `rustc-web` and `libstd-rust-web-dev` put a compiler with this target.
 const DEBIAN: &str = "/usr/bin/rustc";
@@ -54,14 +54,19 @@ impl Build {
         let file = module(&self.root);
         let bytes =
             std::fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
-        let asked = imports(&bytes).context("the module cannot be read")?;
-        if let Some(foreign) = asked.iter().find(|name| !GIVEN.contains(&name.as_str())) {
+        let imported = imports(&bytes).context("the module cannot be read")?;
+        if let Some(foreign) = imported.iter().find(|name| !GIVEN.contains(&name.as_str())) {
             bail!(
-                "the module asks for {foreign}, which no page gives: some library needs a system; \
+                "the module imports {foreign}, which no page provides: some library needs a system; \
                  build it without that feature"
             );
         }
-        println!("{}: {:.2} MB, asks for {}", file.display(), megabytes(&bytes), asked.join(", "));
+        println!(
+            "{}: {:.2} MB, imports {}",
+            file.display(),
+            megabytes(&bytes),
+            imported.join(", ")
+        );
         let page = page(&self.root);
         let example = ["run", "--quiet", "--release", "--package", "barrelstack-web"];
         let status = Command::new(cargo())
@@ -79,10 +84,10 @@ impl Build {
     }
 }
 
-/// What the page is made of, in the repository.
+/// Parts of the page, in the repository.
 const PARTS: &str = "crates/web/page";
 
-/// What it is called.
+/// Title of the page.
 const TITLE: &str = "barrelstack: wine barrels in earthquakes";
 
 /// Where the page is once it is made.
@@ -100,7 +105,7 @@ fn megabytes(bytes: &[u8]) -> f64 {
     bytes.len() as f64 * 1e-6
 }
 
-/// Whether the standard library for browsers is installed.
+/// Returns `true` if the standard library for browsers is installed.
 fn has_target() -> bool {
     let found = said(Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]));
     found.is_some_and(|folder| Path::new(&folder).is_dir())
@@ -120,14 +125,14 @@ fn debian() -> Option<PathBuf> {
     there.then_some(linker)
 }
 
-/// What a command prints on its first line; none where it is not there or fails.
+/// Returns the first line that a command prints; `None` if it is not there or fails.
 fn said(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
     Some(text.lines().next()?.to_owned()).filter(|_| output.status.success())
 }
 
-/// What a module asks of its page, as `module.name`; none where the bytes are no module.
+/// Returns the imports of a module, as `module.name`; `None` if the bytes are no module.
 ///
 /// Spec: WebAssembly 2.0, sections 5.5.2 and 5.5.5.
 fn imports(bytes: &[u8]) -> Option<Vec<String>> {
@@ -188,11 +193,11 @@ mod tests {
     use super::imports;
 
     #[test]
-    fn a_module_that_asks_for_more_than_a_page_gives_is_seen() {
-        // One type () -> (), and two functions asked for: "page.told", "env.now".
-        let mut module = b"\0asm\x01\0\0\0\x01\x04\x01\x60\0\0\x02\x17\x02".to_vec();
-        module.extend(b"\x04page\x04told\0\0\x03env\x03now\0\0");
-        assert_eq!(imports(&module).unwrap(), ["page.told", "env.now"]);
+    fn an_import_that_no_page_provides_is_listed() {
+        // One type () -> (), and two imported functions: "page.progress", "env.now".
+        let mut module = b"\0asm\x01\0\0\0\x01\x04\x01\x60\0\0\x02\x1b\x02".to_vec();
+        module.extend(b"\x04page\x08progress\0\0\x03env\x03now\0\0");
+        assert_eq!(imports(&module).unwrap(), ["page.progress", "env.now"]);
         assert_eq!(imports(b"\0asm\x01\0\0\0").unwrap(), [""; 0]);
         assert_eq!(imports(&module[..20]), None);
         assert_eq!(imports(b"MZ"), None);

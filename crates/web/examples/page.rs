@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use barrelstack::scenario::builtin;
 use barrelstack_report::Shell;
-use barrelstack_web::{Ask, Request, answered};
+use barrelstack_web::{Request, RequestKind, answered};
 use serde_json::{Value, json};
 
 /// The first scenario of the page.
@@ -60,15 +60,15 @@ fn packed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
 /// Returns the engine's answers for the first stack, and the catalog.
 fn first() -> Result<Value, Box<dyn std::error::Error>> {
     let scenario = builtin::get(FIRST).ok_or("the first scenario is not there")?;
-    let asked = |ask| -> Result<Value, Box<dyn std::error::Error>> {
-        let request = Request { name: format!("{FIRST}.toml"), ..Request::of(ask, scenario) };
+    let answer_to = |kind| -> Result<Value, Box<dyn std::error::Error>> {
+        let request = Request { name: format!("{FIRST}.toml"), ..Request::of(kind, scenario) };
         let answer = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;
         Ok(serde_json::from_slice(&answer)?)
     };
     Ok(json!({
         "name": FIRST,
         "text": scenario,
-        "catalog": asked(Ask::Catalog)?,
-        "look": asked(Ask::Look)?,
+        "catalog": answer_to(RequestKind::Catalog)?,
+        "look": answer_to(RequestKind::Look)?,
     }))
 }

@@ -5,7 +5,7 @@ let engine = null, last = 0;
 const bytes = (address, length) => new Uint8Array(engine.memory.buffer, address, length);
 
 // How far the work is; not more often than a screen is drawn anew.
-function told(done, of) {
+function progress(done, of) {
   const now = performance.now();
   if (now - last > 60) {
     last = now;
@@ -44,7 +44,7 @@ function answer(request, draws) {
 onmessage = async ({ data: { packed, module, request, draws } }) => {
   if (request) return answer(request, draws);
   if (module) {
-    engine = (await WebAssembly.instantiate(module, { page: { told } })).exports;
+    engine = (await WebAssembly.instantiate(module, { page: { progress } })).exports;
     return postMessage({ ready: true });
   }
   try {

@@ -22,12 +22,12 @@
 //!
 //! | import | purpose |
 //! |---|---|
-//! | `page.told(done, of) -> stop` | progress callback; any result but 0 stops the work |
+//! | `page.progress(done, of) -> stop` | progress callback; any result but 0 stops the work |
 //!
 //! A panic is a trap, after which `answer` returns its text.
 //!
-//! The variants of a stack may be shared among several engines: each runs some of them ([`Ask::Variants`]), and one
-//! combines all results so far ([`Ask::Verdict`]), bit-identical to a single engine that runs them all.
+//! The variants of a stack may be shared among several engines: each runs some of them ([`RequestKind::Variants`]), and one
+//! combines all results so far ([`RequestKind::Verdict`]), bit-identical to a single engine that runs them all.
 
 mod cases;
 mod devices;
@@ -57,7 +57,7 @@ use verdict::Verdict;
 /// The kind of a request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Ask {
+pub enum RequestKind {
     /// The bundled scenarios, except those in space: a JSON list of pairs of name and text.
     #[default]
     Scenarios,
@@ -91,7 +91,8 @@ pub enum Ask {
 #[serde(deny_unknown_fields)]
 pub struct Request {
     /// Its kind.
-    pub ask: Ask,
+    #[serde(rename = "ask")]
+    pub kind: RequestKind,
     /// The text of the scenario.
     #[serde(default)]
     pub scenario: String,
@@ -120,8 +121,8 @@ pub struct Request {
 
 impl Request {
     /// Creates a request for a scenario by its text.
-    pub fn of(ask: Ask, scenario: &str) -> Self {
-        Self { ask, scenario: scenario.to_owned(), ..Self::default() }
+    pub fn of(kind: RequestKind, scenario: &str) -> Self {
+        Self { kind, scenario: scenario.to_owned(), ..Self::default() }
     }
 
     /// Encodes the request, followed by its records in their order.
@@ -143,9 +144,9 @@ fn enveloped(head: &[u8], rest: &[&[u8]]) -> Vec<u8> {
 /// ```
 /// use std::ops::ControlFlow;
 ///
-/// use barrelstack_web::{Ask, Request, answered};
+/// use barrelstack_web::{RequestKind, Request, answered};
 ///
-/// let request = Request::of(Ask::Summary, "schema = 1\nextends = \"sliding-block\"");
+/// let request = Request::of(RequestKind::Summary, "schema = 1\nextends = \"sliding-block\"");
 /// let summary = answered(&request.to_bytes(&[]), &mut |_, _| ControlFlow::Continue(()))?;
 /// assert!(summary.starts_with(b"{\n  \"schema\": \"summary/"));
 /// # Ok::<(), String>(())
@@ -158,15 +159,15 @@ pub fn answered(
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
 ) -> Result<Vec<u8>, String> {
     let Opened { request, records, trails } = read(request)?;
-    if request.ask == Ask::Scenarios {
+    if request.kind == RequestKind::Scenarios {
         let text = |name| Some((name, builtin::get(name)?));
         // The page supports only plane scenarios.
         let in_a_plane =
             |name: &&str| Scenario::builtin(name, &[]).is_ok_and(|scenario| !scenario.is_spatial());
         return json(&builtin::names().filter(in_a_plane).filter_map(text).collect::<Vec<_>>());
-    } else if request.ask == Ask::Catalog {
+    } else if request.kind == RequestKind::Catalog {
         return json(&look::Catalog::new());
-    } else if request.ask == Ask::Records {
+    } else if request.kind == RequestKind::Records {
         let (found, bytes) = records::of(&records, &request.reading)?;
         let bytes: Vec<&[u8]> = bytes.iter().map(Vec::as_slice).collect();
         return Ok(enveloped(&json(&found)?, &bytes));
@@ -180,40 +181,44 @@ pub fn answered(
     let placed = |error| placed(&error, &scenario);
     let scenario = &with_records.map_err(|error| placed(error.into()))?;
     let planes = || planes(scenario).map_err(|error| placed(error.into()));
-    let mut told = |told| match told {
+    let mut progress = |advance| match advance {
         Advance::Variants { done, of } => observer(done as f64, of as f64),
         Advance::First { .. } => ControlFlow::Continue(()),
-        Advance::Run(progress) => observer(progress.time, progress.end_time),
+        Advance::Run(run) => observer(run.time, run.end_time),
     };
-    match request.ask {
-        Ask::Devices => json(&devices::Devices::of(scenario)),
-        Ask::Look => json(&look::Looked::of(scenario, &planes()?).map_err(placed)?),
-        Ask::Show => {
+    match request.kind {
+        RequestKind::Devices => json(&devices::Devices::of(scenario)),
+        RequestKind::Look => json(&look::Looked::of(scenario, &planes()?).map_err(placed)?),
+        RequestKind::Show => {
             let number = request.numbers.first().copied().unwrap_or(0);
-            let shown = answer(scenario, RunChoice::Alone(number), &mut told).map_err(placed)?;
+            let shown =
+                answer(scenario, RunChoice::Alone(number), &mut progress).map_err(placed)?;
             json(&Shown::of(&shown, number))
         }
-        Ask::Variants => some(&planes()?, &request.numbers, observer),
-        Ask::Verdict => json(&Verdict::of(&planes()?, request)?),
-        Ask::Report => {
-            let found = answer(scenario, RunChoice::Typical, &mut told).map_err(placed)?;
+        RequestKind::Variants => some(&planes()?, &request.numbers, observer),
+        RequestKind::Verdict => json(&Verdict::of(&planes()?, request)?),
+        RequestKind::Report => {
+            let found = answer(scenario, RunChoice::Typical, &mut progress).map_err(placed)?;
             let document = report::answer_document(&found, None);
             Ok(barrelstack_report::html(&document).into_bytes())
         }
-        Ask::Files => {
+        RequestKind::Files => {
             let found = if request.numbers.is_empty() {
-                answer(scenario, RunChoice::Typical, &mut told)
+                answer(scenario, RunChoice::Typical, &mut progress)
             } else {
                 let results = verdict::results(&planes()?, request, trails)?;
-                answer_of(scenario, results, &mut told)
+                answer_of(scenario, results, &mut progress)
             };
             let files = export::files(&found.map_err(placed)?, None).map_err(words_of)?;
             let head: Vec<_> = files.iter().map(|(name, bytes)| (name, bytes.len())).collect();
             let rest: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
             Ok(enveloped(&json(&head)?, &rest))
         }
-        Ask::Summary | Ask::Scenarios | Ask::Catalog | Ask::Records => {
-            let found = answer(scenario, RunChoice::Typical, &mut told).map_err(placed)?;
+        RequestKind::Summary
+        | RequestKind::Scenarios
+        | RequestKind::Catalog
+        | RequestKind::Records => {
+            let found = answer(scenario, RunChoice::Typical, &mut progress).map_err(placed)?;
             Ok((found.decides.summary.to_json() + "\n").into_bytes())
         }
     }
@@ -226,11 +231,11 @@ fn some(
     observer: &mut (dyn FnMut(f64, f64) -> ControlFlow<()> + Send),
 ) -> Result<Vec<u8>, String> {
     let observer = std::sync::Mutex::new(observer);
-    let told = |done: usize, of: usize| match observer.lock() {
+    let progress = |done: usize, of: usize| match observer.lock() {
         Ok(mut observer) => observer(done as f64, of as f64),
         Err(_) => ControlFlow::Break(()),
     };
-    let found = run_some(planes, numbers, &told).map_err(words_of)?;
+    let found = run_some(planes, numbers, &progress).map_err(words_of)?;
     let found = found.ok_or("stopped")?;
     let cases: Vec<Vec<Case>> =
         found.iter().map(|results| results.iter().map(Case::of).collect()).collect();

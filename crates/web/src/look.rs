@@ -83,7 +83,7 @@ fn absent(list: &mut Vec<Stated>, present: &[String], path: &str, section: &'sta
 /// Fraction of the peak from which ground motion counts as strong, as in a player, and duration (s) of an opening from
 /// then.
 const STRONG: f64 = 0.1;
-const UNDER_WAY: f64 = 3.0;
+const IN_PROGRESS: f64 = 3.0;
 
 /// Returns the time (s) at which the opening of a motion ends.
 fn opening(motion: &GroundMotion) -> f64 {
@@ -92,7 +92,7 @@ fn opening(motion: &GroundMotion) -> f64 {
     while time < motion.duration && motion.horizontal.at(time).acceleration.abs() < limit {
         time += 0.01;
     }
-    (time + UNDER_WAY).ceil()
+    (time + IN_PROGRESS).ceil()
 }
 
 /// A value of the scenario.

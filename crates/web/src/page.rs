@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
     /// Progress callback; any result but 0 stops the work.
-    safe fn told(done: f64, of: f64) -> i32;
+    safe fn progress(done: f64, of: f64) -> i32;
 }
 
 thread_local! {
@@ -36,7 +36,7 @@ pub(crate) extern "C" fn room(length: usize) -> *mut u8 {
 pub(crate) extern "C" fn run() -> u32 {
     let request = REQUEST.with(RefCell::take);
     let done = crate::answered(&request, &mut |done, of| {
-        if told(done, of) == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if progress(done, of) == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     let status = u32::from(done.is_err());
     say(done.unwrap_or_else(String::into_bytes));

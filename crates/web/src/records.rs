@@ -112,9 +112,9 @@ fn records_of(records: Vec<Record>) -> Vec<Vec<Record>> {
 }
 
 impl Motion {
-    /// Combines the files of one record; with `told`, data of station files are included, so that even one file is
+    /// Combines the files of one record; with `described`, data of station files are included, so that even one file is
     /// rewritten.
-    fn of(records: &[Record], told: bool) -> Result<(Self, Vec<u8>), String> {
+    fn of(records: &[Record], described: bool) -> Result<(Self, Vec<u8>), String> {
         let files: Vec<String> = records.iter().map(|record| record.file.clone()).collect();
         let said = |record: &Record| -> Vec<String> {
             let said = |channel: &Channel| format!("{} {}", record.file, role(channel));
@@ -122,7 +122,7 @@ impl Motion {
         };
         let channels = records.iter().flat_map(said).collect();
         let (name, bytes) = match files.as_slice() {
-            [file] if !told => (file.clone(), Vec::new()),
+            [file] if !described => (file.clone(), Vec::new()),
             _ => {
                 let mut record = Record::gather(records).map_err(|error| error.to_string())?;
                 record.cut_to_shortest();

@@ -22,9 +22,9 @@ pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trai
                 number(*body, &mut out);
             }
         }
-        for way in &trail.ways {
-            number(way.len(), &mut out);
-            out.extend(way.iter().flatten().flat_map(|place| place.to_le_bytes()));
+        for path in &trail.ways {
+            number(path.len(), &mut out);
+            out.extend(path.iter().flatten().flat_map(|place| place.to_le_bytes()));
         }
         out.extend(trail.last.iter().flatten().flat_map(|place| place.to_le_bytes()));
     }
@@ -41,17 +41,17 @@ pub(crate) fn read(mut bytes: &[u8]) -> Option<Trails> {
             (0..count).map(|_| usize::try_from(whole(&mut bytes)?).ok()).collect::<Option<Vec<_>>>()
         };
         let (top, barrels) = (bodies()?, bodies()?);
-        let mut ways = Vec::new();
+        let mut paths = Vec::new();
         for _ in &top {
             let count = whole(&mut bytes)?;
-            let way = (0..count).map(|_| Some([place(&mut bytes)?, place(&mut bytes)?]));
-            ways.push(way.collect::<Option<Vec<_>>>()?);
+            let path = (0..count).map(|_| Some([place(&mut bytes)?, place(&mut bytes)?]));
+            paths.push(path.collect::<Option<Vec<_>>>()?);
         }
         let mut last = Vec::new();
         for _ in &barrels {
             last.push([place(&mut bytes)?, place(&mut bytes)?, place(&mut bytes)?]);
         }
-        all.insert(key, Trail { top, ways, barrels, last });
+        all.insert(key, Trail { top, ways: paths, barrels, last });
     }
     Some(all)
 }

@@ -33,7 +33,7 @@ const WORKER = `
   const bytes = (address, length) => new Uint8Array(engine.memory.buffer, address, length);
   onmessage = async ({ data: { module, request, stopAt } }) => {
     if (module) {
-      const made = await WebAssembly.instantiate(module, { page: { told: (done, of) => bar(done, of) } });
+      const made = await WebAssembly.instantiate(module, { page: { progress: (done, of) => bar(done, of) } });
       engine = made.instance.exports;
       postMessage({ started: performance.now() - started });
       return;

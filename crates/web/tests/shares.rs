@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use barrelstack_motion::{ReadOptions, read};
-use barrelstack_web::{Ask, Request, answered};
+use barrelstack_web::{Request, RequestKind, answered};
 use serde_json::Value;
 
 const SCENARIO: &str = "schema = 1\nextends = \"demo-napa\"\n[stack]\nlevels = 3\n\
@@ -13,7 +13,7 @@ fn bytes_of(request: &Request, files: &[&[u8]]) -> Result<Vec<u8>, String> {
     answered(&request.to_bytes(files), &mut |_, _| ControlFlow::Continue(()))
 }
 
-fn asked(request: &Request) -> Result<Value, String> {
+fn answer_to(request: &Request) -> Result<Value, String> {
     serde_json::from_slice(&bytes_of(request, &[])?).map_err(|error| error.to_string())
 }
 
@@ -26,13 +26,13 @@ fn parts(answer: &[u8]) -> (Value, &[u8]) {
 
 /// Returns the results of variants in each plane, and their trails.
 fn run(numbers: &[u32]) -> (Value, Vec<u8>) {
-    let answer = bytes_of(&request(Ask::Variants, numbers), &[]).expect("a sound request");
+    let answer = bytes_of(&request(RequestKind::Variants, numbers), &[]).expect("a sound request");
     let (cases, trails) = parts(&answer);
     (cases, trails.to_vec())
 }
 
-fn request(ask: Ask, numbers: &[u32]) -> Request {
-    Request { numbers: numbers.to_vec(), ..Request::of(ask, SCENARIO) }
+fn request(kind: RequestKind, numbers: &[u32]) -> Request {
+    Request { numbers: numbers.to_vec(), ..Request::of(kind, SCENARIO) }
 }
 
 #[test]
@@ -53,11 +53,11 @@ fn shares_in_any_order_have_the_spread_of_all() {
         [0, 1].map(|plane| found.iter().map(|(_, case)| case[plane].clone()).collect()).into();
     let verdict = Request {
         cases: serde_json::from_value(serde_json::to_value(cases).unwrap()).unwrap(),
-        ..request(Ask::Verdict, &[0, 1, 2, 3, 4, 5, 6])
+        ..request(RequestKind::Verdict, &[0, 1, 2, 3, 4, 5, 6])
     };
-    let files = Request { ask: Ask::Files, trails: trails.len(), ..verdict.clone() };
+    let files = Request { kind: RequestKind::Files, trails: trails.len(), ..verdict.clone() };
     let of_shares = bytes_of(&files, &[&trails]).unwrap();
-    let of_one = bytes_of(&request(Ask::Files, &[]), &[]).unwrap();
+    let of_one = bytes_of(&request(RequestKind::Files, &[]), &[]).unwrap();
     // Including the report, with the paths of all variants.
     assert!(of_shares == of_one, "files of shares differ from those of one engine");
     let cut = bytes_of(&Request { trails: 40, ..files.clone() }, &[&trails[..40]]).unwrap_err();
@@ -65,8 +65,8 @@ fn shares_in_any_order_have_the_spread_of_all() {
     let fewer = Request { numbers: vec![0, 1], trails: 0, cases: Vec::new(), ..files };
     let fewer = bytes_of(&fewer, &[]).unwrap_err();
     assert!(fewer.contains("the results of all 6 variants, and has those of 1"), "{fewer}");
-    let verdict = asked(&verdict).unwrap();
-    let summary = asked(&request(Ask::Summary, &[])).unwrap();
+    let verdict = answer_to(&verdict).unwrap();
+    let summary = answer_to(&request(RequestKind::Summary, &[])).unwrap();
     let planes = [&summary, &summary["other_plane"]];
     for judged in verdict["planes"].as_array().unwrap() {
         let plane = planes.iter().find(|plane| plane["view"] == judged["view"]).unwrap();
@@ -78,13 +78,13 @@ fn shares_in_any_order_have_the_spread_of_all() {
 
 #[test]
 fn a_verdict_without_the_stack_as_it_is_stated_is_refused() {
-    let refused = asked(&request(Ask::Verdict, &[1])).unwrap_err();
+    let refused = answer_to(&request(RequestKind::Verdict, &[1])).unwrap_err();
     assert!(refused.contains("the first of which is 0"), "{refused}");
 }
 
 #[test]
-fn a_look_tells_every_field_and_stands_still() {
-    let look = asked(&request(Ask::Look, &[])).unwrap();
+fn a_look_lists_every_field_and_stands_still() {
+    let look = answer_to(&request(RequestKind::Look, &[])).unwrap();
     let settings = look["settings"].as_array().unwrap();
     let field = |path: &str| settings.iter().find(|one| one["path"] == path).unwrap();
     assert_eq!(field("stack.levels")["value"], "3");
@@ -103,10 +103,10 @@ fn a_look_tells_every_field_and_stands_still() {
 }
 
 #[test]
-fn devices_are_offered_as_they_go_on_the_stack_and_those_on_it_are_told() {
+fn devices_are_offered_as_they_go_on_the_stack_and_present_ones_are_listed() {
     let offered = |changes: &[&str]| {
         let set = changes.iter().map(|change| (*change).to_owned()).collect();
-        asked(&Request { set, ..request(Ask::Devices, &[]) }).unwrap()
+        answer_to(&Request { set, ..request(RequestKind::Devices, &[]) }).unwrap()
     };
     let names = |devices: &Value| -> Vec<String> {
         let all = devices["candidates"].as_array().unwrap();
@@ -135,12 +135,12 @@ fn devices_are_offered_as_they_go_on_the_stack_and_those_on_it_are_told() {
     // Each of them is applicable.
     for candidate in three["candidates"].as_array().unwrap() {
         let set = serde_json::from_value(candidate["changes"].clone()).unwrap();
-        asked(&Request { set, ..request(Ask::Look, &[]) }).unwrap();
+        answer_to(&Request { set, ..request(RequestKind::Look, &[]) }).unwrap();
     }
 }
 
 #[test]
-fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
+fn files_given_at_once_are_one_record_or_several_or_reported_as_none() {
     let text = |name: &str, station: &str, channel: &str| {
         let rows: Vec<String> =
             (0..600).map(|at| format!("{:e}", (f64::from(at) * 0.1).sin())).collect();
@@ -153,7 +153,7 @@ fn files_given_at_once_are_one_record_or_several_or_told_to_be_none() {
     let given = |files: &[(&str, Vec<u8>)]| {
         let request = Request {
             records: files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.len())).collect(),
-            ..Request::of(Ask::Records, "")
+            ..Request::of(RequestKind::Records, "")
         };
         let bytes: Vec<&[u8]> = files.iter().map(|(_, bytes)| bytes.as_slice()).collect();
         let answer = bytes_of(&request, &bytes).unwrap();
