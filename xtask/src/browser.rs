@@ -10,7 +10,7 @@ use crate::steps::{build_program, program, target};
 /// Where the checks of report pages stand in the repository.
 pub(crate) const REPORTS: &str = "crates/report/tests/browser/check.mjs";
 
-/// What films the demo for the README.
+/// Script that films the demo for the README.
 pub(crate) const FILM: &str = "crates/report/tests/browser/film.mjs";
 
 /// The film.
@@ -22,7 +22,7 @@ pub(crate) const ENGINE: &str = "crates/web/tests/check.mjs";
 /// Where their modules are.
 const MODULES: &str = "crates/report/tests/browser";
 
-/// What installs the modules of the checks, typed in the root of the repository.
+/// Command that installs the modules of the checks, typed in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/tests/browser";
 
 /// Names under which systems install a browser that can be driven.
@@ -41,8 +41,8 @@ pub(crate) fn find(root: &Path, script: &'static str) -> Option<Check> {
 }
 
 impl Check {
-    /// The command, which is told where the browser is by the variable `CHROMIUM` and where the
-    /// program is that makes the pages by `BARRELSTACK`; or why it cannot be run here.
+    /// The command, with the path of the browser in the variable `CHROMIUM` and that of the
+    /// program that makes the pages in `BARRELSTACK`; or why it cannot be run here.
     pub(crate) fn command(&self) -> Result<Command, String> {
         let browser = BROWSERS.into_iter().find_map(on_path).ok_or(
             "no chromium on the PATH; install the package `chromium` of your system to check pages \

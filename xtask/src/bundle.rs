@@ -11,7 +11,7 @@ const SOURCE: &str = "crates/report/bundle";
 /// Where pages take the bundle from.
 const KEPT: &str = "crates/report/assets/vendor";
 
-/// What installs the modules, typed in the root of the repository.
+/// Command that installs the modules, typed in the root of the repository.
 const INSTALL: &str = "npm ci --prefix crates/report/bundle";
 
 /// Packs the bundle.

@@ -9,7 +9,7 @@ use crate::{browser, python, web};
 
 /// A check that not every machine can do.
 pub(crate) struct Extra {
-    /// What is announced.
+    /// Name as announced.
     pub(crate) name: &'static str,
     /// The command, or what is missing and how to come by it.
     pub(crate) command: Result<Command, String>,
@@ -98,7 +98,7 @@ fn with(mut command: Command, words: &[&str]) -> Command {
     command
 }
 
-/// Whether a command is there and answers.
+/// Returns `true` if a command is there and succeeds.
 fn succeeds(command: &mut Command) -> bool {
     let status = command.stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())

@@ -16,7 +16,7 @@ mod web;
 
 use std::process::ExitCode;
 
-/// What can be asked for.
+/// Help text.
 const USAGE: &str = "\
 usage: cargo xtask TASK
 
@@ -71,7 +71,7 @@ fn done((): ()) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The status of a task; why it failed is told.
+/// Returns the status of a task; prints the reason of a failure.
 fn status(result: anyhow::Result<ExitCode>) -> ExitCode {
     result.unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 
 use crate::steps::{build_program, cargo, program, target};
 
-/// What the tests need beside the package.
+/// Packages that the tests need beside the own one.
 const TESTS: [&str; 15] = [
     "maturin>=1.9,<2",
     "numpy",
@@ -26,13 +26,13 @@ const TESTS: [&str; 15] = [
     "distributed",
 ];
 
-/// What some of them need that takes long to install.
+/// Packages that some tests need and that take long to install.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
-/// OpenQuake, which with all that it asks for has to build GDAL: its readers need none of that.
+/// OpenQuake; with all of its dependencies it would have to build GDAL, which its readers do not need.
 const OPENQUAKE: &str = "openquake-engine";
 
-/// What its readers need.
+/// Packages that the readers of OpenQuake need.
 const READERS: [&str; 14] = [
     "alpha_shapes",
     "decorator",
@@ -144,7 +144,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
         pip.current_dir(root).status().is_ok_and(|status| status.success())
     };
-    // The net is not asked for what is there.
+    // Installed packages need no network.
     let there = |name: &&&str| {
         let name = name.split(['<', '>', '=']).next().unwrap_or(name);
         let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
@@ -161,7 +161,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     if !there(&&"maturin") {
         return Ok(None);
     }
-    // With the environment's own maturin, so that no net is asked for what is there.
+    // With the environment's own maturin, so that installed packages need no network.
     if !pip(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
         bail!("`pip install .` failed: see above");
     }

@@ -18,7 +18,7 @@ use crate::web;
 struct Step {
     /// The command, after `cargo`.
     arguments: &'static [&'static str],
-    /// Whether warnings of the documentation are errors.
+    /// `true` if warnings of the documentation are errors.
     strict_docs: bool,
     /// The next move after a failure.
     remedy: &'static str,
