@@ -38,7 +38,7 @@ const USAGE: &str = "usage: fuzz [--executions N] [--reader NAME] [--first K]";
 
 /// Counts of the results of one reader.
 #[derive(Default)]
-struct Seen {
+struct Statistics {
     executions: u64,
     read: u64,
     slowest: f64,
@@ -81,14 +81,14 @@ fn main() {
     let mut faults = Vec::new();
     for reader in readers {
         let began = Instant::now();
-        let mut seen = Seen::default();
-        faults.extend(small(reader, &samples, first, executions, &mut seen, start).err());
-        report(reader.name(), &seen, began.elapsed());
+        let mut statistics = Statistics::default();
+        faults.extend(small(reader, &samples, first, executions, &mut statistics, start).err());
+        report(reader.name(), &statistics, began.elapsed());
         if first == 0 {
             let began = Instant::now();
-            let mut seen = Seen::default();
-            faults.extend(large(reader, &samples, &mut seen, start).err());
-            report("  at 1 MB", &seen, began.elapsed());
+            let mut statistics = Statistics::default();
+            faults.extend(large(reader, &samples, &mut statistics, start).err());
+            report("  at 1 MB", &statistics, began.elapsed());
         }
     }
     if faults.is_empty() {
@@ -99,14 +99,14 @@ fn main() {
     }
 }
 
-fn report(name: &str, seen: &Seen, time: Duration) {
+fn report(name: &str, statistics: &Statistics, time: Duration) {
     println!(
         "{name:<11} {:>11} {:>10} {:>11.0} {:>13.2} {:>17.3}",
-        seen.executions,
-        seen.read,
-        seen.executions as f64 / time.as_secs_f64(),
-        1e3 * seen.slowest,
-        seen.megabytes
+        statistics.executions,
+        statistics.read,
+        statistics.executions as f64 / time.as_secs_f64(),
+        1e3 * statistics.slowest,
+        statistics.megabytes
     );
 }
 
@@ -123,7 +123,7 @@ fn small(
     samples: &[Sample],
     first: u64,
     count: u64,
-    seen: &mut Seen,
+    statistics: &mut Statistics,
     start: Instant,
 ) -> Result<(), String> {
     let own = samples_of(reader, samples);
@@ -131,7 +131,7 @@ fn small(
         let mut random = Random::new(seed(reader, k));
         let sample = own[usize::try_from(random.bits() % own.len() as u64).unwrap()];
         let bytes = mutate(&sample.bytes, samples, &mut random);
-        execute(reader, k, &bytes, &mut random, seen, start)?;
+        execute(reader, k, &bytes, &mut random, statistics, start)?;
     }
     Ok(())
 }
@@ -139,18 +139,18 @@ fn small(
 fn large(
     reader: Reader,
     samples: &[Sample],
-    seen: &mut Seen,
+    statistics: &mut Statistics,
     start: Instant,
 ) -> Result<(), String> {
     let mut k = 0;
     for sample in samples_of(reader, samples) {
         for bytes in large::files(&sample.bytes) {
             let mut random = Random::new(seed(reader, k));
-            execute(reader, k, &bytes, &mut random, seen, start)?;
+            execute(reader, k, &bytes, &mut random, statistics, start)?;
             for _ in 0..DAMAGED {
                 let mut damaged = mutate(&bytes, samples, &mut random);
                 damaged.truncate(large::SIZE);
-                execute(reader, k, &damaged, &mut random, seen, start)?;
+                execute(reader, k, &damaged, &mut random, statistics, start)?;
             }
             k += 1;
         }
@@ -166,7 +166,7 @@ fn execute(
     k: u64,
     bytes: &[u8],
     random: &mut Random,
-    seen: &mut Seen,
+    statistics: &mut Statistics,
     start: Instant,
 ) -> Result<(), String> {
     let given = options(random);
@@ -185,9 +185,9 @@ fn execute(
     NOW.store(u64::MAX, Ordering::Relaxed);
     let time = began.elapsed().as_secs_f64();
     let megabytes = PeakAlloc.peak_usage().saturating_sub(before) as f64 / 1e6;
-    seen.executions += 1;
-    seen.slowest = seen.slowest.max(time);
-    seen.megabytes = seen.megabytes.max(megabytes);
+    statistics.executions += 1;
+    statistics.slowest = statistics.slowest.max(time);
+    statistics.megabytes = statistics.megabytes.max(megabytes);
     let fault = match outcome {
         Err(payload) => {
             let text = payload
@@ -199,7 +199,7 @@ fn execute(
         Ok(_) if megabytes > MOST_MEGABYTES => format!("took {megabytes:.0} MB"),
         Ok(_) if time > LONGEST => format!("took {time:.1} s"),
         Ok(read) => {
-            seen.read += u64::from(read);
+            statistics.read += u64::from(read);
             return Ok(());
         }
     };

@@ -1,6 +1,6 @@
 //! Corners from the noise before the first arrival, on records with known noise.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use barrelstack_motion::{
     Channel, Direction, NoiseCriterion, Processing, Random, Record, bundled, noise_corners,

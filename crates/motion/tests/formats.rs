@@ -2,7 +2,7 @@
 //!
 //! Every sample is the same decaying sine, so that the expected numbers are a formula.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 //! A fixed number from a fixed seed, so that a failure repeats; `cargo xtask fuzz` runs any number, with limits of
 //! time and memory.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use crate::fuzz;
 use crate::fuzz::{Reader, must_hold, mutate, options, samples, samples_of};

@@ -1,6 +1,6 @@
 //! Intensity measures of motions with closed forms.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use barrelstack_motion::{
     FourierSpectrum, Horizontals, IntensityMeasure, Pulse, STANDARD_GRAVITY, Sampled,

@@ -1,6 +1,6 @@
 //! Displacement, velocity and acceleration are derivatives of one another in every kind of motion.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use crate::consistency::{derivatives_of_one_another, scattered};
 use barrelstack_motion::{Delayed, GroundMotion, History, IntensityMeasure, Pulse, Sampled};

@@ -1,6 +1,6 @@
 //! Matched motions follow their target and come to rest; target spectra have their code values.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use barrelstack_motion::{
     ChileanZone, Component, GroundMotion, History, MatchMethod, Matching, NCh2745Soil, Processing,

@@ -2,7 +2,7 @@
 //!
 //! The records may not be bundled; without their folder the test is reported as skipped.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use crate::shared;
 use std::time::Instant;

@@ -1,6 +1,6 @@
 //! Pulse classes against published ones and against an independent program.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use crate::shared;
 use barrelstack_motion::{

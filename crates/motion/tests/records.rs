@@ -1,6 +1,6 @@
 //! From a record to a motion: processing, selection, rotation, joining and the bundled record.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use std::fmt::Write as _;
 

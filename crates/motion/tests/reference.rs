@@ -3,7 +3,7 @@
 //! The records may not be bundled; the tests run if the folder `../shared/ground-motions` is beside the workspace,
 //! and are reported as skipped otherwise.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use crate::shared::shared;
 use barrelstack_motion::{

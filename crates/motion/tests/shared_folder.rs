@@ -2,7 +2,7 @@
 //!
 //! Most of those files may not be bundled; without the folder the test is reported as skipped.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

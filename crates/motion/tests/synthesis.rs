@@ -1,6 +1,6 @@
 //! Synthetic motions: same seed same bits, ensembles meet their target in the mean, no drift.
 
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
 use barrelstack_motion::{
     BooreSource, CloughPenzien, Envelope, FourierSpectrum, GroundMotion, NearFault, Pulse, Random,

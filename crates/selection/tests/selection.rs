@@ -3,7 +3,7 @@
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
-    reason = "a test fails by unwrap and tells by print"
+    reason = "a test fails by unwrap and reports by print"
 )]
 
 use barrelstack_motion::{Random, STANDARD_GRAVITY, TargetSpectrum};
