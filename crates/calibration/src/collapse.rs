@@ -348,7 +348,7 @@ fn identifiability(
     if posterior.power < 1.0 {
         warnings.push(format!(
             "too few simulations came near to what was observed, so its likelihood counts to the power {} and \
-             the intervals are wider than they need be: run more",
+             the intervals are wider than they need be: run more simulations",
             short(posterior.power)
         ));
     }

@@ -26,8 +26,8 @@
 //!
 //! A panic is a trap, after which `answer` returns its text.
 //!
-//! The variants of a stack may be shared among several engines: each runs some of them ([`RequestKind::Variants`]), and one
-//! combines all results so far ([`RequestKind::Verdict`]), bit-identical to a single engine that runs them all.
+//! The variants of a stack may be shared among several engines: each runs some of them
+//! ([`RequestKind::Variants`]), and one combines all results so far ([`RequestKind::Verdict`]), bit-identical to a single engine that runs them all.
 
 mod cases;
 mod devices;

@@ -326,7 +326,7 @@ described! {
         pub low: f64 as "1/year" = rate.low,
         /// If it did the worst.
         pub high: f64 as "1/year" = rate.high,
-        /// Chance of the limit state at the intensity of the first row.
+        /// Effect of shaking of the intensity of the first row.
         pub at_first_row: f64 as "1" = rate.at_first,
     }
 

@@ -98,8 +98,8 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     blocks.push(text(
         "Dispersion is what a measure leaves unexplained: the smaller, the fewer records are needed. Concordance is the \
          chance that of two cases, one collapsed and one standing, the collapsed one had the stronger shaking by this \
-         measure (0.5 is no better than chance). A small p in the last columns says that the other measure still adds information: \
-         this one is then not sufficient.",
+         measure (0.5 is no better than chance). A small p in the last columns says that the other measure \
+         still adds information: this one is then not sufficient.",
     ));
     blocks.push(heading("What was run"));
     blocks.push(Block::Table(motions(decision, made)));

@@ -237,8 +237,8 @@ fn blocks(all: &Heights) -> Vec<Block> {
             100.0 * MEDIUM
         )),
         text(
-            "Find your site's line: request the peak ground velocity of your design earthquake, or read it off a ShakeMap \
-             of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
+            "Find your site's line: request the peak ground velocity of your design earthquake, or read it off a \
+             ShakeMap of a past one. The Roman numeral is an assumption: the intensity that goes with such a velocity in \
              California on average (Wald et al. 1999).",
         ),
         Block::Figure(chart(all)),

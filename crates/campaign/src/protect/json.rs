@@ -83,7 +83,7 @@ described! {
         pub runs_fallen_at_rest: usize = one.fallen_at_rest,
         /// The last round in which it was run.
         pub round: u32 = one.round,
-        /// `true` if no protection tried in all rounds costs as little and loses less.
+        /// `true` if no protection tried in all rounds both costs no more and loses less.
         pub on_front: bool = one.on_front,
     }
 

@@ -315,15 +315,15 @@ fn rests_on(all: &Ranking) -> Vec<String> {
         "Friction is drawn for every run about that of the scenario: rack on floor with a scatter of 20 %, barrel on rack \
          of 25 %, both assumptions. All protections draw the same quantiles."
             .into(),
-        "Costs are for one stack, bought and put on once; most are assumptions, listed in the table. Work, lost time and \
-         what a fall does to people are not counted."
+        "Costs are for one stack, bought and put on once; most are assumptions, listed in the table. Work, lost time \
+         and what a fall does to people are not counted."
             .into(),
         "Barrels burst by the height of their fall, by the central assumption of three; nobody has tested that.".into(),
         "One stack alone in a plane: no neighbors that knock it down, no walls, no ropes between stacks. Straps tear at no \
          force unless the scenario gives one."
             .into(),
-        "Between two levels of shaking the loss is interpolated linearly, and nothing is lost below half of the lowest level; \
-         above the highest it is that of the highest."
+        "Between two levels of shaking the loss is interpolated over the logarithm of the velocity, and nothing is \
+         lost below half of the lowest level; above the highest it is that of the highest."
             .into(),
     ]
 }
