@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn what_was_written_is_given_and_nothing_else() {
-        let text = "schema = 1\n[stack]\nlevels = 2\ncolumns = 1\n[motion]\nbundled = \"napa-college-2014\"\n";
+        let text = "schema = 1\n[stack]\nlevels = 2\ncolumns = 4\n[motion]\nbundled = \"napa-college-2014\"\n";
         let change = "interface.barrel-rack.stiffness=9 MN/m".to_owned();
         let scenario = Scenario::parse("two.toml", text, &[change]).unwrap();
         let settings = scenario.stated_settings();
