@@ -63,7 +63,7 @@ pub struct ContactElements<S: Space> {
     apart: Vec<S::Real>,
     /// Bound of the displacement (m) of every body since then, at the end of the current step; infinite outside of a
     /// step.
-    ways: Vec<S::Real>,
+    travels: Vec<S::Real>,
     /// Poses at which the list was built.
     built_for: Vec<Pose<S>>,
     /// Allowed displacement (m) of every body since then: the list has all elements whose gap is at most the sum of
@@ -82,7 +82,7 @@ impl<S: Space> Default for ContactElements<S> {
             weights: Vec::new(),
             sticks: Vec::new(),
             apart: Vec::new(),
-            ways: Vec::new(),
+            travels: Vec::new(),
             built_for: Vec::new(),
             allowances: Vec::new(),
             exhaustive: false,
@@ -106,13 +106,13 @@ impl<S: Space> ContactElements<S> {
     #[inline(always)]
     pub(crate) fn sleeps(&self, group: usize, gap: S::Real) -> bool {
         let [a, b] = self.groups[group].bodies;
-        let way = self.ways[a] + self.ways[b];
-        (way + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
+        let travel = self.travels[a] + self.travels[b];
+        (travel + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
     }
 
     /// Ends the step: bodies may be moved anywhere, and no group is skipped.
     pub(crate) fn end_step(&mut self) {
-        self.ways.fill(S::Real::splat(f64::INFINITY));
+        self.travels.fill(S::Real::splat(f64::INFINITY));
     }
 
     /// Returns the memory of an element; numbered as in [`Contact::element`](crate::forces::Contact::element).
@@ -171,18 +171,18 @@ impl<S: Space> ContactElements<S> {
         let mut stale = <S::Real as Real>::Mask::default();
         for (i, body) in model.bodies.iter().enumerate() {
             if body.motion == Motion::Prescribed {
-                self.ways[i] = S::Real::zero();
+                self.travels[i] = S::Real::zero();
                 continue;
             }
             let moved = poses[i].position - self.built_for[i].position - carried;
             let velocity = twists[i].linear - carrier;
             let turned = S::angle_between(poses[i].orientation, self.built_for[i].orientation);
             let spin = S::spin_magnitude(twists[i].angular);
-            let way = S::length_bound(moved)
+            let travel = S::length_bound(moved)
                 + S::length_bound(velocity) * ahead
                 + (turned + spin * ahead) * S::Real::splat(model.reach[i]);
-            self.ways[i] = way;
-            stale = stale | !way.lt(S::Real::splat(self.allowances[i] - LOOKAHEAD_SLACK));
+            self.travels[i] = travel;
+            stale = stale | !travel.lt(S::Real::splat(self.allowances[i] - LOOKAHEAD_SLACK));
         }
         stale.any()
     }
@@ -199,7 +199,7 @@ impl<S: Space> ContactElements<S> {
         let old = std::mem::replace(self, Self { exhaustive: self.exhaustive, ..Self::default() });
         self.built_for = poses.to_vec();
         self.allowances = allowances(model, twists);
-        self.ways = vec![S::Real::splat(f64::INFINITY); poses.len()];
+        self.travels = vec![S::Real::splat(f64::INFINITY); poses.len()];
         let rotations: Vec<S::Rotation> = S::Real::scope(
             #[inline(always)]
             || {
@@ -315,14 +315,14 @@ impl<S: Space> ContactElements<S> {
     ) -> bool {
         let one = S::Real::splat(1.0);
         // Allowances bound the displacement of any point within the reach of a body; farther ones turn further.
-        let way = |body: usize, arm: S::Vector| {
+        let travel = |body: usize, arm: S::Vector| {
             let turning = arm.dot(arm).sqrt() / S::Real::splat(model.reach[body].max(1e-9));
             S::Real::splat(self.allowances[body]) * (one + turning)
         };
-        let ways =
-            way(pair.contactor, center - frame.contactor) + way(pair.target, center - frame.target);
+        let travels = travel(pair.contactor, center - frame.contactor)
+            + travel(pair.target, center - frame.target);
         let depth = round.radius - surface.gap(center).distance;
-        !self.exhaustive && (round.greatest_depth + ways).lt(depth).all()
+        !self.exhaustive && (round.greatest_depth + travels).lt(depth).all()
     }
 
     /// Lists the elements of a pair within reach; returns their least gap (m) in every lane.

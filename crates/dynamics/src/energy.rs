@@ -127,16 +127,17 @@ impl<S: Space> EnergyLedger<S> {
         let half = S::Real::splat(0.5);
         let mut step = Works::<S::Real>::default();
         for (i, body) in model.inert.iter().enumerate() {
-            let way = self.poses[i].way_to(state.poses[i]);
+            let displacement = self.poses[i].way_to(state.poses[i]);
             let (old, new) = (&self.losses[i], &scratch.losses[i]);
-            step.damped -= old.damped.plus(new.damped).power(way) * half;
-            step.friction -= old.friction.plus(new.friction).power(way) * half;
+            step.damped -= old.damped.plus(new.damped).power(displacement) * half;
+            step.friction -= old.friction.plus(new.friction).power(displacement) * half;
             if body.damped {
                 let viscous = self.viscous[i].plus(scratch.viscous[i]);
-                step.viscous -= viscous.power(way) * half;
+                step.viscous -= viscous.power(displacement) * half;
             }
             if body.motion == Motion::Prescribed {
-                step.ground -= self.wrenches[i].plus(scratch.wrenches[i]).power(way) * half;
+                step.ground -=
+                    self.wrenches[i].plus(scratch.wrenches[i]).power(displacement) * half;
             }
             // Start of the next entry, while in the cache.
             self.poses[i] = state.poses[i];

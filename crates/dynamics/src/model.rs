@@ -320,10 +320,10 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
-    /// Calls `tell` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
+    /// Calls `report` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
     /// meet.
-    pub fn each_meeting(&self, tell: &mut TellMeeting<'_>) {
-        self.pairs.each(tell);
+    pub fn each_meeting(&self, report: &mut TellMeeting<'_>) {
+        self.pairs.each(report);
     }
 
     /// Returns the force elements, in the order of [`Scratch::loads`](crate::Scratch::loads).

@@ -135,13 +135,13 @@ impl Pairs {
         (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
     }
 
-    /// Calls `tell` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
+    /// Calls `report` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
     /// meet.
-    pub(crate) fn each(&self, tell: &mut TellMeeting<'_>) {
+    pub(crate) fn each(&self, report: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {
                 for pair in pairs {
-                    tell(pair, &[pair.contactor], &[pair.target]);
+                    report(pair, &[pair.contactor], &[pair.target]);
                 }
             }
             Self::OfKinds { kinds, meetings, .. } => {
@@ -158,7 +158,7 @@ impl Pairs {
                             let of = [&members[lower], &members[higher]];
                             let (contactor, target) = (bodies[pair.contactor], bodies[pair.target]);
                             let placed = ContactPair { contactor, target, ..*pair };
-                            tell(&placed, of[pair.contactor], of[pair.target]);
+                            report(&placed, of[pair.contactor], of[pair.target]);
                         }
                     }
                 }

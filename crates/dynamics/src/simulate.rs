@@ -177,7 +177,7 @@ pub(crate) struct StepTimes<R: Real> {
     /// The shortest step (s).
     shortest: R,
     time_step: R,
-    /// `true` if an impact under way was hard: the step length changes before and after an impact only, since a
+    /// `true` if an impact in progress was hard: the step length changes before and after an impact only, since a
     /// change within one would cost energy.
     hard: R::Mask,
 }

@@ -13,7 +13,7 @@ pub use normal::{Exponent, NormalForce, NormalLaw, Stop};
 /// Basis of the stiffness and damping of an interface.
 ///
 /// With constants per node, refining the nodes of a boundary stiffens the interface, so the number of nodes is part
-/// of the physics (the paper states its constants this way). With constants per length, each node acts for its
+/// of the physics (the paper states its constants per node). With constants per length, each node acts for its
 /// tributary length and refinement converges. With constants per seat, the touching nodes of a row share one set of
 /// constants, so their number affects the location of the force but not the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -132,16 +132,16 @@ impl<R: Real> NormalForce<R> {
     #[inline(always)]
     #[must_use]
     pub fn within_step(self, bend: f64, depth: R, rate: R, step: R) -> Self {
-        let way = rate.abs() * step;
-        let partly = depth.lt(way);
+        let travel = rate.abs() * step;
+        let partly = depth.lt(travel);
         if bend == 0.0 && !partly.any() {
             return self;
         }
         let (half, bend, zero) = (R::splat(0.5), R::splat(bend), R::zero());
-        let begun = depth / R::select(partly, way, R::splat(1.0));
-        let bent = way / R::select(partly, R::splat(1.0), depth);
+        let begun = depth / R::select(partly, travel, R::splat(1.0));
+        let bent = travel / R::select(partly, R::splat(1.0), depth);
         let missing = R::select(partly, half - (half - bend) * begun, bend * bent * bent);
-        let missing = self.elastic * R::select(zero.lt(way), missing, zero);
+        let missing = self.elastic * R::select(zero.lt(travel), missing, zero);
         Self {
             total: (self.total - missing).max(zero),
             elastic: self.elastic - missing,

@@ -126,8 +126,8 @@ impl<S: Space> Guide<S> {
         let line = self.link.at_second(state, rotations);
         let rotation = rotations[self.link.bodies[0]];
         let along = S::rotate(rotation, self.axis);
-        let way = S::unrotate(rotation, line.arms[0]) - self.link.points[0] - self.place;
-        let e = self.axis.dot(way);
+        let offset = S::unrotate(rotation, line.arms[0]) - self.link.points[0] - self.place;
+        let e = self.axis.dot(offset);
         let rate = line.rate(state, along);
 
         let side = S::Real::select(e.lt(zero), -one, one);
@@ -143,7 +143,7 @@ impl<S: Space> Guide<S> {
         let elastic = counted(elastic);
         let damped = counted(damped);
         let force = elastic + damped;
-        let aside = way - self.axis * e;
+        let aside = offset - self.axis * e;
         let aside = aside - self.free * self.free.dot(aside);
         let breaks = self.strength.lt(force.abs()) | (self.reach * self.reach).lt(aside.dot(aside));
         let load = Load { force, energy: counted(energy), elastic, breaks, ..Load::default() };

@@ -12,7 +12,7 @@ use crate::shape::Whole;
 use crate::space::{Space, Twist, Wrench};
 use crate::state::State;
 
-use press::{Seen, touch};
+use press::{PairKinematics, touch};
 
 /// One contact element that touches.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ pub struct Scratch<S: Space> {
     /// Time (s) for which impacts are predicted; zero where steps are never divided.
     pub(crate) lookahead: S::Real,
     /// Relative kinematics of the current pair at the current surface, reused by solids of a body that share it.
-    seen: Option<Seen<S>>,
+    kinematics: Option<PairKinematics<S>>,
     /// Accelerations at the start of the step, for methods with a correction.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates at the start of the step.
@@ -174,7 +174,7 @@ impl<S: Space> Scratch<S> {
             needs_substeps: <S::Real as Real>::Mask::default(),
             is_hard: <S::Real as Real>::Mask::default(),
             lookahead: S::Real::zero(),
-            seen: None,
+            kinematics: None,
             old_accelerations: vec![Twist::default(); count],
             old_slip_rates: Vec::new(),
             pressed: Vec::new(),
@@ -299,7 +299,7 @@ fn clear<S: Space>(state: &State<S>, scratch: &mut Scratch<S>) {
     scratch.contacts.clear();
     scratch.pressed.clear();
     scratch.pair_forces.clear();
-    scratch.seen = None;
+    scratch.kinematics = None;
     wipe(&mut scratch.slip_rates);
     scratch.slip_rates.resize(state.contact_elements.len(), S::Tangent::default());
     scratch.evaluations += 1;

@@ -18,7 +18,7 @@ use crate::state::State;
 use super::{Contact, ContactTotals, PairForce, Pressed, Scratch};
 
 use meeting::Meeting;
-pub(super) use meeting::Seen;
+pub(super) use meeting::PairKinematics;
 use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
@@ -98,13 +98,13 @@ fn touch_by<S: Space>(
     scratch: &mut Scratch<S>,
 ) {
     let own;
-    let seen = if S::SOLIDS_SHARE {
-        Seen::shared(&mut scratch.seen, model, pair, state, &scratch.rotations)
+    let kinematics = if S::SOLIDS_SHARE {
+        PairKinematics::shared(&mut scratch.kinematics, model, pair, state, &scratch.rotations)
     } else {
-        own = Seen::new(model, pair, state, &scratch.rotations);
+        own = PairKinematics::new(model, pair, state, &scratch.rotations);
         &own
     };
-    let frame = &seen.frame;
+    let frame = &kinematics.frame;
     let surface = &model.bounded(pair.target).surfaces[pair.surface].surface;
     let counted = frame.at_face(model, pair);
     if counted.is_some_and(|face| face.never()) {
@@ -112,7 +112,7 @@ fn touch_by<S: Space>(
     }
     let counted = counted.filter(|face| !face.always());
     let whole_step_depth = model.substepping.whole_step_depth[pair.interface];
-    let meeting = Meeting::of(seen);
+    let meeting = Meeting::of(kinematics);
     let others = scratch.pressed.len();
     let basis = model.interfaces[pair.interface].basis;
     let mut press = Press {
@@ -423,7 +423,7 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))
 }
 
-/// How the contacts of a pair resist the rolling that is under way.
+/// Rolling resistance of the contacts of a pair.
 struct RollingPair<R> {
     /// [`Rolling::lever`].
     lever: R,

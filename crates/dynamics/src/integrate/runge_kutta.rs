@@ -42,7 +42,7 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 #[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
 struct Rates<S: Space> {
     /// Velocity of every body, and the rate of its rotation from the start of the step ([`Space::turn_rate`]).
-    ways: Vec<Twist<S>>,
+    velocities: Vec<Twist<S>>,
     /// Its acceleration, and the rate of its [`Space::momentum`].
     kicks: Vec<Twist<S>>,
     slip_rates: Vec<S::Tangent>,
@@ -181,13 +181,13 @@ impl<S: Space> Stages<S> {
 
     fn keep(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
         let mut rates = Rates {
-            ways: Vec::with_capacity(state.twists.len()),
+            velocities: Vec::with_capacity(state.twists.len()),
             kicks: Vec::with_capacity(state.twists.len()),
             slip_rates: scratch.slip_rates.clone(),
         };
         for i in 0..state.twists.len() {
-            let (way, kick) = self.rates_of(model, state, scratch, i);
-            rates.ways.push(way);
+            let (velocity, kick) = self.rates_of(model, state, scratch, i);
+            rates.velocities.push(velocity);
             rates.kicks.push(kick);
         }
         self.rates.push(rates);
@@ -202,8 +202,8 @@ impl<S: Space> Stages<S> {
         body: usize,
     ) -> (Twist<S>, Twist<S>) {
         let Twist { linear, angular } = state.twists[body];
-        let way = Twist { linear, angular: S::turn_rate(self.turned[body], angular) };
-        (way, momentum(model, scratch, body, scratch.accelerations[body]))
+        let velocity = Twist { linear, angular: S::turn_rate(self.turned[body], angular) };
+        (velocity, momentum(model, scratch, body, scratch.accelerations[body]))
     }
 
     /// Sets the state to the start plus a weighted sum of the rates.
@@ -213,7 +213,7 @@ impl<S: Space> Stages<S> {
             let mut reached = self.momenta[i];
             for (rates, weight) in self.rates.iter().zip(weights) {
                 let share = S::Real::splat(*weight) * dt;
-                velocity = velocity.plus(rates.ways[i], share);
+                velocity = velocity.plus(rates.velocities[i], share);
                 reached = reached.plus(rates.kicks[i], share);
             }
             state.poses[i] = self.poses[i].moved(velocity, S::Real::splat(1.0));
@@ -247,16 +247,16 @@ impl<S: Space> Stages<S> {
         let mut worst = 0.0_f64;
         for i in free(model) {
             let reach = S::Real::splat(model.reach[i].max(1e-9));
-            let mut way = Twist::<S>::default();
+            let mut displacement = Twist::<S>::default();
             let mut kick = Twist::<S>::default();
             for (k, difference) in differences.iter().enumerate() {
                 let share = S::Real::splat(difference * dt);
                 let (velocity, acceleration) = if k < last {
-                    (self.rates[k].ways[i], self.rates[k].kicks[i])
+                    (self.rates[k].velocities[i], self.rates[k].kicks[i])
                 } else {
                     self.rates_of(model, state, scratch, i)
                 };
-                way = way.plus(velocity, share);
+                displacement = displacement.plus(velocity, share);
                 kick = kick.plus(acceleration, share);
             }
             let kick = of_momentum(model, i, state.poses[i].orientation, kick);
@@ -265,7 +265,7 @@ impl<S: Space> Stages<S> {
                 let angular = t.angular.dot(t.angular).sqrt() * reach;
                 (linear + angular).largest_lane()
             };
-            let error = size(way).max(size(kick) * dt);
+            let error = size(displacement).max(size(kick) * dt);
             if error.is_nan() {
                 return f64::NAN;
             }

@@ -93,7 +93,7 @@ impl Width {
 /// A token proves that the machine has a unit. Bundles need it in every operation, so it is a constant here, and the
 /// functions of this module are the only access to code that uses it: each checks the machine first.
 #[cfg(target_arch = "x86_64")]
-#[expect(unsafe_code, reason = "tokens as constants; every way to them asks the machine first")]
+#[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {
     use std::sync::LazyLock;
 

@@ -83,12 +83,12 @@ pub fn settle<S: Space>(
     Integrator::start(model, &Still, state, scratch);
     let start = state.clone();
     let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
-    for way in &TRIES[1..] {
+    for attempt in &TRIES[1..] {
         // With momentum bodies overshoot, for some too far. If every try fails, the first error is returned.
         if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
             state.clone_from(&start);
             evaluate(model, state, scratch);
-            result = sink(model, state, scratch, tolerance, *way).or(result);
+            result = sink(model, state, scratch, tolerance, *attempt).or(result);
         }
     }
     state.time = start_time;

@@ -124,9 +124,9 @@ impl<S: Space> Departure<S> {
         let mut strayed = vec![0.0; self.start.len()];
         let mut sunk = S::Real::zero();
         for body in &self.upward {
-            let way = poses[*body].position - self.start[*body].position;
-            let fallen = way.dot(down);
-            let sideways = way - down * fallen;
+            let displacement = poses[*body].position - self.start[*body].position;
+            let fallen = displacement.dot(down);
+            let sideways = displacement - down * fallen;
             let sideways = sideways.dot(sideways).sqrt();
             let far = sideways.max(-fallen).max(fallen - sunk).largest_lane();
             strayed[*body] = if far.is_finite() { far } else { f64::INFINITY };
@@ -155,7 +155,8 @@ impl<S: Space> Departure<S> {
             first
         } else {
             let farthest = strayed.iter().copied().fold(0.0, f64::max);
-            let going: Vec<bool> = strayed.iter().map(|way| *way >= WITH_IT * farthest).collect();
+            let going: Vec<bool> =
+                strayed.iter().map(|distance| *distance >= WITH_IT * farthest).collect();
             let lowest = self.upward.iter().copied().find(|body| going[*body]).unwrap_or_default();
             (lowest, self.lack(lowest, model, state, scratch, met, &going))
         };
@@ -190,8 +191,8 @@ impl<S: Space> Departure<S> {
 
     /// Returns the displacement (m) of a body, in the lane where it is largest.
     fn moved(&self, state: &State<S>, body: BodyId) -> f64 {
-        let way = state.poses[body].position - self.start[body].position;
-        way.dot(way).sqrt().largest_lane()
+        let displacement = state.poses[body].position - self.start[body].position;
+        displacement.dot(displacement).sqrt().largest_lane()
     }
 
     /// Diagnoses a moving body, given the others that move.

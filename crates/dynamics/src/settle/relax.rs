@@ -39,7 +39,7 @@ struct Touch<S: Space> {
 /// Stiffness of all supports of a body: for its displacement (N/m) and for its rotation (N·m).
 #[derive(Clone, Copy)]
 struct Held<R> {
-    way: R,
+    translation: R,
     turn: R,
 }
 
@@ -47,7 +47,7 @@ impl<R: Real> Held<R> {
     /// Adds a spring (N/m) at an arm (m).
     #[inline(always)]
     fn by(&mut self, stiffness: R, arm: impl Linear<R>) {
-        self.way += stiffness;
+        self.translation += stiffness;
         self.turn += stiffness * arm.dot(arm);
     }
 }
@@ -67,7 +67,7 @@ pub(super) struct Relaxation<S: Space> {
     /// Extent of every body from its center of mass (m).
     pub(super) reach: Vec<S::Real>,
     /// Displacements and rotations of the last step.
-    ways: Vec<Twist<S>>,
+    displacements: Vec<Twist<S>>,
     /// Maximum stiffness of every body so far: a body that leaves its contacts for a moment must not become light
     /// while others lie on it.
     held: Vec<Held<S::Real>>,
@@ -88,8 +88,11 @@ impl<S: Space> Relaxation<S> {
             resting: Default::default(),
             met: vec![false; model.bodies.len()],
             reach: model.reach.iter().map(|reach| S::Real::splat(*reach)).collect(),
-            ways: vec![Twist::default(); model.bodies.len()],
-            held: vec![Held { way: S::Real::zero(), turn: S::Real::zero() }; model.bodies.len()],
+            displacements: vec![Twist::default(); model.bodies.len()],
+            held: vec![
+                Held { translation: S::Real::zero(), turn: S::Real::zero() };
+                model.bodies.len()
+            ],
             touches: Vec::new(),
             touched: Vec::new(),
             calm,
@@ -131,7 +134,8 @@ impl<S: Space> Relaxation<S> {
                     }
                     let acceleration = self.acceleration(scratch, i);
                     let place = length::<S>(state.poses[i].position) + self.reach[i];
-                    let rounding = S::Real::splat(ROUNDING) * place * self.held[i].way / body.mass;
+                    let rounding =
+                        S::Real::splat(ROUNDING) * place * self.held[i].translation / body.mass;
                     rests = rests & acceleration.lt(allowed + rounding);
                     worst = S::Real::select(worst.lt(acceleration), acceleration, worst);
                 }
@@ -150,7 +154,7 @@ impl<S: Space> Relaxation<S> {
 
     #[inline(always)]
     fn weigh_all(&mut self, model: &Model<S>, state: &State<S>, scratch: &Scratch<S>) {
-        let none = Held { way: S::Real::zero(), turn: S::Real::zero() };
+        let none = Held { translation: S::Real::zero(), turn: S::Real::zero() };
         let mut now = vec![none; model.bodies.len()];
         self.touches.clear();
         self.touched.clear();
@@ -191,7 +195,7 @@ impl<S: Space> Relaxation<S> {
             }
         }
         for (held, now) in self.held.iter_mut().zip(now) {
-            held.way = held.way.max(now.way);
+            held.translation = held.translation.max(now.translation);
             held.turn = held.turn.max(now.turn);
         }
     }
@@ -214,9 +218,9 @@ impl<S: Space> Relaxation<S> {
             || {
                 self.choose_ways(model, scratch);
                 self.slide(&mut state.contact_elements.sticks);
-                for (i, way) in self.ways.iter().enumerate() {
-                    state.poses[i] = state.poses[i].moved(*way, S::Real::splat(1.0));
-                    state.twists[i] = Twist::default().plus(*way, S::Real::splat(SLOWLY));
+                for (i, displacement) in self.displacements.iter().enumerate() {
+                    state.poses[i] = state.poses[i].moved(*displacement, S::Real::splat(1.0));
+                    state.twists[i] = Twist::default().plus(*displacement, S::Real::splat(SLOWLY));
                 }
             },
         );
@@ -281,9 +285,11 @@ impl<S: Space> Relaxation<S> {
     fn choose_ways(&mut self, model: &Model<S>, scratch: &Scratch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
         let mut power = zero;
-        for ((body, way), forces) in model.bodies.iter().zip(&self.ways).zip(each(model, scratch)) {
+        for ((body, displacement), forces) in
+            model.bodies.iter().zip(&self.displacements).zip(each(model, scratch))
+        {
             if body.motion == Motion::Free {
-                power += forces.power(*way);
+                power += forces.power(*displacement);
             }
         }
         let against = power.lt(zero);
@@ -300,18 +306,18 @@ impl<S: Space> Relaxation<S> {
                 continue;
             }
             let extent = self.extent(i);
-            let (way, held) = (&mut self.ways[i], self.held[i]);
+            let (displacement, held) = (&mut self.displacements[i], self.held[i]);
             let falling = body.mass * gravity / (S::Real::splat(FIRST_FALL) * extent);
-            let holds = zero.lt(held.way);
-            let stiffness = S::Real::select(holds, held.way, falling);
+            let holds = zero.lt(held.translation);
+            let stiffness = S::Real::select(holds, held.translation, falling);
             // A single support through its center of mass does not resist the rotation of a body.
             let turning = held.turn.max(S::Real::splat(1e-3) * stiffness * extent * extent);
-            let linear = way.linear * carried + forces.force * (given / stiffness);
-            let angular = way.angular * carried + forces.moment * (given / turning);
+            let linear = displacement.linear * carried + forces.force * (given / stiffness);
+            let angular = displacement.angular * carried + forces.moment * (given / turning);
             let length = linear.dot(linear).sqrt().max(S::spin_magnitude(angular) * extent);
             let longest = S::Real::splat(LONGEST_WAY) * extent;
             let cut = longest / length.max(longest);
-            *way = Twist { linear: linear * cut, angular: angular * cut };
+            *displacement = Twist { linear: linear * cut, angular: angular * cut };
         }
     }
 
@@ -319,14 +325,15 @@ impl<S: Space> Relaxation<S> {
     #[inline(always)]
     fn slide(&self, sticks: &mut [Stick<S>]) {
         for touch in &self.touches {
-            let way = |of: usize| {
-                let way = self.ways[touch.bodies[of]];
-                way.linear + S::velocity_at(way.angular, touch.arms[of])
+            let step = |of: usize| {
+                let displacement = self.displacements[touch.bodies[of]];
+                displacement.linear + S::velocity_at(displacement.angular, touch.arms[of])
             };
-            let slip = S::unrotate(touch.rotation, way(0) - way(1));
+            let slip = S::unrotate(touch.rotation, step(0) - step(1));
             let slip = S::rotate_tangent(touch.rotation, S::tangential(slip, touch.normal));
-            let spin =
-                |of: usize| S::unrotate_spin(touch.rotation, self.ways[touch.bodies[of]].angular);
+            let spin = |of: usize| {
+                S::unrotate_spin(touch.rotation, self.displacements[touch.bodies[of]].angular)
+            };
             let spins = [spin(1), spin(0) - spin(1)];
             let stick = &mut sticks[touch.element];
             let (displacement, plane) = (stick.displacement, stick.tangent_plane);
@@ -360,9 +367,9 @@ impl<S: Space> Relaxation<S> {
 impl<R: Real> Relaxation<Planar<R>> {
     /// Resets a lane to the initial state.
     pub(super) fn begin(&mut self, lane: usize) {
-        for (way, held) in self.ways.iter_mut().zip(&mut self.held) {
-            way.put(lane, &Twist::default());
-            held.way.put(lane, &0.0);
+        for (displacement, held) in self.displacements.iter_mut().zip(&mut self.held) {
+            displacement.put(lane, &Twist::default());
+            held.translation.put(lane, &0.0);
             held.turn.put(lane, &0.0);
         }
         self.since.put(lane, &0.0);

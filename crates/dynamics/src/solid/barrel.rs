@@ -156,20 +156,21 @@ impl<R: Real> Barrel<R> {
 }
 
 impl Barrel {
-    /// Returns three derivatives along `way` (m) of half the square of the distance (m) from the center of the
+    /// Returns three derivatives along `along` (m) of half the square of the distance (m) from the center of the
     /// stave's arc, `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
     #[inline(always)]
-    pub(super) fn derivatives(&self, point: Vec3, way: Vec3) -> [f64; 3] {
+    pub(super) fn derivatives(&self, point: Vec3, along: Vec3) -> [f64; 3] {
         let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();
-        let (across, square) = (point.y * way.y + point.z * way.z, way.y * way.y + way.z * way.z);
+        let (across, square) =
+            (point.y * along.y + point.z * along.z, along.y * along.y + along.z * along.z);
         // Derivatives of r.
         let first = across * inverse;
         let second = (square - first * first) * inverse;
         let third = -3.0 * first * second * inverse;
         let offset = self.stave_offset;
         [
-            point.x * way.x + across + offset * first,
-            way.x * way.x + square + offset * second,
+            point.x * along.x + across + offset * first,
+            along.x * along.x + square + offset * second,
             offset * third,
         ]
     }

@@ -208,8 +208,8 @@ impl Set<'_> {
 
     /// Returns the support in the direction of a head, at the side of the rim toward a point (m).
     fn on_rim(&self, direction: Vec3, toward: Vec3) -> Support {
-        let (barrel, way) = (self.barrel, self.rotation.unapply(toward - self.center));
-        let radial = Vec3::new(0.0, way.y, way.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
+        let (barrel, toward) = (self.barrel, self.rotation.unapply(toward - self.center));
+        let radial = Vec3::new(0.0, toward.y, toward.z).unit_or(Vec3::new(0.0, 0.0, 1.0));
         let side = if direction.dot(self.axis()) < 0.0 { -1.0 } else { 1.0 };
         let rim = Vec3::new(side * barrel.half_length, 0.0, 0.0) + radial * barrel.head_radius;
         Support {
@@ -228,7 +228,7 @@ const HEAD: f64 = 1e-7;
 /// Separation of two cores in a direction.
 struct Separation {
     /// Vector from the support of the target to that of the contactor.
-    way: Vec3,
+    offset: Vec3,
     /// Distance (m) of the supporting planes.
     distance: f64,
     supports: [Support; 2],
@@ -243,11 +243,11 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
     if supports[1].outward < HEAD {
         supports[1] = contactor.on_rim(-normal, supports[0].point);
     }
-    let way = supports[1].point - supports[0].point;
-    Separation { way, distance: way.dot(normal), supports }
+    let offset = supports[1].point - supports[0].point;
+    Separation { offset, distance: offset.dot(normal), supports }
 }
 
-/// Tangential parts of `way` (m) below which a normal is exact to rounding.
+/// Tangential parts of `offset` (m) below which a normal is exact to rounding.
 const TANGENTIAL: f64 = 4e-15;
 /// Newton steps (rad) below which a normal is exact: near the edge of a head a support turns much faster than its
 /// direction, so its position is lost in rounding long before the normal is.
@@ -300,8 +300,8 @@ pub(super) fn barrels(
         let mut best = separation(&one, &other, normal);
         for _ in 0..MOST_STEPS {
             evaluations += 1;
-            let tangential = best.way - normal * best.distance;
-            let scale = best.way.length() + center.length();
+            let tangential = best.offset - normal * best.distance;
+            let scale = best.offset.length() + center.length();
             let step = newton(normal, &best, tangential);
             if tangential.length() <= TANGENTIAL * scale || step.length() <= TURN {
                 let (normal, point, distance) = polished(&one, &other, normal, &best);
@@ -314,7 +314,7 @@ pub(super) fn barrels(
             (normal, best) = (next, reached);
         }
         // Converged if only rounding prevents an ascent.
-        let tangential = best.way - normal * best.distance;
+        let tangential = best.offset - normal * best.distance;
         if newton(normal, &best, tangential).length() <= 2e-9 {
             let (normal, point, distance) = polished(&one, &other, normal, &best);
             return found(normal, point, distance, evaluations, true);
@@ -324,12 +324,12 @@ pub(super) fn barrels(
             to = other.project(from);
             evaluations += 2;
         }
-        let way = to - from;
-        if way.length() <= 1e-9 * grown {
+        let offset = to - from;
+        if offset.length() <= 1e-9 * grown {
             // The cores overlap: there is no closest pair, and the best direction so far is returned.
             break;
         }
-        normal = way.unit_or(normal);
+        normal = offset.unit_or(normal);
     }
     let best = separation(&one, &other, normal);
     found(normal, best.supports[1].point, best.distance, evaluations, false)
@@ -343,9 +343,9 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let normal = axis * side;
     let support = resting.support(-normal);
     let head = bearing.center + normal * bearing.barrel.half_length;
-    let way = support.point - head;
-    let distance = way.dot(normal);
-    let aside = (way - normal * distance).length();
+    let offset = support.point - head;
+    let distance = offset.dot(normal);
+    let aside = (offset - normal * distance).length();
     (distance >= 0.0 && aside <= bearing.barrel.head_radius).then_some((
         normal,
         support.point,
@@ -386,18 +386,18 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
         let corner = head + out * radius - other_head;
         let mut other_out =
             (corner - facing * corner.dot(facing)).unit_or(Vec3::new(0.0, 0.0, 1.0));
-        let mut way = Vec3::default();
+        let mut separation = Vec3::default();
         for _ in 0..12 {
-            way = other_head + other_out * other_radius - head - out * radius;
+            separation = other_head + other_out * other_radius - head - out * radius;
             // Along both rims, per radian of the points.
             let (slope, other_slope) =
                 (axis.cross(out) * radius, facing.cross(other_out) * other_radius);
             let (a, c) = (
-                radius * radius + way.dot(out) * radius,
-                other_radius * other_radius - way.dot(other_out) * other_radius,
+                radius * radius + separation.dot(out) * radius,
+                other_radius * other_radius - separation.dot(other_out) * other_radius,
             );
             let b = -slope.dot(other_slope);
-            let (f, g) = (-way.dot(slope), way.dot(other_slope));
+            let (f, g) = (-separation.dot(slope), separation.dot(other_slope));
             let determinant = a * c - b * b;
             let (turn, other_turn) = ((b * g - c * f) / determinant, (b * f - a * g) / determinant);
             if turn.abs().max(other_turn.abs()) > 0.5 {
@@ -409,8 +409,8 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
                 break;
             }
         }
-        let distance = way.length();
-        let normal = way.unit_or(axis);
+        let distance = separation.length();
+        let normal = separation.unit_or(axis);
         let borne = |barrel: &Barrel, outward: f64, radial: f64| {
             let corner = barrel.head_radius + barrel.stave_offset;
             radial >= -1e-12 && outward > 0.0 && radial * barrel.half_length <= outward * corner
@@ -443,8 +443,8 @@ fn polished(
     if here.distance < 1e-6 {
         return (normal, here.supports[1].point, here.distance);
     }
-    let way = to - from;
-    (way.unit_or(normal), to, way.length())
+    let offset = to - from;
+    (offset.unit_or(normal), to, offset.length())
 }
 
 /// Returns a Newton step (rad) on the sphere of directions, toward the largest separation of the cores.
@@ -483,8 +483,8 @@ fn ascend(
     for _ in 0..40 {
         let next = (normal + step * share).unit_or(normal);
         let there = separation(target, contactor, next);
-        let rounding = 1e-15 * (contactor.center.length() + there.way.length());
-        let off = there.way - next * there.distance;
+        let rounding = 1e-15 * (contactor.center.length() + there.offset.length());
+        let off = there.offset - next * there.distance;
         if there.distance > here.distance + rounding
             || (there.distance >= here.distance - rounding && off.length() < tangential.length())
         {

@@ -167,11 +167,11 @@ pub(super) fn shared_by_both(
 /// Returns the polygon that a block with its origin at `at` (m) shares with a target, in the frame of the target, to
 /// which `frame` transforms from that of the contactor; `normal` points out of the target where they are closest.
 ///
-/// The two faces that meet there overlap in a polygon as seen across that of the target. Each corner of it
+/// The two faces that meet there overlap in a polygon, in projection on that of the target. Each corner of it
 /// bears like as many springs as right angles by which the polygon turns there, so the whole always bears
 /// like four: a corner of a block on the other's face is one, and where twisted blocks cross their edges two
 /// corners take the place of one. All of it is continuous in the pose, since the turn of a convex boundary
-/// is; what is flush need not be told from what is nearly so.
+/// is; exact flushness needs no special case.
 fn shared(
     contactor: &Block,
     target: &Block,
@@ -185,10 +185,10 @@ fn shared(
     let down = resting.outward;
     let cosine = up.dot(normal).max(-down.dot(normal)).min(1.0);
     let flat = smooth(1.0 - (1.0 - cosine * cosine) / (WIDEST * WIDEST));
-    let seen = |v: Vec3| Vec2::new(v.dot(bearing.along[0]), v.dot(bearing.along[1]));
+    let projected = |v: Vec3| Vec2::new(v.dot(bearing.along[0]), v.dot(bearing.along[1]));
     let mut chain = Chain { corners: [(Vec2::default(), Side::Contactor(0)); 2 * MOST], count: 0 };
     for side in 0..4 {
-        chain.push((seen(resting.corner(side)), Side::Contactor(side)));
+        chain.push((projected(resting.corner(side)), Side::Contactor(side)));
     }
     for (side, (_, outward)) in SIDES.into_iter().enumerate() {
         let half = if outward.x == 0.0 { bearing.half[1] } else { bearing.half[0] };
@@ -196,7 +196,7 @@ fn shared(
     }
     let grown = contactor.rounding + target.rounding;
     let direction = |side: Side| match side {
-        Side::Contactor(side) => seen(resting.side(side)),
+        Side::Contactor(side) => projected(resting.side(side)),
         Side::Target(side) => SIDES[side].0,
     };
     let mut vertices = [None; MOST];

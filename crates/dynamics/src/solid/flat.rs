@@ -133,20 +133,20 @@ pub(super) fn slopes(
     frame: Rotation3,
     normal: Vec3,
 ) -> Slopes<Spatial> {
-    let tell = |flat: &Flat| [-flat.gap.distance, flat.shares.deepest, flat.shares.others];
-    let here = tell(flat);
+    let values = |flat: &Flat| [-flat.gap.distance, flat.shares.deepest, flat.shares.others];
+    let here = values(flat);
     let slope = |along: &dyn Fn(f64) -> (Vec3, Rotation3)| {
-        let there = |way: f64| {
-            let (at, frame) = along(way);
-            shared(contactor, target, at, frame, normal).map(|flat| (way, tell(&flat)))
+        let there = |offset: f64| {
+            let (at, frame) = along(offset);
+            shared(contactor, target, at, frame, normal).map(|flat| (offset, values(&flat)))
         };
         // One-sided where the patch ends.
         let from = there(-HAIR).unwrap_or((0.0, here));
         let to = there(HAIR).unwrap_or((0.0, here));
-        let way = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
-        [0, 1, 2].map(|value: usize| (to.1[value] - from.1[value]) / way)
+        let length = if to.0 > from.0 { to.0 - from.0 } else { 1.0 };
+        [0, 1, 2].map(|value: usize| (to.1[value] - from.1[value]) / length)
     };
-    let [x, y, z] = AXES.map(|axis| slope(&|way| (at + axis * way, frame)));
+    let [x, y, z] = AXES.map(|axis| slope(&|offset| (at + axis * offset, frame)));
     let [yz, zx, xy] =
         AXES.map(|axis| slope(&|turn| (at, Quaternion::turn(axis * turn).matrix().after(frame))));
     let [mut middle, deepest, others] = [0, 1, 2].map(|value: usize| Wrench {

@@ -11,7 +11,7 @@ use crate::state::State;
 
 /// Relative kinematics of two bodies in the frame of a surface of one of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Seen<S: Space> {
+pub(crate) struct PairKinematics<S: Space> {
     /// The contactor, the target, and the index of its surface.
     of: [usize; 3],
     pub(super) frame: PairFrame<S>,
@@ -31,7 +31,7 @@ struct Motion<S: Space> {
     target_spin: S::Spin,
 }
 
-impl<S: Space> Seen<S> {
+impl<S: Space> PairKinematics<S> {
     #[inline(always)]
     pub(super) fn new(
         model: &Model<S>,
@@ -65,7 +65,7 @@ impl<S: Space> Seen<S> {
         let of = [pair.contactor, pair.target, pair.surface];
         last.take_if(
             #[inline(always)]
-            |seen| seen.of != of,
+            |kinematics| kinematics.of != of,
         );
         last.get_or_insert_with(
             #[inline(always)]
@@ -83,8 +83,8 @@ pub(super) struct Meeting<'a, S: Space> {
 
 impl<'a, S: Space> Meeting<'a, S> {
     #[inline(always)]
-    pub(super) fn of(seen: &'a Seen<S>) -> Self {
-        Self { frame: &seen.frame, motion: seen.motion }
+    pub(super) fn of(kinematics: &'a PairKinematics<S>) -> Self {
+        Self { frame: &kinematics.frame, motion: kinematics.motion }
     }
 
     /// Returns the spin (rad/s) of the contactor relative to the target.

@@ -36,9 +36,9 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(fast) = self.fast else { return };
         let approach = -self.meeting.velocity(node).dot(gap.normal);
-        let way = self.lookahead * approach.abs();
-        let near = gap.distance.lt(way);
-        self.needs_substeps = self.needs_substeps | (near & fast.whole_step_way.lt(way));
+        let travel = self.lookahead * approach.abs();
+        let near = gap.distance.lt(travel);
+        self.needs_substeps = self.needs_substeps | (near & fast.whole_step_way.lt(travel));
         self.is_hard = self.is_hard | (near & fast.hard.lt(approach));
     }
 
@@ -51,11 +51,12 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             deepest.gap.distance = S::Real::select(counts, deepest.gap.distance, one);
         }
         let meeting = self.meeting;
-        let seen = |touch: &Touch<S>| {
+        let depth_and_rate = |touch: &Touch<S>| {
             let rate = -meeting.velocity(touch.companion()).dot(touch.gap.normal);
             (-touch.gap.distance, rate)
         };
-        let ((depth, rate), (middle, middle_rate)) = (seen(&deepest), seen(&spread.middle));
+        let ((depth, rate), (middle, middle_rate)) =
+            (depth_and_rate(&deepest), depth_and_rate(&spread.middle));
         let touching = zero.lt(depth);
         let (shares, between) = (spread.shares, S::Real::splat(spread.axes.in_the_middle()));
         // Depth, rate and number of springs at the deepest point, at its mirror image and in the middle.
