@@ -31,7 +31,8 @@ pub enum Quantity {
     /// Time (s) at which the body is first upright.
     FirstUpright,
     /// Displacement (m) along `x` of the body relative to the ground at the end.
-    Way,
+    #[serde(rename = "way")]
+    Displacement,
     /// The value of `vary` above which the body overturns.
     OverturningBorder,
     /// The value of `vary` above which the body lifts a corner.
@@ -42,7 +43,7 @@ impl Quantity {
     fn words(self) -> &'static str {
         match self {
             Self::FirstUpright => "time to be upright",
-            Self::Way => "way on the ground",
+            Self::Displacement => "displacement on the ground",
             Self::OverturningBorder => "what turns the body over",
             Self::UpliftBorder => "what lifts a corner",
         }
@@ -51,7 +52,7 @@ impl Quantity {
     /// Rotation (rad) that marks the border as exceeded.
     fn beyond(self) -> Option<f64> {
         match self {
-            Self::FirstUpright | Self::Way => None,
+            Self::FirstUpright | Self::Displacement => None,
             Self::OverturningBorder => Some(OVERTURNED),
             Self::UpliftBorder => Some(2e-4),
         }
@@ -136,12 +137,12 @@ pub fn read(name: &str, text: &str) -> Result<Problem, CaseError> {
     let scenario = Scenario::parse(&file, scene, &[]).map_err(|e| refuse(&e.sentence()))?;
     let unit = match (expect.quantity, expect.unit.as_deref()) {
         (Quantity::FirstUpright, None) => "s",
-        (Quantity::Way, None) => "m",
+        (Quantity::Displacement, None) => "m",
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("g")) => "g",
         (Quantity::OverturningBorder | Quantity::UpliftBorder, Some("m/s")) => "m/s",
         (quantity, unit) => {
             return Err(refuse(&format!(
-                "expect.unit: a border needs \"g\" or \"m/s\", a time or a way none; found {unit:?} \
+                "expect.unit: a border needs \"g\" or \"m/s\", a time or a displacement none; found {unit:?} \
                  for {quantity:?}"
             )));
         }
@@ -185,7 +186,7 @@ fn answer_of(file: &str, scene: &str, expect: &Expect, effort: Effort) -> Result
                 Ok(run.recording.frames.poses.iter().any(turned))
             })
         }
-        _ if expect.quantity == Quantity::Way => {
+        _ if expect.quantity == Quantity::Displacement => {
             let (run, body) = run(&[])?;
             let place = |pose: &[[f64; 3]]| pose[body][0] - pose[0][0];
             match (run.recording.frames.poses.first(), run.recording.frames.poses.last()) {

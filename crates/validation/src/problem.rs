@@ -161,7 +161,7 @@ pub fn setting(id: impl Into<String>, title: impl Into<String>, source: &str) ->
 
 impl Setting {
     /// Adds the requested quantity, its unit (empty for pure numbers), and the exact answer.
-    pub fn asks(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
+    pub fn quantity(self, quantity: &'static str, unit: &'static str, answer: Answer) -> Question {
         Question { setting: self, quantity, unit, answer }
     }
 }
@@ -239,7 +239,7 @@ impl Question {
 /// Evaluates successive refinements (0, 1, 2) at full effort, only the coarsest at fast effort.
 ///
 /// # Errors
-/// Those of `answer`.
+/// If `answer` fails.
 pub fn refine(
     effort: Effort,
     exact: f64,

@@ -53,7 +53,7 @@ pub(super) fn problems() -> Vec<Problem> {
 fn first_fall() -> Problem {
     setting("consensus/a-bodies", "scene A (±20°) from bodies", SOURCE)
         // The five codes: 1.64, 1.73, 1.75 to 1.85, 2.0, 1.69 s; the middle of their range, and half of it.
-        .asks("first fall of a barrel", "s", absolute(1.82, 0.18))
+        .quantity("first fall of a barrel", "s", absolute(1.82, 0.18))
         .by(move |_| match bodies(20.0, 3.0)? {
             [Some(time), Some(earlier)] => Ok(Outcome::of(time).noted(format!(
                 "five codes: 1.64 s to 2.0 s; a drop of 0.2 m is passed at {earlier:.2} s"
@@ -90,7 +90,7 @@ fn verdict(
     run: fn(f64) -> Result<Option<f64>, Failure>,
 ) -> Problem {
     setting(format!("consensus/{id}"), title, SOURCE)
-        .asks(
+        .quantity(
             "whether a barrel falls in 10 s, 0 or 1",
             "",
             absolute(f64::from(u8::from(falls)), 0.0),

@@ -66,7 +66,7 @@ pub(super) fn push(amplitude: f64, seconds: f64) -> String {
 }
 
 /// Returns the displacement (m) of a body along an axis, with its times (s).
-pub(super) fn way(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
+pub(super) fn displacement(run: &Run, body: &str, axis: &str) -> Result<Vec<(f64, f64)>, Failure> {
     let name = format!("{body} displacement {axis}");
     let channel = run.recording.channel(&name).ok_or(Failure::Absent(name))?;
     Ok(run.recording.times.iter().copied().zip(channel.values.iter().copied()).collect())
@@ -94,7 +94,7 @@ fn rolls_out(degrees: f64) -> Problem {
         format!("barrels between chocks at {degrees}°, pushed for good"),
         "statics: roll-out at a/g = tan φ",
     )
-    .asks("push from which a barrel rolls out", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("push from which a barrel rolls out", "g", relative(exact, 1e-2).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let run = pressed(&chocks(angle), amplitude)?;
         Ok(run.fates.collapse_time().is_some())
@@ -138,7 +138,7 @@ fn hill() -> Problem {
         "barrels between chocks at 40°, pushed for 0.05 s",
         "energy: m g r (1 − cos φ) over the end of a chock",
     )
-    .asks("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
+    .quantity("push from which a barrel rolls out", "g", relative(exact, 2e-2).fast(3e-2))
     .at_border(0.05, move |amplitude| {
         let run = one_level(&chocks(angle), &push(amplitude, BLOW), 1.2)?;
         // Beyond the chock it falls onto the beam.
@@ -153,7 +153,7 @@ fn dish(radius: f64) -> Problem {
         format!("a stack on an isolator in dishes of {radius} m after a short push"),
         "pendulum: T = 2π √(R/g)",
     )
-    .asks("period", "s", relative(TAU * (radius / GRAVITY).sqrt(), 5e-3))
+    .quantity("period", "s", relative(TAU * (radius / GRAVITY).sqrt(), 5e-3))
     .by(move |_| {
         let settings = [
             "stack.isolator.path=\"dish\"".to_owned(),
@@ -162,15 +162,15 @@ fn dish(radius: f64) -> Problem {
             "interface.barrel-rack.friction.coefficient=0.6".into(),
         ];
         let run = one_level(&settings, &push(0.08, 0.15), 6.0)?;
-        let ways = way(&run, "platform of R1", "x")?;
-        period(&ways, 0.3).ok_or_else(|| Failure::Absent("the platform does not swing".into()))
+        let samples = displacement(&run, "platform of R1", "x")?;
+        period(&samples, 0.3).ok_or_else(|| Failure::Absent("the platform does not swing".into()))
     })
 }
 
 /// Returns the period (s) of the zero crossings of a quantity after a time (s), if it oscillates.
-pub(super) fn period(ways: &[(f64, f64)], after: f64) -> Option<f64> {
-    let from = ways.partition_point(|(time, _)| *time <= after);
-    mean_time(&crossings(&ways[from..]), 3).map(|half| 2.0 * half)
+pub(super) fn period(samples: &[(f64, f64)], after: f64) -> Option<f64> {
+    let from = samples.partition_point(|(time, _)| *time <= after);
+    mean_time(&crossings(&samples[from..]), 3).map(|half| 2.0 * half)
 }
 
 fn slides() -> Problem {
@@ -183,7 +183,7 @@ fn slides() -> Problem {
         "a stack on a sheet of μ = 0.05, pushed with 0.15 g for 0.4 s",
         "Newmark 1965",
     )
-    .asks("residual displacement", "m", relative(exact, 1e-2))
+    .quantity("residual displacement", "m", relative(exact, 1e-2))
     .by(move |_| {
         let settings = [
             "stack.isolator.path=\"flat\"".to_owned(),
@@ -192,7 +192,7 @@ fn slides() -> Problem {
             "interface.barrel-rack.friction.coefficient=0.6".into(),
         ];
         let run = one_level(&settings, &push(push_g, seconds), 4.0)?;
-        let last = way(&run, "platform of R1", "x")?.last().map(|last| last.1.abs());
+        let last = displacement(&run, "platform of R1", "x")?.last().map(|last| last.1.abs());
         last.ok_or_else(|| Failure::Absent("nothing was recorded".into()))
     })
 }
@@ -203,7 +203,7 @@ fn pads() -> Problem {
     let mass = 46.0 + 990.0 * 0.225;
     let exact = mass * GRAVITY / (2.0 * 2.0 * stiffness * cos(angle) * cos(angle));
     setting("devices/pads", "a full barrel on pads of 400 kN/m without friction", "statics")
-        .asks("how far it sinks into its cradle", "m", relative(exact, 1e-2))
+        .quantity("how far it sinks into its cradle", "m", relative(exact, 1e-2))
         .by(move |_| {
             let settings = [
                 format!("stack.pad.stiffness=\"{stiffness} N/m\""),
@@ -248,7 +248,7 @@ fn yields() -> Problem {
         "a weight caught by a slack tie that yields at 2 kN",
         "energy: ½ m v² = F²/2k + F Δ",
     )
-    .asks("how much longer the tie is for good", "m", relative(exact, 1e-5).fast(1e-4))
+    .quantity("how much longer the tie is for good", "m", relative(exact, 1e-5).fast(1e-4))
     .by(move |effort| {
         let tie = Strap {
             link: joined(Vec2::new(-1.0, 3.0)),
@@ -267,7 +267,7 @@ fn yields() -> Problem {
 fn between_stops() -> Problem {
     let (gap, speed, omega) = (0.02, 0.3, 60.0);
     setting("devices/stops", "a weight between two elastic stops at ±2 cm", "4 δ/v + 2π/ω")
-        .asks("period", "s", relative(4.0 * gap / speed + TAU / omega, 1e-6).fast(1e-5))
+        .quantity("period", "s", relative(4.0 * gap / speed + TAU / omega, 1e-6).fast(1e-5))
         .by(move |effort| {
             let spring = Guide::spring(joined(Vec2::new(0.0, 3.0)), Vec2::new(1.0, 0.0), 0.0, 0.0);
             let guide = Guide { gap, stop_stiffness: MASS * omega * omega, ..spring };
@@ -307,15 +307,15 @@ fn largest_answer(share: f64, tuning: Tuning, step: f64) -> Result<f64, Failure>
     let mut model = Model::new(bodies, vec![], vec![], Vec2::default())?;
     model.fasten(elements)?;
     let mut scene = Scene::of(model);
-    let mut ways = Vec::new();
+    let mut samples = Vec::new();
     scene.watch(&Still, step, 40.0, |state, _, _| {
-        ways.push(state.poses[1].position.x);
+        samples.push(state.poses[1].position.x);
         ControlFlow::Continue(())
     })?;
     // |X(ω)| of the impulse m v, over its static 1/k; both peaks lie near the frequency of the structure.
     let answer = |omega: f64| {
         let (mut re, mut im) = (0.0, 0.0);
-        for (i, x) in ways.iter().enumerate() {
+        for (i, x) in samples.iter().enumerate() {
             let phase = omega * step * i as f64;
             re += x * cos(phase);
             im += x * sin(phase);
@@ -333,14 +333,14 @@ fn den_hartog(share: f64) -> [Problem; 2] {
     let title = format!("undamped structure with a tuned mass of {share} of its mass");
     let step = 0.01;
     let peak = setting(format!("devices/tuned-mass-peak-{share}"), title.clone(), source)
-        .asks(
+        .quantity(
             "largest displacement over that at rest",
             "",
             relative((1.0 + 2.0 / share).sqrt(), 1e-2),
         )
         .by(move |_| largest_answer(share, exact, step));
     let frequency = setting(format!("devices/tuned-mass-frequency-{share}"), title, source)
-        .asks(
+        .quantity(
             "best frequency of the mass over that of the structure",
             "",
             relative(exact.frequency, 1e-2),

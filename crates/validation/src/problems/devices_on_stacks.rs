@@ -9,7 +9,7 @@ use barrelstack_dynamics::math::{cos, sin, tan};
 use crate::problem::{relative, setting};
 use crate::{Failure, GRAVITY, Problem};
 
-use super::devices::{self, one_level, pressed, push, way};
+use super::devices::{self, displacement, one_level, pressed, push};
 
 /// Returns the problems of this theory.
 pub(super) fn problems() -> Vec<Problem> {
@@ -62,7 +62,7 @@ fn lid() -> Problem {
         "a barrel in a cradle of 28° under a lid without a gap, pushed with 0.9 g",
         HELD,
     )
-    .asks("force on the lid", "N", relative(exact, 5e-3))
+    .quantity("force on the lid", "N", relative(exact, 5e-3))
     .by(|_| Ok(largest(&pressed(&lids(), 0.9)?)))
 }
 
@@ -74,7 +74,7 @@ fn lid_breaks() -> Problem {
         "a barrel in a cradle of 28° under a lid that breaks at 1 kN",
         HELD,
     )
-    .asks("push from which the barrel rolls out", "g", relative(exact, 5e-3).fast(2e-2))
+    .quantity("push from which the barrel rolls out", "g", relative(exact, 5e-3).fast(2e-2))
     .at_border(0.05, move |amplitude| {
         let mut settings = lids();
         settings.push(format!("stack.lid.strength=\"{strength} N\""));
@@ -90,7 +90,7 @@ fn strap() -> Problem {
         "a barrel strapped into a cradle of 28° without slack, pushed with 0.9 g",
         HELD,
     )
-    .asks("tension of one of its two straps", "N", relative(exact, 5e-3))
+    .quantity("tension of one of its two straps", "N", relative(exact, 5e-3))
     .by(|_| {
         let settings = ["stack.strap.levels=1", "stack.strap.stiffness=\"500 MN/m\"", HARD];
         let settings = settings.map(str::to_owned);
@@ -99,8 +99,8 @@ fn strap() -> Problem {
 }
 
 /// Returns the period (s) of the zero crossings of a quantity after a time (s).
-fn period(ways: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
-    devices::period(ways, after).ok_or_else(|| Failure::Absent("it does not swing".into()))
+fn period(samples: &[(f64, f64)], after: f64) -> Result<f64, Failure> {
+    devices::period(samples, after).ok_or_else(|| Failure::Absent("it does not swing".into()))
 }
 
 /// Returns the mass (kg) of the bodies whose names pass a filter.
@@ -132,10 +132,10 @@ fn walking_stop() -> [Problem; 2] {
     let title = || "a rack that slides between stops of ±1 cm on the barrels below".to_owned();
     [
         setting("devices/walking-stop-period", title(), "4 δ/v + 2π/ω")
-            .asks("period", "s", relative(4.0 * gap / speed + TAU / omega, 5e-3))
-            .by(move |_| period(&way(&run()?, "R2", "x")?, seconds)),
+            .quantity("period", "s", relative(4.0 * gap / speed + TAU / omega, 5e-3))
+            .by(move |_| period(&displacement(&run()?, "R2", "x")?, seconds)),
         setting("devices/walking-stop-force", title(), "energy: ½ m v² = F²/2k on two stops")
-            .asks(
+            .quantity(
                 "largest force in one of two stops",
                 "N",
                 relative(0.5 * mass * omega * speed, 5e-3),
@@ -168,7 +168,7 @@ fn tie() -> Problem {
         "a stack that glides between ties to both walls, each with 2 cm of slack",
         "4 δ/v + 2π/ω",
     )
-    .asks("period", "s", relative(4.0 * slack / speed + TAU / omega, 5e-3))
+    .quantity("period", "s", relative(4.0 * slack / speed + TAU / omega, 5e-3))
     .by(move |_| {
         let mut settings = platform(0.0);
         settings.extend([
@@ -177,7 +177,7 @@ fn tie() -> Problem {
             format!("stack.tie.stiffness=\"{stiffness} N/m\""),
         ]);
         let run = one_level(&settings, &push(push_g, seconds), 6.0)?;
-        period(&way(&run, "R1", "x")?, seconds)
+        period(&displacement(&run, "R1", "x")?, seconds)
     })
 }
 
@@ -217,15 +217,20 @@ fn frequency(upper: usize) -> Problem {
         "a stack on a sprung platform with a mass of 150 kg on its rack, undamped",
         "two degrees of freedom",
     )
-    .asks(["lower frequency", "upper frequency"][upper], "Hz", relative(square.sqrt() / TAU, 2e-3))
+    .quantity(
+        ["lower frequency", "upper frequency"][upper],
+        "Hz",
+        relative(square.sqrt() / TAU, 2e-3),
+    )
     .by(move |_| {
         let run = with_mass(mass, tuning, (0.2, 0.05), 10.0)?;
-        let (platform, other) = (way(&run, "platform of R1", "x")?, way(&run, "mass on R1", "x")?);
+        let (platform, other) =
+            (displacement(&run, "platform of R1", "x")?, displacement(&run, "mass on R1", "x")?);
         // A mode is isolated by projecting out the other one, orthogonal with respect to the masses.
         let shape = own / (own - square);
-        let seen =
+        let projected =
             |((t, x), (_, y)): (&(f64, f64), &(f64, f64))| (*t, ABOARD * x + mass * shape * y);
-        let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(seen).collect();
+        let mode: Vec<(f64, f64)> = platform.iter().zip(&other).map(projected).collect();
         period(&mode, 0.1).map(|period| 1.0 / period)
     })
 }
@@ -263,13 +268,13 @@ fn tuned(share: f64) -> Problem {
         format!("a stack on a sprung platform with a mass tuned by Den Hartog, {share} of its own"),
         "two degrees of freedom",
     )
-    .asks("largest displacement over that at rest", "", relative(exact, 1e-2))
+    .quantity("largest displacement over that at rest", "", relative(exact, 1e-2))
     .by(move |_| {
         let run = with_mass(share * ABOARD, tuning, (blow, seconds), 16.0)?;
-        let ways = way(&run, "platform of R1", "x")?;
+        let samples = displacement(&run, "platform of R1", "x")?;
         let answer = |omega: f64| {
             let (mut re, mut im) = (0.0, 0.0);
-            for pair in ways.windows(2) {
+            for pair in samples.windows(2) {
                 let step = 0.5 * (pair[1].0 - pair[0].0);
                 for (t, x) in pair {
                     re += step * x * cos(omega * t);

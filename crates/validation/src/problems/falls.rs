@@ -36,7 +36,7 @@ fn stopped(height: f64) -> Problem {
     setting(format!("falls/force-{height}"), format!(
             "a barrel that falls {height} m on ground as hard as that of the default law of impacts"
         ), "energy: m g (h + δ) = ⅖ k δ^2.5")
-.asks("largest force on it", "N", relative(exact, 1e-4))
+.quantity("largest force on it", "N", relative(exact, 1e-4))
 .by(move |_| {
             let text = format!(
                 "schema = 1\nkind = \"free\"\n[[body]]\nname = \"barrel\"\n\

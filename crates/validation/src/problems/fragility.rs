@@ -32,7 +32,7 @@ fn number(
     of: impl Fn(&Fit) -> f64 + Send + Sync + 'static,
 ) -> Problem {
     setting(format!("fragility/{id}"), "eight stripes of twenty cases", BAKER)
-        .asks(quantity, "", absolute(exact, half_digit))
+        .quantity(quantity, "", absolute(exact, half_digit))
         .by(move |_| Ok(of(&fitted(&stripes())?)))
 }
 
@@ -76,7 +76,7 @@ fn covered(
 ) -> Problem {
     setting(format!("fragility/{id}"), title, source)
         // Sixty campaigns at five correlated intensities scatter by some 0.02.
-        .asks(
+        .quantity(
             "share of 95 % bands that hold the true curve, mean of five intensities",
             "",
             absolute(0.95, 0.02).fast(0.05),
@@ -93,7 +93,7 @@ fn power_law() -> Problem {
         "lognormal fragility under a power-law hazard",
         "Cornell et al. 2002: λ = k₀ θ⁻ᵏ exp(k²β²/2)",
     )
-    .asks(
+    .quantity(
         "annual rate of failure",
         "1/a",
         relative(k0 * exp(-k * ln_median + 0.5 * (k * curve.dispersion).powi(2)), 1e-6),

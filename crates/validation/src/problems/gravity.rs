@@ -80,14 +80,14 @@ fn level_force(level: usize) -> Problem {
         format!("five bricks in a column, force under level {level}"),
         SOURCE,
     )
-    .asks("normal force", "N", relative(exact, 1e-8)) // measured 9e-10
+    .quantity("normal force", "N", relative(exact, 1e-8)) // measured 9e-10
     .by(move |_| Ok(force_between(&column(5)?, level - 1, level)))
 }
 
 fn sink() -> Problem {
     let exact = 5.0 * MASS * GRAVITY / (2.0 * STIFFNESS);
     setting("gravity/sink", "five bricks in a column, the lowest on two nodes", SOURCE)
-        .asks("sinking of the lowest", "m", relative(exact, 1e-8)) // measured 3e-10
+        .quantity("sinking of the lowest", "m", relative(exact, 1e-8)) // measured 3e-10
         .by(|_| Ok(0.1 - column(5)?.state.poses[1].position.z))
 }
 
@@ -113,7 +113,7 @@ fn cradle(angle: f64) -> Problem {
         SOURCE,
     )
     // The points touch the sunken disc a little higher; the effect vanishes with stiffness.
-    .asks("normal force of one", "N", relative(exact, 1e-4))
+    .quantity("normal force of one", "N", relative(exact, 1e-4))
     .by(move |_| {
         let (radius, stiffness) = (0.35, 1e9);
         let barrel = disc("barrel", radius, mass, 0.06, Vec2::default());
@@ -138,7 +138,7 @@ fn rest() -> Problem {
         "five bricks in a column, one minute (six seconds in the fast form)",
         SOURCE,
     )
-    .asks("largest drift", "m", absolute(0.0, 1e-6)) // measured 1.2e-13
+    .quantity("largest drift", "m", absolute(0.0, 1e-6)) // measured 1.2e-13
     .by(|effort| {
         let mut scene = column(5)?;
         let start: Vec<Vec2> = scene.state.poses.iter().map(|p| p.position).collect();
@@ -183,7 +183,7 @@ fn overhang(n: u32) -> Problem {
         },
         "the harmonic stack",
     )
-    .asks("farthest overhang", "m", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("farthest overhang", "m", relative(exact, 5e-3).fast(1.2e-2))
     .by(move |effort| {
         let halvings = if effort == Effort::Full { 6 } else { 0 };
         let found = border((0.99, 1.01), halvings, |share| Ok(!stands(n, share)?))?;

@@ -56,7 +56,7 @@ fn quarter_period(alpha: f64, share: f64) -> Problem {
         format!("block of α = {alpha} let go at φ = {share}"),
         SOURCE,
     )
-    .asks("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
+    .quantity("p times the quarter period", "", relative(exact, 1e-3).fast(5e-3)) // measured 1e-6
     .by(move |effort| {
         let block = firm(effort, 1.0, alpha);
         let slender = theory::slender_quarter_period(share);
@@ -74,7 +74,7 @@ fn ratio(alpha: f64) -> Problem {
         format!("first impact of a block of α = {alpha} let go at φ = 0.5"),
         SOURCE,
     )
-    .asks("ratio of angular velocities η", "", relative(exact, 1e-3).fast(5e-3))
+    .quantity("ratio of angular velocities η", "", relative(exact, 1e-3).fast(5e-3))
     .refined(move |effort, level| firm(effort, 1.0, alpha).refined(level - 1).restitution(0.5))
 }
 
@@ -91,7 +91,11 @@ fn decay(alpha: f64, impacts: usize) -> Problem {
         format!("block of α = {alpha} let go at φ = 0.5"),
         SOURCE,
     )
-    .asks("lean over α after the impacts counted in the name", "", relative(exact, 1e-2).fast(3e-2))
+    .quantity(
+        "lean over α after the impacts counted in the name",
+        "",
+        relative(exact, 1e-2).fast(3e-2),
+    )
     .by(move |effort| {
         let ratio = theory::housner_restitution(alpha).powi(2);
         let n = i32::try_from(impacts).unwrap_or(i32::MAX);
@@ -120,12 +124,12 @@ fn half_period(alpha: f64, impacts: usize) -> Problem {
         format!("block of α = {alpha} let go at φ = 0.5"),
         SOURCE,
     )
-    .asks("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
+    .quantity("p times the time to the next impact", "", relative(exact, 5e-3).fast(2.5e-2))
     .refined(move |effort, level| {
         let block = firm(effort, 1.0, alpha).refined(level - 1);
         let swings = block.swings(0.5, impacts + 1, 12.0)?;
-        let way = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
-        Ok(way * block.rate())
+        let interval = nth(&swings, impacts + 1)?.0 - nth(&swings, impacts)?.0;
+        Ok(interval * block.rate())
     })
 }
 
@@ -142,7 +146,7 @@ fn uplift(alpha: f64, vertical: f64) -> Problem {
         format!("block of α = {alpha}, vertical ground acceleration {vertical} g"),
         SOURCE,
     )
-    .asks("ground acceleration that lifts a corner", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("ground acceleration that lifts a corner", "g", relative(exact, 5e-3).fast(1.2e-2))
     .by(move |effort| {
         let block = firm(effort, 1.0, alpha);
         let bracket = (0.98 * exact, 1.02 * exact);
@@ -163,7 +167,7 @@ fn rectangular(product: f64) -> Problem {
         format!("slender block (α = 0.03), constant push of p t₁ = {product}"),
         SOURCE,
     )
-    .asks("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .quantity("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
     .by(move |effort| {
         // The sudden push excites the springs, less the stiffer they are.
         refine(effort, exact, |level| {
@@ -183,7 +187,11 @@ fn impulse() -> Problem {
     let (radius, alpha) = (1.0, 0.25);
     let exact = (8.0 * GRAVITY * radius * (1.0 - cos(alpha)) / 3.0).sqrt() / cos(alpha);
     setting("housner/impulse", "block of α = 0.25, ground velocity reached within 2 ms", SOURCE)
-        .asks("sudden ground velocity that overturns", "m/s", relative(exact, 1e-2).fast(2.5e-2))
+        .quantity(
+            "sudden ground velocity that overturns",
+            "m/s",
+            relative(exact, 1e-2).fast(2.5e-2),
+        )
         .by(move |effort| {
             let block = firm(effort, radius, alpha);
             let duration = 2e-3;

@@ -60,7 +60,7 @@ fn of_harmonic(
         format!("A sin 2πt/T with A = 0.3 g, T = {PERIOD} s, {CYCLES} cycles"),
         SOURCE,
     )
-    .asks(quantity, unit, relative(exact, 1e-6)) // measured 2.1e-7
+    .quantity(quantity, unit, relative(exact, 1e-6)) // measured 2.1e-7
     .by(move |_| measured(&measure, &harmonic()?))
 }
 
@@ -82,7 +82,7 @@ fn of_push(period: f64) -> Problem {
         format!("oscillator of {period} s and 5 % under a push that stays"),
         STEP,
     )
-    .asks("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
+    .quantity("pseudo-acceleration over the push", "", relative(overshoot(), 1e-5)) // measured 1.3e-6
     .by(move |_| {
         let motion = push(period / 1000.0)?;
         let found =
@@ -97,7 +97,7 @@ fn short_period() -> Problem {
         "the harmonic in twelve samples a cycle, at a period of a twentieth of their step",
         SOURCE,
     )
-    .asks("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
+    .quantity("Sa over PGA", "", relative(1.0, 1e-3)) // measured 1.0e-4
     .by(|_| {
         // Twelve samples per cycle are steps of 42 ms, which the recursion interpolates.
         let wave = |i: u32| AMPLITUDE * sin(TAU * f64::from(i) / 12.0);
@@ -111,7 +111,7 @@ fn short_period() -> Problem {
 fn housner_intensity() -> Problem {
     let exact = overshoot() * (2.5 * 2.5 - 0.1 * 0.1) / (2.0 * TAU);
     setting("intensity/housner", "Housner intensity of a push of 1 m/s² that stays", STEP)
-        .asks("Housner intensity", "m", relative(exact, 1e-3)) // measured 6.7e-7
+        .quantity("Housner intensity", "m", relative(exact, 1e-3)) // measured 6.7e-7
         .by(|_| {
             let measure = IntensityMeasure::Housner { damping: DAMPING };
             measured(&measure, &push(0.001)?)

@@ -70,7 +70,7 @@ fn invariance(
     difference: fn(u64) -> Result<f64, Failure>,
 ) -> Problem {
     setting(format!("invariances/{name}"), title, SOURCE)
-        .asks("largest difference in m, rad, m/s, rad/s", "", absolute(0.0, limit))
+        .quantity("largest difference in m, rad, m/s, rad/s", "", absolute(0.0, limit))
         .by(move |effort| {
             let mut worst = 0.0_f64;
             for seed in 0..seeds(effort) {
@@ -232,7 +232,7 @@ fn repeat(seed: u64) -> Result<f64, Failure> {
 
 fn balance() -> Problem {
     setting("invariances/energy-balance", "heap on shaking ground, one second", BALANCE)
-        .asks("error of the balance over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
+        .quantity("error of the balance over what went through", "", absolute(0.0, 1e-4).fast(1e-3))
         .by(|effort| {
             let worst = |step: f64| -> Result<f64, Failure> {
                 let mut worst = 0.0_f64;
@@ -265,7 +265,7 @@ fn elastic_row() -> Problem {
         "disc that strikes a row of four, elastic contacts, no gravity",
         BALANCE,
     )
-    .asks("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4))
+    .quantity("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4))
     .by(|effort| {
         let energy = |step: f64| -> Result<f64, Failure> {
             let mut bodies = vec![floor()];

@@ -41,7 +41,7 @@ fn period(name: &str, width: f64, height: f64) -> Problem {
         format!("granite block {width} m by {height} m let go at φ = 0.5"),
         SOURCE,
     )
-    .asks("time to be upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
+    .quantity("time to be upright", "s", relative(exact, 5e-3).fast(1.2e-2)) // measured 9.6e-6
     .by(move |effort| {
         let block = firm(effort, radius, alpha);
         Ok(block.quarter_period(0.5)? / block.rate())
@@ -58,7 +58,7 @@ fn decay(name: &str, width: f64, height: f64, ratio: f64) -> Problem {
         SOURCE,
     )
     // The loss at an impact depends partly on the rotation, most visibly for the least of the three.
-    .asks("lean over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
+    .quantity("lean over α after three impacts", "", relative(exact, 3e-2).fast(6e-2)) // measured 5.8e-3; measured 9.6e-4
     .by(move |effort| {
         let stiffer = if effort == Effort::Full { 1.0 } else { 0.5 };
         let block = RockingBlock {

@@ -69,7 +69,7 @@ fn rocking(name: &str, (alpha, omega, push): (f64, f64, f64)) -> Problem {
         ),
         SOURCE,
     )
-    .asks("lean after 1 s, without impact", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.1e-6 and 1.3e-4
+    .quantity("lean after 1 s, without impact", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.1e-6 and 1.3e-4
     .refined(move |effort, level| {
         let block = firm(effort, radius, alpha).refined(level - 1);
         let acceleration = -push * GRAVITY;
@@ -112,7 +112,11 @@ fn corner() -> Problem {
         "block of α = 0.25 at φ = 0.5 on a soft, lightly damped corner (200 rad/s, ζ = 0.1)",
         SOURCE,
     )
-    .asks("angle after 0.8 s of a sine of 0.3 g, 6 rad/s", "rad", relative(exact, 1e-6).fast(1e-4)) // measured 1.5e-7 and 2.5e-6
+    .quantity(
+        "angle after 0.8 s of a sine of 0.3 g, 6 rad/s",
+        "rad",
+        relative(exact, 1e-6).fast(1e-4),
+    ) // measured 1.5e-7 and 2.5e-6
     .refined(move |_, level| {
         let acceleration = -push * GRAVITY;
         let drive = Shake::Sine { acceleration, omega, half_waves: 2.0 };
@@ -153,7 +157,7 @@ fn springs() -> Problem {
     let [z, angle, ..] = solution(rates, [start, tilt, 0.0, 0.0], (0.0, until));
     let exact = depth(z, angle);
     setting("ode/two-springs", "tilted block on two smooth springs (60 rad/s, ζ = 0.02) on a floor that shakes up and down", SOURCE)
-.asks("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
+.quantity("penetration of the left corner after 1 s", "m", relative(exact, 1e-4).fast(1e-3)) // measured 2.3e-6 and 3.6e-5
 .refined(move |_, level| {
                 let size = (2.0 * half_width, 2.0 * half_height);
                 let body = block("block", size, MASS, pose(0.0, start, tilt));
@@ -203,7 +207,7 @@ fn pendulum() -> Problem {
         "solid disc let go at 1 rad in a round cradle of 0.6 m, rolling",
         SOURCE,
     )
-    .asks("angle after 1.1 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.4e-5 and 3.9e-4
+    .quantity("angle after 1.1 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.4e-5 and 3.9e-4
     .refined(move |_, level| {
         let (mut scene, step) = cradled(1.0, 0.9, level)?;
         scene.run(&Still, step, until)?;
@@ -227,7 +231,7 @@ fn bowl() -> Problem {
         "solid disc, μ = 0.4, set down in a round cradle of 0.6 m at 40 rad/s, slipping",
         SOURCE,
     )
-    .asks("angle after 0.6 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.7e-6 and 4.4e-5
+    .quantity("angle after 0.6 s", "rad", relative(exact, 1e-4).fast(1e-3)) // measured 2.7e-6 and 4.4e-5
     .refined(move |_, level| {
         let (mut scene, step) = cradled(0.0, friction, level)?;
         scene.state.twists[1].angular = spin;
@@ -251,10 +255,10 @@ fn flight() -> Problem {
     let exact = x - ground(push, omega, until).1;
     setting(
         "ode/flight",
-        "thrown body with a full matrix of viscous drag, seen from ground that shakes",
+        "thrown body with a full matrix of viscous drag, relative to ground that shakes",
         SOURCE,
     )
-    .asks("place along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
+    .quantity("place along the ground after 1 s", "m", relative(exact, 1e-6).fast(1e-4)) // measured 2.8e-9 and 4.6e-8
     .refined(move |_, level| {
         let mut body = block("body", (0.5, 0.5), MASS, pose(0.0, 50.0, 0.0));
         body.inertia = inertia;
@@ -287,7 +291,7 @@ fn own_lean() -> Problem {
     let start = 0.5 * rigid.alpha;
     let exact = solution(rates, [start, 0.0], (0.0, until))[0];
     setting("ode/own-integrator-lean", "rocking-leaning by this crate's own integrator for rigid blocks, in steps of 10 ms and less", SOURCE)
-.asks("lean after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
+.quantity("lean after 1 s, without impact", "rad", relative(exact, 1e-8).fast(1e-6)) // measured 6.6e-11 and 1.7e-8
 .refined(move |_, level| {
                 let steps = 100 << level;
                 Ok(rigid.stretch((start, 0.0), acceleration, until, steps).0)
@@ -309,7 +313,7 @@ fn own_peak() -> Problem {
     let left = cos(rigid.alpha - lean) + 0.5 * spin * spin / (rigid.rate * rigid.rate);
     let exact = rigid.alpha - acos(left);
     setting("ode/own-integrator-peak", "the block at rest under a half-sine of 1.7 g tan α, by the same, in the steps of the ensembles", SOURCE)
-.asks("largest lean", "rad", relative(exact, 1e-5)) // measured 1.9e-7
+.quantity("largest lean", "rad", relative(exact, 1e-5)) // measured 1.9e-7
 .by(move |_| {
             let drive = Shake::Sine { acceleration: strength, omega, half_waves: 1.0 };
             let ride = rigid.ride(|t| drive.acceleration(t), drive.end(), 5e-4, 8.0);

@@ -11,7 +11,7 @@ use barrelstack::scenario::{RackKind, Scenario, catalog};
 /// that have no seat on each other.
 pub(super) fn problem() -> Problem {
     setting("solids/overlap-of-falling-stacks", "stacks of two to six levels, both planes, all racks, shaken until they fall, all frames", "bodies are solid")
-.asks("deepest overlap but at seats", "m", absolute(0.0, 0.015))
+.quantity("deepest overlap but at seats", "m", absolute(0.0, 0.015))
 .by(|effort| {
             let (count, records) =
                 if effort == Effort::Full { (300, records()) } else { (8, Vec::new()) };

@@ -91,7 +91,7 @@ fn closed(form: Form, ratio: f64) -> Problem {
         format!("slender block (α = 0.03), {} of ω/p = {ratio}, no impact", form.name()),
         CLOSED,
     )
-    .asks("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
+    .quantity("strength over g tan α that overturns", "", relative(exact, 1e-2).fast(2.5e-2))
     .by(move |effort| {
         let block = slender(effort, 1.0);
         let omega = ratio * block.rate();
@@ -124,7 +124,11 @@ fn tabulated(
         format!("block of p = 2.14 /s, α = 0.25, {} of ω/p = {ratio}", form.name()),
         TABLE,
     )
-    .asks("strength over g tan α at the border in the name", "", relative(exact, 1e-2).fast(2.5e-2))
+    .quantity(
+        "strength over g tan α at the border in the name",
+        "",
+        relative(exact, 1e-2).fast(2.5e-2),
+    )
     .by(move |effort| {
         let radius = 0.75 * GRAVITY / (RATE * RATE);
         let block = match effort {

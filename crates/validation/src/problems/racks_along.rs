@@ -68,7 +68,7 @@ fn posts() -> Problem {
         "two levels on the posts of a heavy rack, pushed along the barrels",
         "statics: uplift at a/g = c/h",
     )
-    .asks("push from which they rise from their posts", "g", relative(exact, 5e-3).fast(1e-2))
+    .quantity("push from which they rise from their posts", "g", relative(exact, 5e-3).fast(1e-2))
     .by(move |effort| {
         height_of_upper_levels()?;
         let found = border((0.97 * exact, 1.03 * exact), halvings(effort).min(6), |amplitude| {
@@ -102,7 +102,7 @@ const BARREL: [f64; 3] = [0.945, 0.555, 0.690];
 /// Friction of the barrel on the supports of its cradles.
 const FRICTION: f64 = 0.2;
 
-/// Angle (degrees) of the supports of a cradle from the vertical, seen along the barrel.
+/// Angle (degrees) of the supports of a cradle from the vertical, in the view along the barrel.
 const CRADLE: f64 = 28.0;
 
 /// Returns the friction of the barrel against sliding along itself: wedged between the supports of its cradles, it
@@ -161,7 +161,7 @@ fn slides(degrees: f64, side: f64) -> Problem {
         format!("a barrel pushed {words}, μ = {FRICTION}"),
         "statics: two contacts under Coulomb friction on an arc",
     )
-    .asks("push from which the barrel slides", "g", relative(exact, 1e-2).fast(2e-2))
+    .quantity("push from which the barrel slides", "g", relative(exact, 1e-2).fast(2e-2))
     .by(move |effort| {
         border((0.95 * exact, 1.05 * exact), halvings(effort), |amplitude| {
             let settings = [

@@ -61,7 +61,7 @@ fn least_friction(s: f64, share: f64) -> Problem {
         format!("block of s = {s} on ground that accelerates at {share} s g"),
         SOURCE,
     )
-    .asks(
+    .quantity(
         "friction coefficient from which it rocks without sliding",
         "",
         relative(exact, 4e-3).fast(1.2e-2),
@@ -79,7 +79,11 @@ fn slide(friction: f64) -> Problem {
         "low block on ground whose acceleration grows",
         SOURCE,
     )
-    .asks("ground acceleration from which it slides", "g", relative(friction, 2e-3).fast(1.2e-2))
+    .quantity(
+        "ground acceleration from which it slides",
+        "g",
+        relative(friction, 2e-3).fast(1.2e-2),
+    )
     .at_border(0.02, move |beta| {
         let mut scene = standing((2.0, 0.2), friction, 1e9)?;
         let drive = Shake::Ramped { acceleration: beta * GRAVITY, ramp: 0.2 };
@@ -96,7 +100,7 @@ fn first_spin(s: f64, beta: f64) -> Problem {
         format!("block of s = {s} under {beta} g from the start, no sliding"),
         SOURCE,
     )
-    .asks(
+    .quantity(
         "angular acceleration at the start of rocking",
         "rad/s2",
         relative(exact, 5e-3).fast(2e-2),

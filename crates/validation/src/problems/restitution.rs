@@ -54,7 +54,7 @@ fn newtons_cradle() -> Problem {
         "one disc at 1 m/s against four that touch, no damping, no friction",
         "balance of energy",
     )
-    .asks("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4)) // measured 1.9e-10
+    .quantity("kinetic energy after over before", "", relative(1.0, 1e-6).fast(1e-4)) // measured 1.9e-10
     .by(|effort| {
         let mut bodies = vec![ground_of(vec![])];
         for at in 0..5 {
@@ -123,7 +123,7 @@ fn rebound(law: Corner, zeta: f64, exact: f64) -> Problem {
         SOURCE,
     )
     // The published values have five digits.
-    .asks("restitution", "", relative(exact, 2e-4).fast(5e-4))
+    .quantity("restitution", "", relative(exact, 2e-4).fast(5e-4))
     .by(move |effort| {
         let true_value = match law {
             Corner::SpeedGap => restitution::speed_gap(zeta),
@@ -145,7 +145,7 @@ fn contact_time(zeta: f64) -> Problem {
         format!("mass on one node, speed-gap law, ζ = {zeta}, no gravity"),
         SOURCE,
     )
-    .asks("ω times the time of contact", "", relative(exact, 2e-4).fast(5e-4))
+    .quantity("ω times the time of contact", "", relative(exact, 2e-4).fast(5e-4))
     .refined(move |_, level| {
         let mut scene = striking(Corner::SpeedGap, zeta, 1.0, Vec2::default())?;
         Ok(OMEGA * gone(leaving(&mut scene, step(level), 60.0 / OMEGA)?)?.0)
@@ -159,7 +159,7 @@ fn inverted(e: f64, published: f64) -> Problem {
         SOURCE,
     )
     // The published values have three or four digits.
-    .asks("damping ratio ζ", "", relative(published, 2e-3))
+    .quantity("damping ratio ζ", "", relative(published, 2e-3))
     .by(move |_| {
         let zeta = restitution::speed_gap_damping_ratio(e)
             .ok_or_else(|| Failure::Absent(format!("no damping ratio for e = {e}")))?;
@@ -176,7 +176,7 @@ fn under_gravity(zeta: f64, gamma: f64) -> Problem {
         format!("mass on one speed-gap node, ζ = {zeta}, Γ = g/ωv = {gamma}"),
         SOURCE,
     )
-    .asks("restitution", "", relative(exact, 5e-4).fast(1e-3))
+    .quantity("restitution", "", relative(exact, 5e-4).fast(1e-3))
     .by(move |effort| {
         let speed = GRAVITY / (OMEGA * gamma);
         refine(effort, exact, |level| {
@@ -193,7 +193,7 @@ fn stays(zeta: f64) -> Problem {
         format!("mass on one speed-gap node under gravity, ζ = {zeta}"),
         SOURCE,
     )
-    .asks("Γ = g/ωv from which it does not lift off", "", relative(exact, 2e-3).fast(1.2e-2))
+    .quantity("Γ = g/ωv from which it does not lift off", "", relative(exact, 2e-3).fast(1.2e-2))
     .at_border(0.02, move |gamma| {
         let mut scene = striking(Corner::SpeedGap, zeta, GRAVITY / (OMEGA * gamma), DOWN)?;
         // Every later rebound is lower than the first.
@@ -209,7 +209,7 @@ fn stability(zeta: f64) -> Problem {
         format!("mass that rests on a damped node, ζ = {zeta}, symplectic Euler"),
         "root of the step's polynomial at −1",
     )
-    .asks("ω times the longest stable step", "", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("ω times the longest stable step", "", relative(exact, 5e-3).fast(1.2e-2))
     .at_border(0.02, move |step| {
         let mut scene = striking(Corner::KelvinVoigt, zeta, 0.0, DOWN)?;
         scene.method = Method::SemiImplicitEuler;
@@ -232,7 +232,7 @@ fn calibrated(target: f64) -> Problem {
         format!("block of α = {alpha}, damping chosen at φ = 0.5, shown at φ = 0.75"),
         ROCKING,
     )
-    .asks("ratio of angular velocities η", "", relative(target, 5e-3).fast(1.2e-2))
+    .quantity("ratio of angular velocities η", "", relative(target, 5e-3).fast(1.2e-2))
     .by(move |effort| {
         let block = RockingBlock {
             contact_frequency: contact_frequency(effort),

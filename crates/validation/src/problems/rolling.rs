@@ -86,7 +86,7 @@ fn base(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio} on a base that accelerates at 1.5 m/s²"),
         SOURCE,
     )
-    .asks("its acceleration over that of the base", "", relative(exact, 1e-4))
+    .quantity("its acceleration over that of the base", "", relative(exact, 1e-4))
     .refined(move |_, level| {
         let drive = Shake::Rectangular { acceleration: 1.5, duration: 1e9 };
         Ok(acceleration(&mut roller(ratio, 0.5, DOWN, level)?, &drive, level)? / 1.5)
@@ -100,7 +100,7 @@ fn base_slip(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio}, μ = 0.2, base acceleration grows"),
         SOURCE,
     )
-    .asks("base acceleration from which it slips", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("base acceleration from which it slips", "g", relative(exact, 5e-3).fast(1.2e-2))
     .at_border(0.02, move |push| {
         let mut scene = roller(ratio, 0.2, DOWN, 0)?;
         let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.1 };
@@ -116,7 +116,7 @@ fn slipping() -> Problem {
         "solid disc, μ = 0.2, on a base that accelerates at 1 g",
         SOURCE,
     )
-    .asks("its acceleration", "m/s2", relative(exact, 1e-10)) // measured 9.5e-13
+    .quantity("its acceleration", "m/s2", relative(exact, 1e-10)) // measured 9.5e-13
     .by(move |_| {
         let drive = Shake::Rectangular { acceleration: GRAVITY, duration: 1e9 };
         acceleration(&mut roller(0.5, 0.2, DOWN, 0)?, &drive, 0)
@@ -130,7 +130,7 @@ fn slope(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio} on a slope of 0.3 rad"),
         SOURCE,
     )
-    .asks("its acceleration", "m/s2", relative(exact, 1e-4))
+    .quantity("its acceleration", "m/s2", relative(exact, 1e-4))
     .refined(move |_, level| {
         let mut scene = roller(ratio, 0.6, gravity_on_slope(0.3), level)?;
         acceleration(&mut scene, &Still, level)
@@ -144,7 +144,7 @@ fn slope_slip(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio}, μ = 0.1, on a slope"),
         SOURCE,
     )
-    .asks("tangent of the slope from which it slips", "", relative(exact, 1e-2).fast(1.2e-2))
+    .quantity("tangent of the slope from which it slips", "", relative(exact, 1e-2).fast(1.2e-2))
     .at_border(0.02, move |tangent| {
         let mut scene = roller(ratio, 0.1, gravity_on_slope(atan(tangent)), 0)?;
         scene.run(&Still, step(0), 1.0)?;
@@ -163,7 +163,7 @@ fn swing(ratio: f64) -> Problem {
         format!("disc of k²/r² = {ratio} in a round cradle of 0.6 m, swings of 0.01 rad"),
         SOURCE,
     )
-    .asks("period", "s", relative(exact, 1e-3))
+    .quantity("period", "s", relative(exact, 1e-3))
     .refined(move |_, level| {
         let arm = cradle_radius - RADIUS + MASS * GRAVITY / stiffness(level);
         let angle = 0.01;
@@ -193,7 +193,7 @@ fn leaves(angle: f64) -> Problem {
         format!("disc on two smooth points at ±{angle} rad, ground acceleration grows"),
         SOURCE,
     )
-    .asks("ground acceleration at which it leaves one", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("ground acceleration at which it leaves one", "g", relative(exact, 5e-3).fast(1.2e-2))
     .at_border(0.02, move |push| {
         let mut scene = two_points(angle, FrictionLaw::Frictionless)?;
         let drive = Shake::Ramped { acceleration: push * GRAVITY, ramp: 0.5 };
@@ -213,7 +213,7 @@ fn no_turn() -> Problem {
         "disc on two rough points at ±0.5 rad, spun at 0.2 rad/s",
         SOURCE,
     )
-    .asks("spin after two seconds", "rad/s", absolute(0.0, 1e-6))
+    .quantity("spin after two seconds", "rad/s", absolute(0.0, 1e-6))
     .by(|_| {
         let mut scene = two_points(0.5, stick(0.5, 0))?;
         scene.state.twists[1].angular = 0.2;

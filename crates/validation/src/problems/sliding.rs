@@ -50,7 +50,7 @@ pub(super) fn problems() -> Vec<Problem> {
 
 fn slide(name: &str, title: &str, drive: Shake, exact: f64) -> Problem {
     setting(format!("sliding/{name}"), title, SOURCE)
-        .asks("way of the block on the ground", "m", relative(exact, 2e-4).fast(1e-3))
+        .quantity("displacement of the block on the ground", "m", relative(exact, 2e-4).fast(1e-3))
         .refined(move |effort, level| {
             Ok(-ridden(0.2, &drive, 3.0, base(effort) + level)?.relative(1))
         })
@@ -58,7 +58,7 @@ fn slide(name: &str, title: &str, drive: Shake, exact: f64) -> Problem {
 
 fn ride_along() -> Problem {
     setting("sliding/below-yield", "half-sine of 0.19 g and 0.4 s, μ = 0.2", SOURCE)
-        .asks("way of the block on the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
+        .quantity("displacement of the block on the ground", "m", absolute(0.0, 1e-9)) // measured 1.2e-12
         .by(|effort| {
             let drive =
                 Shake::Sine { acceleration: 0.19 * GRAVITY, omega: PI / 0.4, half_waves: 1.0 };
@@ -70,7 +70,7 @@ fn steady() -> Problem {
     let (a, n, omega) = (0.5, 0.2, TAU);
     let exact = theory::steady_slide_amplitude(a, n, omega);
     setting("sliding/steady", "block on ground that shakes with 0.5 g at 1 Hz, μ = 0.2", STEADY)
-        .asks("relative amplitude", "m", relative(exact, 1e-3).fast(3e-3))
+        .quantity("relative amplitude", "m", relative(exact, 1e-3).fast(3e-3))
         .refined(move |effort, level| {
             let finer = 2.0_f64.powi(base(effort) + level);
             let mut scene = standing((2.0, 0.2), n, 1e9 * finer * finer)?;
@@ -104,7 +104,7 @@ fn no_creep() -> Problem {
         "block on a slope of 90 % of the friction angle, one minute",
         COULOMB,
     )
-    .asks("way downhill after the first two seconds", "m", absolute(0.0, 1e-12)) // measured 0
+    .quantity("displacement downhill after the first two seconds", "m", absolute(0.0, 1e-12)) // measured 0
     .by(|_| {
         let mut scene = sledge(coulomb(0.5, STIFFNESS, 1e4), atan(0.45), 0.0)?;
         scene.run(&Still, 5e-4, 2.0)?;
@@ -122,7 +122,7 @@ fn creep(share: f64) -> Problem {
         format!("regularized friction, slope of {share} of the friction angle"),
         "equilibrium of the smooth law",
     )
-    .asks("creep speed", "m/s", relative(exact, 1e-12)) // measured 3e-15
+    .quantity("creep speed", "m/s", relative(exact, 1e-12)) // measured 3e-15
     .by(move |_| {
         let mut scene = sledge(law, atan(0.5 * share), 0.0)?;
         scene.run(&Still, 5e-4, 2.0)?;
@@ -137,7 +137,7 @@ fn slope_slide(friction: f64, slope: f64) -> Problem {
         format!("block on a slope of {slope} rad, μ = {friction}"),
         COULOMB,
     )
-    .asks("acceleration", "m/s2", relative(exact, 1e-10)) // measured 1.4e-12
+    .quantity("acceleration", "m/s2", relative(exact, 1e-10)) // measured 1.4e-12
     .by(move |_| {
         let mut scene = sledge(coulomb(friction, STIFFNESS, 1e4), slope, 0.0)?;
         scene.run(&Still, 2e-4, 1.0)?;
@@ -150,7 +150,7 @@ fn slope_slide(friction: f64, slope: f64) -> Problem {
 fn thrown() -> Problem {
     let exact = 1.0 / (2.0 * 0.3 * GRAVITY);
     setting("sliding/thrown", "block thrown at 1 m/s, μ = 0.3", COULOMB)
-        .asks("sliding distance v²/2μg", "m", relative(exact, 1e-6)) // measured 7.7e-8
+        .quantity("sliding distance v²/2μg", "m", relative(exact, 1e-6)) // measured 7.7e-8
         .by(|_| {
             let mut scene = sledge(coulomb(0.3, STIFFNESS, 1e4), 0.0, 1.0)?;
             let mut farthest = 0.0_f64;

@@ -40,7 +40,7 @@ fn frequency(name: &str, source: &'static str, depth: f64, exact: f64, tolerance
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         source,
     )
-    .asks("ω² R/g", "", relative(exact, tolerance))
+    .quantity("ω² R/g", "", relative(exact, tolerance))
     .by(move |_| Ok(number(depth)))
 }
 
@@ -52,7 +52,7 @@ fn nearly_full() -> Problem {
         "horizontal cylinder full but for a slit, first wave across",
         NEARLY_FULL,
     )
-    .asks("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
+    .quantity("ω² b/g with half the width b of the slit", "", relative(2.006_119, 1e-3))
     .by(move |_| Ok(number(depth) * half_width))
 }
 
@@ -66,7 +66,7 @@ fn by_elements(depth: f64) -> Problem {
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
     )
-    .asks("ω² R/g", "", relative(exact, 4e-3))
+    .quantity("ω² R/g", "", relative(exact, 4e-3))
     .by(move |_| Ok(number(depth)))
 }
 
@@ -77,7 +77,7 @@ fn mass(depth: f64) -> Problem {
         format!("horizontal cylinder filled to {depth} of its radius, first wave across"),
         ELEMENTS,
     )
-    .asks("share of the mass that goes with the wave", "", relative(exact, 4e-3))
+    .quantity("share of the mass that goes with the wave", "", relative(exact, 4e-3))
     .by(move |_| Ok(across(1.0, filled_to(depth)).share))
 }
 
@@ -194,7 +194,7 @@ fn long() -> Problem {
         "rectangular tank of 2 m filled to 0.5 m, as a half-full barrel is taken along its axis",
         "Ibrahim 2005, section 5",
     )
-    .asks("ω²/g", "1/m", relative(exact, 1e-9))
+    .quantity("ω²/g", "1/m", relative(exact, 1e-9))
     .by(move |_| {
         let radius = 4.0 * depth / std::f64::consts::PI;
         Ok(1.0 / along(radius, length, 0.5).length)
@@ -213,7 +213,7 @@ fn in_a_stack(filled: f64) -> Problem {
         format!("barrels of 225 L filled to {filled} on their rack after a short push"),
         "the pendulum of its wave",
     )
-    .asks("frequency of the wine", "Hz", relative(exact, 3e-3))
+    .quantity("frequency of the wine", "Hz", relative(exact, 3e-3))
     .by(move |_| {
         let run: Run = scenario(filled)?.run()?;
         let recording = &run.recording;
@@ -221,10 +221,10 @@ fn in_a_stack(filled: f64) -> Problem {
         let wine = recording.channel(name).ok_or_else(|| Failure::Absent(name.into()))?;
         let held = recording.channel("B1.1_displacement_x");
         let held = held.ok_or_else(|| Failure::Absent("the barrel".into()))?;
-        let ways = wine.values.iter().zip(&held.values).map(|(wine, barrel)| wine - barrel);
-        let ways: Vec<(f64, f64)> = recording.times.iter().copied().zip(ways).collect();
-        let from = ways.partition_point(|(time, _)| *time <= 1.0).saturating_sub(1);
-        let through = crossings(&ways[from..]);
+        let samples = wine.values.iter().zip(&held.values).map(|(wine, barrel)| wine - barrel);
+        let samples: Vec<(f64, f64)> = recording.times.iter().copied().zip(samples).collect();
+        let from = samples.partition_point(|(time, _)| *time <= 1.0).saturating_sub(1);
+        let through = crossings(&samples[from..]);
         match through[..] {
             [first, .., last] if through.len() > 4 => {
                 Ok(0.5 * (through.len() - 1) as f64 / (last - first))

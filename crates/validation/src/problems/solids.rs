@@ -84,7 +84,7 @@ fn depth(height: f64) -> Problem {
         format!("a full barrel of {MASS} kg falls {height} m on the floor"),
         REBOUND,
     )
-    .asks("greatest depth", "m", relative(exact, 2e-3))
+    .quantity("greatest depth", "m", relative(exact, 2e-3))
     .refined(move |_, level| Ok(drop(MASS, height, 1e-5 / 2.0_f64.powi(level))?.0))
 }
 
@@ -95,7 +95,7 @@ fn rebound(what: &str, mass: f64, height: f64) -> Problem {
         format!("a {what} ({mass} kg at the contact) falls {height} m on the floor"),
         "e² of the energy comes back; Walton and Braun 1986",
     )
-    .asks("speed after over speed before", "", relative(RESTITUTION, 2e-2))
+    .quantity("speed after over speed before", "", relative(RESTITUTION, 2e-2))
     .by(move |effort| {
         let step = if effort == Effort::Full { 1e-6 } else { 1e-5 };
         let (depth, left) = drop(mass, height, step)?;
@@ -111,7 +111,7 @@ fn default_step() -> Problem {
         "a full barrel falls 3.3 m, computed with steps of 0.25 ms",
         "e² of the energy comes back; Walton and Braun 1986",
     )
-    .asks("speed after over speed before", "", relative(RESTITUTION, 0.1))
+    .quantity("speed after over speed before", "", relative(RESTITUTION, 0.1))
     .by(|_| {
         let (depth, left) = drop(MASS, 3.3, 2.5e-4)?;
         let said = [1e-4, 5e-4].map(|step| drop(MASS, 3.3, step));
@@ -199,7 +199,7 @@ fn flat(share: f64, count: f64) -> Problem {
         format!("a box flat on another, {share} of its width beyond the edge or not"),
         "two lines that overlap touch at the two ends of the overlap",
     )
-    .asks("contacts", "", absolute(count, 0.0))
+    .quantity("contacts", "", absolute(count, 0.0))
     .by(move |_| {
         let pose = Pose { position: Vec2::new(share * 0.6, 0.2 - 1e-3), orientation: 0.0 };
         let (one, contacts) = forces_on(pose, false)?;
@@ -218,9 +218,13 @@ fn smooth() -> Problem {
     setting(
         "solids/smooth-along-paths",
         "a box led over flats, edges and corners of another on 40 paths",
-        "forces of a spring of stiffness k change by k times the way",
+        "forces of a spring of stiffness k change by k times the displacement",
     )
-    .asks("largest jump of a force over k times the step, in excess of 4", "", absolute(0.0, 1e-9))
+    .quantity(
+        "largest jump of a force over k times the step, in excess of 4",
+        "",
+        absolute(0.0, 1e-9),
+    )
     .by(|effort| {
         let steps = if effort == Effort::Full { 4000 } else { 1000 };
         let (mut worst, mut touching) = (0.0_f64, 0_u64);
@@ -239,20 +243,20 @@ fn smooth() -> Problem {
                 touching += contacts as u64;
                 if let Some(before) = before {
                     let (from, to) = (at(i - 1), at(i));
-                    let way = (to.position - from.position).x.abs()
+                    let travel = (to.position - from.position).x.abs()
                         + (to.orientation - from.orientation).abs();
                     let jump = (0..2).map(|k| (forces[k] - before[k]).abs()).fold(0.0, f64::max);
-                    worst = worst.max(jump / (1e6 * way) - 4.0);
+                    worst = worst.max(jump / (1e6 * travel) - 4.0);
                 }
                 before = Some(forces);
             }
         }
-        Ok(Outcome::of(worst.max(0.0)).noted(format!("{touching} contacts on the way")))
+        Ok(Outcome::of(worst.max(0.0)).noted(format!("{touching} contacts along the path")))
     })
 }
 
 /// Displacement (m, rad) to either side for a finite difference.
-const WAY: f64 = 1e-8;
+const STEP: f64 = 1e-8;
 
 /// Forces are the negative gradient of the stored elastic energy, wherever two bodies press into each
 /// other and whichever of their pieces touch, so no path around a corner gains or loses energy. The largest
@@ -263,7 +267,7 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
         format!("{what}, in contact all around each other"),
         "a force that has an energy is minus its slope",
     )
-    .asks("largest difference, over the force", "", absolute(0.0, 1e-4))
+    .quantity("largest difference, over the force", "", absolute(0.0, 1e-4))
     .by(move |effort| {
         let wanted = if effort == Effort::Full { 20_000 } else { 1000 };
         let (model, mut state) = two(shapes(), scene::pose(0.0, 0.0, 0.0), false)?;
@@ -277,9 +281,9 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
             let force = [wrench.force.x, wrench.force.z, wrench.moment];
             (scratch.totals.elastic, force, deepest, scratch.contacts.len())
         };
-        let (mut worst, mut seen, mut several) = (0.0_f64, 0, 0);
+        let (mut worst, mut count, mut several) = (0.0_f64, 0, 0);
         let mut at = [0.0; 3];
-        while seen < wanted {
+        while count < wanted {
             // A sequence that fills the space of poses evenly.
             for (value, step) in at.iter_mut().zip([0.819_172_5, 0.671_043_6, 0.549_700_5]) {
                 *value = (*value + step) % 1.0;
@@ -290,19 +294,19 @@ fn slope(what: &str, shapes: fn() -> [Shape; 2]) -> Problem {
             if deepest == 0.0 || deepest > 0.015 {
                 continue;
             }
-            seen += 1;
+            count += 1;
             several += usize::from(contacts > 1);
             let size = force[0].hypot(force[1]);
             for k in 0..3 {
-                let moved = |way: f64| {
+                let moved = |step: f64| {
                     let mut pose = pose;
-                    pose[k] += way;
+                    pose[k] += step;
                     pose
                 };
-                let change = energy_and_force(moved(WAY)).0 - energy_and_force(moved(-WAY)).0;
-                worst = worst.max((change / (2.0 * WAY) + force[k]).abs() / size);
+                let change = energy_and_force(moved(STEP)).0 - energy_and_force(moved(-STEP)).0;
+                worst = worst.max((change / (2.0 * STEP) + force[k]).abs() / size);
             }
         }
-        Ok(Outcome::of(worst).noted(format!("{seen} poses, {several} with several contacts")))
+        Ok(Outcome::of(worst).noted(format!("{count} poses, {several} with several contacts")))
     })
 }

@@ -88,7 +88,7 @@ fn opens(name: &str, sizes: &'static [(f64, f64)]) -> Problem {
         },
         UPLIFT,
     )
-    .asks("ground acceleration that opens a joint", "g", relative(exact, 5e-3).fast(1.2e-2))
+    .quantity("ground acceleration that opens a joint", "g", relative(exact, 5e-3).fast(1.2e-2))
     .by(move |effort| {
         let mut wrong = None;
         let found = border((0.98 * exact, 1.02 * exact), halvings(effort), |push| {
@@ -117,7 +117,7 @@ fn slides(ground: f64, between: f64, exact: f64) -> Problem {
         format!("two low blocks, μ = {ground} on the ground and {between} between them"),
         UPLIFT,
     )
-    .asks(
+    .quantity(
         "ground acceleration from which the weaker joint slides",
         "g",
         relative(exact, 2e-3).fast(1.2e-2),
@@ -156,7 +156,7 @@ fn patterns() -> Problem {
         "two blocks 1 m high, of several widths, under one sine of 0.33 g to 0.8 g",
         PATTERNS,
     )
-    .asks("rocking patterns that occur", "", absolute(4.0, 0.0))
+    .quantity("rocking patterns that occur", "", absolute(4.0, 0.0))
     .by(|effort| {
         let mut times = [0.0; 4];
         // Strength (g), ω (rad/s), widths of the lower and the upper block (m).
@@ -175,9 +175,9 @@ fn patterns() -> Problem {
                 if fallen { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             })?;
         }
-        let seen = times.iter().filter(|time| **time > 5e-3).count();
+        let slow = times.iter().filter(|time| **time > 5e-3).count();
         let said: Vec<String> =
             NAMES.iter().zip(times).map(|(name, time)| format!("{name} {time:.2} s")).collect();
-        Ok(Outcome::of(seen as f64).noted(said.join(", ")))
+        Ok(Outcome::of(slow as f64).noted(said.join(", ")))
     })
 }

@@ -87,7 +87,7 @@ pub(super) fn problems() -> Vec<Problem> {
             SOURCE,
         )
         // Two samples of 200 from one distribution differ by this much in one case of twenty.
-        .asks(
+        .quantity(
             "Kolmogorov–Smirnov distance of the maxima to those of the rigid block",
             "",
             absolute(0.0, 0.136).fast(0.3),

@@ -38,7 +38,7 @@ fn problem<S: Space<Real = f64>>(
     scenes: fn(Effort) -> Vec<Order<S>>,
 ) -> Problem {
     setting(format!("symmetry/{name}"), title, "symmetry of mechanics")
-        .asks("largest difference in a second, listed in the reverse order", "m", answer)
+        .quantity("largest difference in a second, listed in the reverse order", "m", answer)
         .by(move |effort| {
             let (scenes, mut worst) = (scenes(effort), (0.0_f64, String::new()));
             let count = scenes.len();

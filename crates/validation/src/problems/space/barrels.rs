@@ -76,13 +76,13 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
         let axis = axis(state.poses[1].orientation);
         let now = atan2(axis.y, axis.x);
         // Azimuths jump by a full turn.
-        let way: f64 = now - before;
-        round += if way > PI {
-            way - TAU
-        } else if way < -PI {
-            way + TAU
+        let turned: f64 = now - before;
+        round += if turned > PI {
+            turned - TAU
+        } else if turned < -PI {
+            turned + TAU
         } else {
-            way
+            turned
         };
         before = now;
         ControlFlow::Continue(())
@@ -91,17 +91,17 @@ fn precession(scene: &mut Scene<Spatial>, step: f64, end: f64) -> Result<f64, Fa
 }
 
 /// A top whose spherical tip rolls, in steady precession.
-fn top(asked: &'static str) -> Problem {
-    let (quantity, unit, exact) = match asked {
+fn top(which: &'static str) -> Problem {
+    let (quantity, unit, exact) = match which {
         "speed" => ("speed of its center after 1 s", "m/s", 0.344_417_790),
         _ => ("precession", "rad/s", 2.867_405_337_754),
     };
     setting(
-        format!("space-barrels/top-{asked}"),
+        format!("space-barrels/top-{which}"),
         "top of 0.5 kg with a tip of 5 mm that rolls, 200 rad/s",
         "steady precession without slip; Routh 1884",
     )
-    .asks(quantity, unit, relative(exact, 1e-3))
+    .quantity(quantity, unit, relative(exact, 1e-3))
     .by(move |_| {
         let (mass, tip, length) = (0.5, 0.005, 0.06);
         let (lean, spin, round) = (25_f64.to_radians(), 200.0, 2.867_405_337_754);
@@ -121,7 +121,7 @@ fn top(asked: &'static str) -> Problem {
         let laws = (firm(stiffness, mass), rough(0.5, stiffness, 0.1 * mass));
         let mut scene = scene(vec![floor(), body], laws.0, laws.1, down())?;
         let found = precession(&mut scene, 5e-6, 1.0)?;
-        Ok(match asked {
+        Ok(match which {
             "speed" => scene.state.twists[1].linear.length(),
             _ => found,
         })
@@ -158,7 +158,7 @@ fn disc(degrees: f64, exact: f64) -> Problem {
         format!("thin disc of 0.3 m that runs round at {degrees}° to the floor, for one turn"),
         "Ω² = 4 g / (R sin α); Euler's disc",
     )
-    .asks("precession", "rad/s", relative(exact, 1e-3))
+    .quantity("precession", "rad/s", relative(exact, 1e-3))
     .by(move |_| {
         let (mass, radius) = (20.0, 0.3);
         let square = mass * radius * radius;
@@ -180,7 +180,7 @@ fn wobble(
         format!("{name} barrel that wobbles on its chime at {degrees}° from upright, for 0.5 s"),
         "steady rolling of a rim; Euler's disc of a barrel",
     )
-    .asks("precession", "rad/s", relative(exact, 1e-3))
+    .quantity("precession", "rad/s", relative(exact, 1e-3))
     .by(move |_| {
         let bulk = (mass, about, across);
         let mut scene = running_round(barrel()?, bulk, degrees.to_radians(), exact)?;
@@ -199,7 +199,7 @@ fn rock(
         format!("{name} barrel that rocks on its bilge by {degrees}°"),
         "body with an arc that rolls on a floor",
     )
-    .asks("period", "s", relative(exact, 1e-3))
+    .quantity("period", "s", relative(exact, 1e-3))
     .by(move |_| {
         // Small amplitudes stand for the limit of zero.
         let lean = if degrees == 0.0 { 0.003 } else { degrees.to_radians() };
@@ -270,7 +270,7 @@ fn rail(fill: (&'static str, f64, f64, f64), exact: f64, role: Role) -> Problem 
         format!("{} barrel as {as_what} that rolls down two tubes on a slope of 5°", fill.0),
         "g sin θ / (1 + I / (m ρ²)) with the rolling radius ρ",
     )
-    .asks("acceleration", "m/s2", relative(exact, 1e-4))
+    .quantity("acceleration", "m/s2", relative(exact, 1e-4))
     .by(move |_| {
         let mut scene = on_tubes(fill, role)?;
         scene.run(&Still, STEP, 0.3)?;
@@ -287,7 +287,7 @@ fn bears(fill: (&'static str, f64, f64, f64)) -> Problem {
         format!("{} barrel that rolls down two tubes on a slope of 5°", fill.0),
         "equilibrium of the barrel across the tubes",
     )
-    .asks("normal force of a tube", "N", relative(exact, 1e-4))
+    .quantity("normal force of a tube", "N", relative(exact, 1e-4))
     .by(move |_| {
         let mut scene = on_tubes(fill, Role::Contactor)?;
         scene.run(&Still, STEP, 0.3)?;

@@ -59,7 +59,7 @@ fn shared(title: &str, name: &str, exact: Vec<f64>, feet: &[Vec3]) -> Vec<Proble
             title,
             "equilibrium of a rigid plate on springs",
         )
-        .asks("force on a foot", "N", relative(exact, 1e-6))
+        .quantity("force on a foot", "N", relative(exact, 1e-6))
         .by(move |_| Ok(loads(&feet)?[foot]))
     };
     exact.into_iter().enumerate().map(of).collect()
@@ -72,7 +72,7 @@ fn tips(degrees: f64, exact: f64) -> Problem {
         format!("box of half sides 0.27 and 0.7365 m, center 0.9 m high, pushed at {degrees}°"),
         "moments about the edges",
     )
-    .asks("push that it does not bear", "g", relative(exact, 1e-3))
+    .quantity("push that it does not bear", "g", relative(exact, 1e-3))
     .by(move |effort| {
         let halvings = if effort == Effort::Full { 8 } else { 5 };
         border((0.99 * exact, 1.01 * exact), halvings, |push| {
@@ -154,20 +154,20 @@ fn rocks() -> Vec<Problem> {
     for degrees in [0.0, 30.0, 90.0] {
         let angle = f64::to_radians(degrees);
         let title = format!("box of 0.54 × 1.8 m that rocks, turned by {degrees}°");
-        let mut asked = |name: &str, source, (quantity, unit, exact), of: fn(Impact) -> f64| {
+        let mut problem = |name: &str, source, (quantity, unit, exact), of: fn(Impact) -> f64| {
             list.push(
                 setting(format!("space-blocks/rocks-{degrees}-{name}"), title.clone(), source)
-                    .asks(quantity, unit, relative(exact, 1e-3))
+                    .quantity(quantity, unit, relative(exact, 1e-3))
                     .by(move |_| Ok(of(first_impact(angle)?))),
             );
         };
         let source = "Housner 1963, exact equation";
         let time = ("time to its first impact", "s", 0.471_810_597_6);
-        asked("time", source, time, |impact| impact.time);
+        problem("time", source, time, |impact| impact.time);
         let rate = ("rate before its first impact", "rad/s", -0.703_182_112_6);
-        asked("rate", source, rate, |impact| impact.rate);
+        problem("rate", source, rate, |impact| impact.rate);
         let ratio = ("rate after its first impact over that before", "", 0.876_146_789_0);
-        asked("impact", "Housner 1963, eq. 8", ratio, |impact| impact.ratio);
+        problem("impact", "Housner 1963, eq. 8", ratio, |impact| impact.ratio);
         if degrees > 0.0 {
             list.push(
                 setting(
@@ -175,7 +175,7 @@ fn rocks() -> Vec<Problem> {
                     title,
                     "no direction is distinguished",
                 )
-                .asks(
+                .quantity(
                     "change of its next lean and its rate by turning it, as a share",
                     "",
                     absolute(0.0, 1e-9),

@@ -63,7 +63,7 @@ fn stands(count: u32) -> Problem {
         format!("{count} barrels on their heads, one on the other"),
         "a disc on four springs",
     )
-    .asks("how far the top one sinks", "m", relative(exact, 1e-6))
+    .quantity("how far the top one sinks", "m", relative(exact, 1e-6))
     .by(move |_| {
         let mut bodies = vec![floor()];
         for level in 0..count {
@@ -124,30 +124,30 @@ fn springs(name: &str, title: &str, start: fn() -> Swing) -> Problem {
         title,
         "a rigid body on equal springs, less the pull of its weight",
     )
-    .asks("period", "s", relative(exact, 1e-4))
+    .quantity("period", "s", relative(exact, 1e-4))
     .by(move |_| period(start().1?, of, exact))
 }
 
 /// A barrel released on the rim of its head, at half the angle of unstable equilibrium.
-fn rocks(asked: &'static str) -> Problem {
+fn rocks(which: &'static str) -> Problem {
     // An almost sharp rim.
     let rounding = 1e-6;
     let (half, head) = (HALF - rounding, 0.2775 - 0.43 * rounding);
     let alpha = atan(head / half);
     let square = half * half + head * head;
     let rate = (MASS * G * square.sqrt() / (ACROSS + MASS * square)).sqrt();
-    let (quantity, unit, exact) = if asked == "time" {
+    let (quantity, unit, exact) = if which == "time" {
         ("time until it stands", "s", theory::quarter_period(alpha, 0.5) / rate)
     } else {
         let fall = 2.0 * (cos(0.5 * alpha) - cos(alpha));
         ("rate when it stands", "rad/s", rate * fall.sqrt())
     };
     setting(
-        format!("space-flat/rocks-{asked}"),
+        format!("space-flat/rocks-{which}"),
         "barrel that is let go on the rim of its head at half its slenderness angle",
         "Housner 1963, exact equation, for a block as wide as the head",
     )
-    .asks(quantity, unit, relative(exact, 1e-3))
+    .quantity(quantity, unit, relative(exact, 1e-3))
     .by(move |_| {
         let stiffness = 1e9;
         let lean = 0.5 * alpha;
@@ -173,7 +173,7 @@ fn rocks(asked: &'static str) -> Problem {
             ControlFlow::Continue(())
         })?;
         let (time, rate) = found.ok_or_else(|| Failure::Absent("it does not fall".into()))?;
-        Ok(if asked == "time" { time } else { rate })
+        Ok(if which == "time" { time } else { rate })
     })
 }
 
@@ -200,7 +200,7 @@ fn groove() -> Problem {
         "tube between two shorter ones side by side",
         "equilibrium of springs at the ends of both lines",
     )
-    .asks("height of its axis above theirs", "m", relative(exact, 1e-6))
+    .quantity("height of its axis above theirs", "m", relative(exact, 1e-6))
     .by(move |_| {
         let shape = |half_length| Hull::Capsule(Capsule { half_length, radius });
         let side = |name: &str, y: f64| Body {
@@ -228,7 +228,7 @@ fn rolls(degrees: f64) -> Problem {
         format!("tube that lies on a slope of 5° and rolls, all turned by {degrees}°"),
         "g sin θ / (1 + I / (m r²))",
     )
-    .asks("acceleration", "m/s2", relative(exact, 1e-4))
+    .quantity("acceleration", "m/s2", relative(exact, 1e-4))
     .by(move |_| {
         let heading = degrees.to_radians();
         let gravity = gravity_on_slope(G, slope, heading);

@@ -55,7 +55,7 @@ fn spin() -> Problem {
         "asymmetric body that tumbles for 20 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
     )
-    .asks("spin about its middle axis", "rad/s", absolute(2.709_578_90, 1e-7))
+    .quantity("spin about its middle axis", "rad/s", absolute(2.709_578_90, 1e-7))
     .by(|_| {
         let mut scene = body(Method::RungeKutta4)?;
         scene.run(&Still, 1e-3, 20.0)?;
@@ -72,7 +72,11 @@ fn attitude() -> Problem {
         "asymmetric body that tumbles for 10 s, Runge–Kutta 4 at 1 ms",
         SOURCE,
     )
-    .asks("how far its quaternion is from the exact one, or its negative", "", absolute(0.0, 1e-7))
+    .quantity(
+        "how far its quaternion is from the exact one, or its negative",
+        "",
+        absolute(0.0, 1e-7),
+    )
     .by(|_| {
         let mut scene = body(Method::RungeKutta4)?;
         scene.run(&Still, 1e-3, 10.0)?;
@@ -102,7 +106,7 @@ fn convergence(method: Method, order: f64) -> Problem {
         format!("asymmetric body that tumbles for 7 s, {}", method.name()),
         SOURCE,
     )
-    .asks(
+    .quantity(
         "order of convergence of its attitude, counted up to that of the method",
         "",
         absolute(order, 0.1),
@@ -134,7 +138,7 @@ fn momentum(method: Method) -> Problem {
         format!("asymmetric body that tumbles for 100 s, {} at 1 ms", method.name()),
         "conservation of angular momentum",
     )
-    .asks("change of the angular momentum, as a share", "", absolute(0.0, 1e-12))
+    .quantity("change of the angular momentum, as a share", "", absolute(0.0, 1e-12))
     .by(move |_| {
         let mut scene = body(method)?;
         let start = angular_momentum(&scene);
@@ -149,7 +153,7 @@ fn energy() -> Problem {
         "asymmetric body that tumbles for 100 s, velocity Verlet at 1 ms",
         "conservation of energy",
     )
-    .asks("largest change of its energy, as a share", "", absolute(0.0, 1e-6))
+    .quantity("largest change of its energy, as a share", "", absolute(0.0, 1e-6))
     .by(|_| {
         let mut scene = body(Method::VelocityVerlet)?;
         let mut worst = 0.0_f64;

@@ -59,10 +59,10 @@ fn incline(degrees: f64, friction: f64, acceleration: f64, spin: f64) -> [Proble
     };
     [
         setting(format!("space-rolling/slope-{degrees}-{friction}-way"), title.clone(), SOURCE)
-            .asks("way down after 1 s", "m", relative(0.5 * acceleration, 1e-4))
+            .quantity("displacement down after 1 s", "m", relative(0.5 * acceleration, 1e-4))
             .by(move |_| Ok(downhill(run()?.state.poses[1].position))),
         setting(format!("space-rolling/slope-{degrees}-{friction}-spin"), title, SOURCE)
-            .asks("spin after 1 s", "rad/s", relative(spin, 1e-4))
+            .quantity("spin after 1 s", "rad/s", relative(spin, 1e-4))
             .by(move |_| {
                 let spin = run()?.state.twists[1].angular;
                 // It rotates about the horizontal axis across the slope.
@@ -102,13 +102,13 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     };
     let title = format!("ball as {name} on a slope of 20°, μ = {friction}, for 3 s");
     // Forces after initial vibrations have decayed.
-    let forces = move |seen: fn(f64, f64, f64) -> f64| -> Result<f64, Failure> {
+    let forces = move |measure: fn(f64, f64, f64) -> f64| -> Result<f64, Failure> {
         let mut scene = rolling(role, friction)?;
         let mut worst = 0.0_f64;
         scene.watch(&Still, 5e-5, 3.0, |state, scratch, _| {
             for contact in scratch.contacts.iter().filter(|_| state.time > 0.1) {
                 let (normal, friction) = (contact.normal_force, contact.friction_force);
-                worst = worst.max(seen(normal, friction.length(), friction.dot(contact.normal)));
+                worst = worst.max(measure(normal, friction.length(), friction.dot(contact.normal)));
             }
             ControlFlow::Continue(())
         })?;
@@ -116,7 +116,11 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
     };
     [
         setting(format!("space-rolling/carried-{name}-{friction}-forces"), title.clone(), SOURCE)
-            .asks("largest error of normal force and friction, as a share", "", absolute(0.0, 1e-3))
+            .quantity(
+                "largest error of normal force and friction, as a share",
+                "",
+                absolute(0.0, 1e-3),
+            )
             .by(move |_| {
                 let error = |normal: f64, friction: f64, _: f64| {
                     (normal / 92.183_85 - 1.0).abs().max((friction / 9.586_76 - 1.0).abs())
@@ -128,10 +132,10 @@ fn carried(role: Role, friction: f64) -> [Problem; 3] {
             title.clone(),
             SOURCE,
         )
-        .asks("largest friction along the normal", "N", absolute(0.0, 1e-9))
+        .quantity("largest friction along the normal", "N", absolute(0.0, 1e-9))
         .by(move |_| forces(|_, _, along| along.abs())),
         setting(format!("space-rolling/carried-{name}-{friction}-way"), title, SOURCE)
-            .asks("way down after 3 s", "m", relative(place, 1e-4))
+            .quantity("displacement down after 3 s", "m", relative(place, 1e-4))
             .by(move |_| {
                 let mut scene = rolling(role, friction)?;
                 scene.run(&Still, 5e-5, 3.0)?;
@@ -158,13 +162,13 @@ fn side_spin() -> [Problem; 3] {
     };
     [
         setting("space-rolling/side-spin-rolls", title, source)
-            .asks("how far from the place where it begins to roll", "m", absolute(0.0, 1e-5))
+            .quantity("how far from the place where it begins to roll", "m", absolute(0.0, 1e-5))
             .by(move |_| off(0.286_846_011_4, 0.540_909_62, -0.073_760_40)),
         setting("space-rolling/side-spin-place", title, source)
-            .asks("how far from its place after 1.5 s", "m", absolute(0.0, 1e-5))
+            .quantity("how far from its place after 1.5 s", "m", absolute(0.0, 1e-5))
             .by(move |_| off(1.5, 2.689_925_26, -0.697_668_17)),
         setting("space-rolling/side-spin-spin", title, source)
-            .asks("how far from its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
+            .quantity("how far from its spin after 1.5 s", "rad/s", absolute(0.0, 1e-4))
             .by(move |_| {
                 let spin = run(1.5)?.state.twists[1].angular;
                 let exact = Vec3::new(1.714_285_7, 5.904_761_9, 7.0);
@@ -175,17 +179,17 @@ fn side_spin() -> [Problem; 3] {
 
 /// A ball that bounces while it slides: friction is μ times the normal force throughout.
 fn bounce() -> [Problem; 3] {
-    let asked = |name: &'static str,
-                 quantity: &'static str,
-                 unit: &'static str,
-                 exact: f64,
-                 of: fn(&Scene<Spatial>) -> f64| {
+    let problem = |name: &'static str,
+                   quantity: &'static str,
+                   unit: &'static str,
+                   exact: f64,
+                   of: fn(&Scene<Spatial>) -> f64| {
         setting(
             format!("space-rolling/bounce-{name}"),
             "ball of 10 kg that bounces with a spin of 30 rad/s, μ = 0.05",
             "impulse of a half-damped spring; Candia, de la Llera and Almazán 2008",
         )
-        .asks(quantity, unit, relative(exact, 1e-4))
+        .quantity(quantity, unit, relative(exact, 1e-4))
         .by(move |_| {
             let radius = 0.1;
             let mut ball = ball(radius, 10.0, Vec3::new(0.0, 0.0, radius));
@@ -201,13 +205,13 @@ fn bounce() -> [Problem; 3] {
         })
     };
     [
-        asked("up", "speed upward after the bounce", "m/s", 1.817_774_060_7, |scene| {
+        problem("up", "speed upward after the bounce", "m/s", 1.817_774_060_7, |scene| {
             scene.state.twists[1].linear.z
         }),
-        asked("aside", "speed along y after the bounce", "m/s", 0.809_111_297_0, |scene| {
+        problem("aside", "speed along y after the bounce", "m/s", 0.809_111_297_0, |scene| {
             scene.state.twists[1].linear.y
         }),
-        asked("spin", "spin about x after the bounce", "rad/s", -4.772_217_575_9, |scene| {
+        problem("spin", "spin about x after the bounce", "rad/s", -4.772_217_575_9, |scene| {
             scene.state.twists[1].angular.x
         }),
     ]

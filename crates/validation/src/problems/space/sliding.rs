@@ -103,16 +103,20 @@ fn circle() -> [Problem; 3] {
     };
     [
         setting("space-sliding/circle-time", title, COULOMB)
-            .asks("time until it stops", "s", absolute(exact, 1e-4))
+            .quantity("time until it stops", "s", absolute(exact, 1e-4))
             .by(move |_| Ok(thrown()?.1)),
         setting("space-sliding/circle-way", title, COULOMB)
-            .asks("way until it stops", "m", absolute(exact, 1e-4))
+            .quantity("distance until it stops", "m", absolute(exact, 1e-4))
             .by(move |_| {
                 let place = thrown()?.0.state.poses[1].position;
                 Ok(Vec3::new(place.x, place.y, 0.0).length())
             }),
         setting("space-sliding/circle-direction", title, COULOMB)
-            .asks("direction of its way, or its turn, off by", "rad", absolute(0.0, 1e-6))
+            .quantity(
+                "direction of its displacement, or its turn, off by",
+                "rad",
+                absolute(0.0, 1e-6),
+            )
             .by(move |_| {
                 let pose = thrown()?.0.state.poses[1];
                 let aside = 0.6 * pose.position.y - 0.8 * pose.position.x;
@@ -130,7 +134,7 @@ fn slope(degrees: f64) -> [Problem; 2] {
     };
     [
         setting(format!("space-sliding/slope-{degrees}-acceleration"), title.clone(), COULOMB)
-            .asks(
+            .quantity(
                 "acceleration once its sticks are stretched",
                 "m/s2",
                 relative(2.0 * 0.739_310_665_2, 1e-4),
@@ -143,7 +147,7 @@ fn slope(degrees: f64) -> [Problem; 2] {
                 Ok((scene.state.twists[1].linear.x - before) / 0.5)
             }),
         setting(format!("space-sliding/slope-{degrees}-turn"), title, COULOMB)
-            .asks("turn, and way aside over way down", "rad", absolute(0.0, 1e-4))
+            .quantity("turn, and displacement aside over that down", "rad", absolute(0.0, 1e-4))
             .by(move |_| {
                 let mut scene = start()?;
                 scene.run(&Still, STEP, 1.0)?;
@@ -167,17 +171,17 @@ fn spinning(turned: f64, place: (f64, f64), time: f64, spun: f64) -> [Problem; 3
     };
     [
         setting(format!("space-sliding/spinning-{turned}-time"), title.clone(), QUADRATURE)
-            .asks("time until it stops", "s", absolute(time, 1e-4))
+            .quantity("time until it stops", "s", absolute(time, 1e-4))
             .by(move |_| Ok(run()?.1)),
         setting(format!("space-sliding/spinning-{turned}-place"), title.clone(), QUADRATURE)
-            .asks("how far from the place where it stops", "m", absolute(0.0, 2e-5))
+            .quantity("how far from the place where it stops", "m", absolute(0.0, 2e-5))
             .by(move |_| {
                 let found = run()?.0.state.poses[1].position;
                 let off = Vec3::new(found.x - place.0, found.y - place.1, 0.0);
                 Ok(off.length())
             }),
         setting(format!("space-sliding/spinning-{turned}-turn"), title, QUADRATURE)
-            .asks("turn until it stops", "rad", absolute(spun, 2e-5))
+            .quantity("turn until it stops", "rad", absolute(spun, 2e-5))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation) - turned)),
     ]
 }
@@ -202,13 +206,13 @@ fn ring() -> [Problem; 3] {
     };
     [
         setting("space-sliding/ring-time", title, source)
-            .asks("time until it stops", "s", absolute(0.673_86, 2e-4))
+            .quantity("time until it stops", "s", absolute(0.673_86, 2e-4))
             .by(move |_| Ok(run()?.1)),
         setting("space-sliding/ring-way", title, source)
-            .asks("way until it stops", "m", absolute(0.374_178, 2e-4))
+            .quantity("distance until it stops", "m", absolute(0.374_178, 2e-4))
             .by(move |_| Ok(run()?.0.state.poses[1].position.x)),
         setting("space-sliding/ring-turn", title, source)
-            .asks("turn until it stops", "rad", absolute(1.576_485, 2e-4))
+            .quantity("turn until it stops", "rad", absolute(1.576_485, 2e-4))
             .by(move |_| Ok(turn(run()?.0.state.poses[1].orientation))),
     ]
 }
@@ -230,13 +234,13 @@ impl Drive<Spatial> for Circling {
 
 /// Steady slip on ground that moves in a circle.
 fn circling() -> [Problem; 2] {
-    let asked = |name: &str, time: f64, place: (f64, f64)| {
+    let problem = |name: &str, time: f64, place: (f64, f64)| {
         setting(
             format!("space-sliding/circling-{name}"),
             format!("block on ground that circles with 5 m/s², 1 Hz, μ = 0.3, after {time} s"),
             "steady slip: friction carries the block in a circle of its own",
         )
-        .asks("how far from its place on the ground", "m", absolute(0.0, 1e-4))
+        .quantity("how far from its place on the ground", "m", absolute(0.0, 1e-4))
         .by(move |_| {
             let drive = Circling { acceleration: 5.0, omega: TAU };
             let mut scene = block(0.3, 0.0, 0.0, down())?;
@@ -251,5 +255,8 @@ fn circling() -> [Problem; 2] {
             Ok(off.length())
         })
     };
-    [asked("quarter", 0.25, (-0.143_038_743_8, 0.022_507_415_2)), asked("turn", 1.0, (0.0, 0.0))]
+    [
+        problem("quarter", 0.25, (-0.143_038_743_8, 0.022_507_415_2)),
+        problem("turn", 1.0, (0.0, 0.0)),
+    ]
 }
