@@ -36,8 +36,8 @@ pub(super) fn semi_implicit_euler<S: Space>(
 /// Steps half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces at
 /// the new position.
 ///
-/// Forces that depend on the velocity use the velocity predicted from the old acceleration, corrected afterwards; sticks
-/// likewise use the old slip rate.
+/// Forces that depend on the velocity use the one predicted from the old acceleration, which is corrected
+/// afterwards; sticks likewise use the old slip rate.
 /// Springs that engage or release within the step act for a part of it only
 /// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
 /// Prediction errors are of second order and do not accumulate, since the corrected values are kept.
