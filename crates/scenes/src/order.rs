@@ -76,7 +76,7 @@ fn laws<S: Space<Real = f64>>() -> Interface<S> {
     interface(normal, coulomb(0.35, 2e6, 1e3))
 }
 
-/// Returns a body of the plane by its kind: a circle, a sharp box, one with round corners, a barrel seen from its side.
+/// Returns a body of the plane by its kind: a circle, a sharp box, one with round corners, a barrel in side view.
 fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body<Planar> {
     let radius = 0.3;
     let shape = match kind {

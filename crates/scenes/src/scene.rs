@@ -239,7 +239,7 @@ impl<S: Space<Real = f64>> Scene<S> {
         self.watch(drive, time_step, end_time, |_, _, _| ControlFlow::Continue(()))
     }
 
-    /// Runs to a time (s), calling `seen` after every accepted step.
+    /// Runs to a time (s), calling `observer` after every accepted step.
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -248,11 +248,11 @@ impl<S: Space<Real = f64>> Scene<S> {
         drive: &impl Drive<S>,
         time_step: f64,
         end_time: f64,
-        seen: impl FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
+        observer: impl FnMut(&State<S>, &Scratch<S>, &EnergyLedger<S>) -> ControlFlow<()>,
     ) -> Result<RunTotals<S>, RunError> {
         let simulation = Simulation { method: self.method, time_step, end_time };
         let Self { model, state, scratch, .. } = self;
-        simulate(model, drive, state, scratch, &simulation, &mut look(seen))
+        simulate(model, drive, state, scratch, &simulation, &mut look(observer))
     }
 }
 

@@ -101,9 +101,9 @@ pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     let start = atan(n / (a * a - n * n).sqrt());
     let rest = duration - start / omega;
     let speed = a * GRAVITY / omega * (1.0 + cos(start)) - n * GRAVITY * rest;
-    let way = a * GRAVITY / omega * cos(start) * rest + a * GRAVITY / (omega * omega) * sin(start)
+    let slip = a * GRAVITY / omega * cos(start) * rest + a * GRAVITY / (omega * omega) * sin(start)
         - 0.5 * n * GRAVITY * rest * rest;
-    way + speed * speed / (2.0 * n * GRAVITY)
+    slip + speed * speed / (2.0 * n * GRAVITY)
 }
 
 /// Returns the relative amplitude (m) of a block that slides continuously on ground that shakes with
