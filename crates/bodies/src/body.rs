@@ -31,7 +31,7 @@ section! {
     name: String = Kind::Text, Default::Required;
     /// Label used by interfaces.
     kind: Option<String> = Kind::Text, Default::Derived("the name");
-    /// What touches and can be touched.
+    /// Contact geometry.
     solid: Solid = Kind::Table(&SOLID), Default::Required;
     /// Mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
@@ -47,7 +47,7 @@ section! {
         Kind::Triple(Dimension::LENGTH), Default::Derived("that of a homogeneous solid");
     /// Place of the reference point of the solid at the start.
     position: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
-    /// How it is turned at the start: about x, then y, then z, axes that stand still, each counterclockwise.
+    /// Orientation at the start: about x, then y, then z, axes that stand still, each counterclockwise.
     orientation: [f64; 3] =
         Kind::Triple(Dimension::ANGLE), Default::Value("[\"0 deg\", \"0 deg\", \"0 deg\"]");
     /// Velocity of the center of mass at the start.
@@ -58,7 +58,7 @@ section! {
         Kind::Triple(Dimension::SPIN), Default::Value("[\"0 rad/s\", \"0 rad/s\", \"0 rad/s\"]");
     /// Bodies of one group do not meet by an interface that says `within_groups = false`.
     group: Option<String> = Kind::Text, Default::Nothing;
-    /// Whether the body moves with the ground.
+    /// True if the body moves with the ground.
     fixed_to_ground: bool = Kind::Flag, Default::Value("false");
     /// Viscous drag.
     viscous: Option<Viscous> = Kind::Table(&VISCOUS), Default::Nothing;

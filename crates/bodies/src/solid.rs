@@ -105,7 +105,7 @@ section! {
     solid: Solid = Kind::Table(&PART_SOLID), Default::Required;
     /// Place of its reference point in the body.
     offset: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\", \"0 m\"]");
-    /// How it is turned in the body: about x, then y, then z of the body, each counterclockwise.
+    /// Rotation in the body: about x, then y, then z of the body, each counterclockwise.
     turn: [f64; 3] =
         Kind::Triple(Dimension::ANGLE), Default::Value("[\"0 deg\", \"0 deg\", \"0 deg\"]");
 }

@@ -173,8 +173,9 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
                 // A user's own file, in place of the scenario's record.
                 Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
                     let file = &record.file;
-                    let told = format!("{file} has no vertical component: it shakes sideways only");
-                    warnings.push(told);
+                    let warning =
+                        format!("{file} has no vertical component: it shakes sideways only");
+                    warnings.push(warning);
                     record.ground_motion(&horizontal, None, &processing)?
                 }
                 Err(error) => return Err(GroundError::Vertical { error }),
@@ -185,8 +186,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             let other = read_file(file, &options, OTHER_VERTICAL)?;
             require_strong_motion(&other)?;
             warnings.extend(other.warnings.iter().map(|w| format!("{}: {w}", other.file)));
-            let (record, other, told) = on_one_clock(record, &horizontal, other)?;
-            warnings.extend(told);
+            let (record, other, notes) = on_one_clock(record, &horizontal, other)?;
+            warnings.extend(notes);
             let theirs = processing_of(spec, &other);
             let vertical = other.ground_motion(&Component::Number(1), None, &theirs)?;
             let motion = record.ground_motion(&Component::Number(1), None, &processing)?;
@@ -208,7 +209,7 @@ fn on_one_clock(
     horizontal: &Component,
     mut other: Record,
 ) -> Result<(Record, Record, Vec<String>), MotionError> {
-    let told = record.unlike(&other).map(|what| format!("taken together although {what}"));
+    let notes = record.unlike(&other).map(|what| format!("taken together although {what}"));
     let mut both = record.clone();
     both.channels = vec![record.component(horizontal)?];
     both.channels.extend(std::mem::take(&mut other.channels).into_iter().take(1));
@@ -218,7 +219,7 @@ fn on_one_clock(
     let second = Record { channels: vertical, ..other };
     let mut first = Record { channels: both.channels, ..record.clone() };
     first.notes.extend(both.notes);
-    Ok((first, second, told.into_iter().collect()))
+    Ok((first, second, notes.into_iter().collect()))
 }
 
 /// Rejects implausible ground motion: a step of 5 ms written as 5 s, a file of three values.

@@ -45,7 +45,7 @@ pub(super) const LONGEST: f64 = 3600.0;
 table! {
     /// A harmonic motion.
     pub static SINE = "sine";
-    /// Amplitude of displacement, velocity or acceleration, as its unit tells.
+    /// Amplitude of displacement, velocity or acceleration, according to its unit.
     amplitude = Kind::Quantity(&[Dimension::LENGTH, Dimension::VELOCITY, Dimension::ACCELERATION], Range::POSITIVE),
         Default::Required;
     /// Period; or give the frequency.
@@ -70,7 +70,7 @@ table! {
     pub static PULSE = "pulse";
     /// Form of the pulse.
     kind = Kind::Choice(names::<PulseKind>), Default::Required;
-    /// Peak acceleration or peak velocity, as its unit tells.
+    /// Peak acceleration or peak velocity, according to its unit.
     amplitude = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY], Range::POSITIVE),
         Default::Required;
     /// Period; or give the frequency.
@@ -137,7 +137,7 @@ table! {
     /// Value of `measure` to reach.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),
         Default::Nothing;
-    /// What `measure` is taken of: the component that drives the stack, or both horizontals of the record.
+    /// Components from which `measure` is computed: the component that drives the stack, or both horizontals of the record.
     of = Kind::Choice(names::<MeasuredOn>), Default::Value("\"component\"");
     at most one of &["factor", "pga", "pgv", "measure"];
     at most one of &["factor", "pga", "pgv", "value"];
@@ -174,7 +174,7 @@ table! {
     sensitivity = Kind::Number(Range::up_to(1e15)), Default::Nothing;
     /// Signal processing of the record.
     processing = Kind::Choice(names::<Processing>), Default::Value("\"default\"");
-    /// Where to get the record, told to those who do not have it.
+    /// Where to get the record, shown to users who do not have it.
     obtain = Kind::Text, Default::Nothing;
     /// Scaling of the motion.
     scale = Kind::Table(&SCALE), Default::Derived("factor 1");

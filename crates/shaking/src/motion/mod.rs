@@ -199,7 +199,7 @@ pub enum Scale {
 }
 
 named! {
-    /// What the measure of a scaling is taken of.
+    /// Components from which the measure of a scaling is computed.
     pub enum MeasuredOn {
         /// The horizontal component that drives the stack.
         Component = "component",
