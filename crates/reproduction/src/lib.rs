@@ -97,7 +97,7 @@ impl From<GroundError> for ReproduceError {
 /// the motion is compared.
 /// `studies` includes the studies: effects of single quantities on each case, and contact parameters changed by 10 %;
 /// they are most of the work.
-/// `tell` is called with the numbers of completed and of all runs, from several threads, and may stop them: once all
+/// `progress` is called with the numbers of completed and of all runs, from several threads, and may stop them: once all
 /// cases are done there is a result without the studies.
 ///
 /// The result depends only on the program, the platform and the record.
@@ -107,11 +107,11 @@ impl From<GroundError> for ReproduceError {
 pub fn reproduce(
     record: Option<&Path>,
     studies: bool,
-    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+    progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Reproduction, ReproduceError> {
     let cases = cases::Cases::new(record)?;
     let mut plan = results::Plan::new(&cases, studies);
-    let mut done = pool::run_all(&plan.jobs, tell)?;
+    let mut done = pool::run_all(&plan.jobs, progress)?;
     let stopped = done.iter().any(Option::is_none);
     if stopped {
         plan.leave_out_studies();
@@ -119,8 +119,8 @@ pub fn reproduce(
     }
     if done.iter().any(Option::is_none) {
         let labels = plan.jobs.iter().map(|job| job.label.clone());
-        let told = labels.zip(done).filter_map(|(label, done)| Some((label, done?.headline)));
-        return Err(ReproduceError::Stopped { done: told.collect() });
+        let finished = labels.zip(done).filter_map(|(label, done)| Some((label, done?.headline)));
+        return Err(ReproduceError::Stopped { done: finished.collect() });
     }
     let results = plan.read(cases.motion, done.into_iter().flatten().collect())?;
     let comparisons = rows::all(&results);

@@ -355,14 +355,14 @@ fn provenance(results: &Results) -> Vec<(String, String)> {
     ] {
         let balance = summary.energy.as_ref();
         let residual = balance.map(|balance| format!("{:.0e}", balance.residual_ratio));
-        let told = format!(
+        let text = format!(
             "{}, step {} ms, constants per {}, energy residual {}",
             summary.run.method,
             significant(1e3 * summary.run.time_step, 3),
             summary.run.stiffness_basis,
             residual.as_deref().unwrap_or("lost")
         );
-        pair(name, told);
+        pair(name, text);
     }
     for (index, step) in results.six.summary.provenance.motion.iter().enumerate() {
         pair(&format!("motion of the six barrels, step {}", index + 1), step.clone());

@@ -38,16 +38,18 @@ pub(super) struct Done {
     pub(super) headline: String,
 }
 
-/// Runs all jobs on all cores, in order; `tell` is called repeatedly with the numbers of completed and of all jobs, and
+/// Runs all jobs on all cores, in order.
+///
+/// `progress` is called repeatedly with the numbers of completed and of all jobs, and
 /// may stop them: jobs not completed are then `None`.
 pub(super) fn run_all(
     jobs: &[Job],
-    tell: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
+    progress: &(dyn Fn(usize, usize) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Option<Done>>, ReproduceError> {
     let done = AtomicUsize::new(0);
     let stopped = AtomicBool::new(false);
-    let told = || {
-        if tell(done.load(Ordering::Relaxed), jobs.len()).is_break() {
+    let check = || {
+        if progress(done.load(Ordering::Relaxed), jobs.len()).is_break() {
             stopped.store(true, Ordering::Relaxed);
         }
         if stopped.load(Ordering::Relaxed) {
@@ -58,16 +60,16 @@ pub(super) fn run_all(
     };
     let finished = |now| {
         done.fetch_max(now, Ordering::Relaxed);
-        let _: ControlFlow<()> = told();
+        let _: ControlFlow<()> = check();
     };
-    pool::map(jobs, |job| run_one(job, &told), &finished).into_iter().collect()
+    pool::map(jobs, |job| run_one(job, &check), &finished).into_iter().collect()
 }
 
-fn run_one(job: &Job, told: &dyn Fn() -> ControlFlow<()>) -> Result<Option<Done>, ReproduceError> {
-    if told().is_break() {
+fn run_one(job: &Job, check: &dyn Fn() -> ControlFlow<()>) -> Result<Option<Done>, ReproduceError> {
+    if check().is_break() {
         return Ok(None);
     }
-    let run = job.scenario.run_watched(&mut |_| told()).map_err(|source| ReproduceError::Run {
+    let run = job.scenario.run_watched(&mut |_| check()).map_err(|source| ReproduceError::Run {
         case: job.label.clone(),
         source: Box::new(source),
     })?;

@@ -273,23 +273,23 @@ mod tests {
         ];
         for (subject, name) in cases {
             let base = Scenario::builtin(name, &[]).unwrap();
-            let mut seen = Vec::new();
+            let mut prints = Vec::new();
             for factor in factors(subject, &base) {
                 for (label, scenario) in factor.ends {
                     let print = scenario.fingerprint();
                     assert!(
-                        !seen.contains(&print),
+                        !prints.contains(&print),
                         "{name}, {}: {label} changes nothing",
                         factor.name
                     );
-                    seen.push(print);
+                    prints.push(print);
                     barrelstack::assemble::assemble(&scenario).unwrap_or_else(|error| {
                         panic!("{name}, {}: {label}: {error}", factor.name)
                     });
                 }
             }
             // Ten quantities, and the sine's start if there is a sine; the fill has only one other value.
-            assert_eq!(seen.len(), if subject == Subject::Six { 19 } else { 21 });
+            assert_eq!(prints.len(), if subject == Subject::Six { 19 } else { 21 });
         }
     }
 }
