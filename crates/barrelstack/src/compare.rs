@@ -174,7 +174,7 @@ described! {
         pub name: String = side.name.clone(),
         /// Its summary.
         pub summary: Summary = side.summary.clone(),
-        /// What its variants say in the other plane; null where it has one plane.
+        /// Statistics of its variants in the other plane; null where it has one plane.
         pub ensemble_of_other_plane: Option<Spread> = side.other.clone(),
         /// What becomes of the run that is shown in the other plane; null where it has one plane.
         pub outcome_of_other_plane: Option<&'static str>
@@ -187,7 +187,7 @@ described! {
     pub struct Difference {
         /// Its path, as in an override.
         pub path: String,
-        /// What the field means.
+        /// Meaning of the field.
         pub help: &'static str,
         /// The value in each run; null where that run has no such field.
         pub values: Vec<Option<String>>,

@@ -80,11 +80,11 @@ impl ExportError {
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// Whether it was there already.
+    /// `true` if it existed before.
     existed: bool,
-    /// Whether nothing that is there may be replaced.
+    /// `true` if no existing file may be replaced.
     fresh: bool,
-    /// Whether this run has begun to write in it.
+    /// `true` once this run has begun to write in it.
     claimed: Arc<AtomicBool>,
 }
 
@@ -312,9 +312,9 @@ pub fn files(
 /// Returns the start data of a page that holds the program: the scenario as text, and its records by name in
 /// base64, independent of their paths.
 fn start_of(scenario: &Scenario) -> Value {
-    let mut told = scenario.clone();
+    let mut packed = scenario.clone();
     let mut records = Vec::new();
-    if let MotionSource::Record(motion) = &mut told.motion.source {
+    if let MotionSource::Record(motion) = &mut packed.motion.source {
         let mut hold = |file: &mut FileRef| {
             let Ok(bytes) = file.read(RECORD_LIMIT) else { return };
             let name =
@@ -329,7 +329,7 @@ fn start_of(scenario: &Scenario) -> Value {
             hold(file);
         }
     }
-    json!({ "name": "scenario.toml", "text": told.to_resolved_toml(), "records": records })
+    json!({ "name": "scenario.toml", "text": packed.to_resolved_toml(), "records": records })
 }
 
 /// Writes all channels as arrays, named like the columns of the CSV, and "time".

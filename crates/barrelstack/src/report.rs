@@ -49,8 +49,8 @@ pub fn document(run: &Run, summary: &Summary) -> Document {
 /// with the repeats of the shown run.
 pub fn answer_document(answer: &Answer, verification: Option<&Verification>) -> Document {
     let Answer { decides, other, .. } = answer;
-    let seen = (decides.variants.as_ref(), other.as_ref());
-    page(&decides.run, &decides.summary, seen, verification)
+    let variants = (decides.variants.as_ref(), other.as_ref());
+    page(&decides.run, &decides.summary, variants, verification)
 }
 
 /// Returns the stage of an answer alone: the moving run, in each of its planes.

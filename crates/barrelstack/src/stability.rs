@@ -1,4 +1,4 @@
-//! How firmly a stack stands: how far it sinks, how slowly it sways, and the tilt of the floor that fells it.
+//! Static stability of a stack: settlement, natural period, and the tilt of the floor that fells it.
 //!
 //! All of it follows from equilibria, so no time is stepped through.
 
@@ -23,7 +23,7 @@ const FINEST_STEP: f64 = FIRST_STEP / 32.0;
 const STEEPEST: f64 = std::f64::consts::FRAC_PI_4;
 
 described! {
-    /// How firmly stacks stand that nothing shakes, one row for each rack, plane and height.
+    /// Static stability of stacks, one row for each rack, plane and height.
     #[derive(Clone, Debug)]
     pub struct StabilityTable {
         /// Name and version of this layout.
@@ -34,7 +34,7 @@ described! {
         pub rows: Vec<StabilityRow>,
     }
 
-    /// How firmly one stack stands.
+    /// Static stability of one stack.
     #[derive(Clone, Debug)]
     pub struct StabilityRow {
         /// Its rack.
@@ -43,13 +43,13 @@ described! {
         pub view: &'static str ["transverse", "longitudinal"],
         /// Its levels.
         pub levels: u32,
-        /// What it does at rest; null where it does not stand on a level floor.
+        /// Its stability at rest; null where it does not stand on a level floor.
         pub stands: Option<Stability>,
         /// Why it does not stand on a level floor, or cannot be built; null where it stands.
         pub refused: Option<String>,
     }
 
-    /// How firmly a stack stands that nothing shakes.
+    /// Static stability of a stack.
     #[derive(Clone, Debug)]
     pub struct Stability {
         /// Deepest sinking of a body into its contacts as the stack comes to rest, which is that of the top.
@@ -61,7 +61,7 @@ described! {
         pub tilt: Option<f64> as "rad",
         /// The body that goes first at that tilt.
         pub body: Option<String>,
-        /// How it goes: slides, tips, or is displaced.
+        /// Failure mode: slides, tips, or is displaced.
         pub failure: Option<&'static str> ["slides", "tips", "is displaced"],
     }
 }
@@ -203,7 +203,7 @@ fn tilt_at_failure_to(
     failure.map(|failure| (tilt, failure))
 }
 
-/// How a body goes that lacks something.
+/// Returns the failure mode that a lack causes, in words.
 fn word(lack: &Lack) -> &'static str {
     match lack {
         Lack::Friction { .. } | Lack::Stick { .. } => "slides",

@@ -30,13 +30,13 @@ described! {
         pub view: Option<&'static str> ["transverse", "longitudinal"] = run.assembly.view.map(View::name),
         /// Which variant of the stack this is; 0 as it is stated.
         pub variant: u32 = 0,
-        /// What all variants say together; null where none were run.
+        /// Statistics of all variants; null where none were run.
         pub ensemble: Option<Spread> = None,
-        /// How many of its runs were done; null unless they were stopped before all were.
+        /// Number of its runs that were done; null unless they were stopped before all were.
         pub unfinished: Option<Unfinished> = None,
-        /// What would have kept the stack up; null where it stands, or nothing was looked for.
+        /// Changes that would have kept the stack up; null where it stands, or none was searched.
         pub remedy: Option<Remedy> = None,
-        /// What happened.
+        /// Outcome of the run.
         pub outcome: OutcomeSummary = outcome(run),
         /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodySummary> = bodies(run),
@@ -51,15 +51,15 @@ described! {
         pub devices: Devices = Devices::of(run),
         /// The energy balance; null where numbers were lost.
         pub energy: Option<EnergyBalance> = run.energy.as_ref().map(EnergyBalance::of),
-        /// What shook it.
+        /// Ground motion of the run.
         pub motion: Option<MotionSummary> = run.ground.motion.as_ref().map(MotionSummary::of),
-        /// How it was computed.
+        /// Settings and work of the computation.
         pub run: RunSummary = RunSummary::of(run, wall_seconds),
-        /// What the reader should know.
+        /// Warnings.
         pub warnings: Vec<String> = run.warnings.clone(),
-        /// What made the result.
+        /// Provenance of the result.
         pub provenance: Provenance = Provenance::of(run),
-        /// What repeats say about it; null where there were none.
+        /// Comparison with its repeats; null where there were none.
         pub verification: Option<Verification> = None,
         /// The same of the other plane, where the scenario looks at its stack in both: this one is the worse.
         pub other_plane: Option<Box<Summary>> = None,
@@ -75,16 +75,16 @@ described! {
         pub of: usize,
     }
 
-    /// What happened.
+    /// Outcome of the run.
     #[derive(Clone, Debug, Default)]
     pub struct OutcomeSummary {
-        /// What it was.
+        /// Kind of the outcome.
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
-        /// How it collapsed.
+        /// Mode of the collapse.
         pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
         /// When the first body left its seat.
         pub time: Option<f64> as "s",
-        /// That body.
+        /// Name of the first body that left its seat.
         pub first: Option<String>,
         /// The lowest level that gave way.
         pub from_level: Option<u32>,
@@ -105,7 +105,7 @@ described! {
     pub struct BodySummary of part: &Part, fate: Fate, stress: Option<&StressEnvelope> {
         /// Its name.
         pub name: String = part.name.clone(),
-        /// What it is.
+        /// Kind of the body.
         pub kind: &'static str ["barrel", "rack", "body"] = part.kind.name(),
         /// Level, 1 at the bottom.
         pub level: Option<u32> = part.level,
@@ -127,7 +127,7 @@ described! {
         pub residual_displacement: f64 as "m" = fate.residual_displacement,
         /// Largest displacement along x relative to the ground, while the stack stood.
         pub peak_displacement: f64 as "m" = fate.peak_displacement,
-        /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's way in its
+        /// Displacement relative to what it stands on, at the end: a rack's walk, a barrel's slip in its
         /// cradle.
         pub residual_slip: f64 as "m" = fate.residual_slip,
         /// Largest such displacement while the stack stood.
@@ -194,7 +194,7 @@ described! {
         pub viscous: f64 as "J" = balance.viscous,
         /// Work of the ground.
         pub ground_work: f64 as "J" = balance.ground_work,
-        /// What does not balance.
+        /// Residual of the balance.
         pub residual: f64 as "J" = balance.residual,
         /// Energy that went through: absolute work of the ground plus the drop of potential energy.
         pub input: f64 as "J" = balance.throughput,
@@ -202,7 +202,7 @@ described! {
         pub residual_ratio: f64 as "1" = balance.residual_ratio(),
     }
 
-    /// How it was computed.
+    /// Settings and work of the computation.
     #[derive(Clone, Debug)]
     pub struct RunSummary of run: &Run, wall_seconds: Option<f64> {
         /// Integration method.
@@ -219,9 +219,9 @@ described! {
         pub end_time: f64 as "s" = run.end_time,
         /// Why it ended.
         pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] = run.ending.name(),
-        /// Whether it was stopped early by the user.
+        /// True if the user stopped it early.
         pub interrupted: bool = run.interrupted,
-        /// What contact constants are stated for.
+        /// Basis of the contact constants.
         pub stiffness_basis: &'static str ["seat", "node", "length", "mixed"] = run.stiffness_basis(),
         /// Length scale of similitude.
         pub similitude: f64 as "1" = run.scenario.run.similitude,
@@ -231,7 +231,7 @@ described! {
         pub wall_seconds: Option<f64> as "s" = wall_seconds,
     }
 
-    /// What made the result.
+    /// Provenance of the result.
     #[derive(Clone, Debug)]
     pub struct Provenance of run: &Run {
         /// The program.

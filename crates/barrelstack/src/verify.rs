@@ -31,30 +31,30 @@ pub const DISTURBANCE: f64 = 1e-9;
 pub const DISTURBED: u64 = 4;
 
 described! {
-    /// What repeats say about a run. Times in s, lengths in m, at the scale of the run.
+    /// Comparison of a run with its repeats. Times in s, lengths in m, at the scale of the run.
     #[derive(Clone, Debug)]
     pub struct Verification {
-        /// Distance between two runs at which a body counts as gone another way.
+        /// Distance between two runs at which the paths of a body count as different.
         pub apart: f64 as "m",
         /// Until when no body of any repeat is that far from where the run has it; none where that holds
         /// for all that both ran.
         pub predictable_until: Option<f64> as "s",
-        /// What all repeats, of which there are some, have in common with the run.
+        /// Properties of the run that all repeats share; there is at least one repeat.
         pub robust: Robust,
         /// The repeats.
         pub repeats: Vec<Repeat>,
-        /// What was not repeated.
+        /// Repeats that were skipped.
         pub skipped: Vec<Skipped>,
     }
 
     /// One repeat.
     #[derive(Clone, Debug)]
     pub struct Repeat of base: &Run, other: &Run, change: &str {
-        /// What is different.
+        /// Change against the run.
         pub change: String = change.to_owned(),
-        /// What happens.
+        /// Outcome of the repeat.
         pub outcome: OutcomeSummary = Summary::of(other, None).outcome,
-        /// Whether kind, mode and first body are those of the run.
+        /// True if kind, mode and first body are those of the run.
         pub same_outcome: bool = same_outcome(base, other),
         /// When some body is first too far from where the run has it; none where that does not happen.
         pub apart_at: Option<f64> as "s" = apart_at(base, other),
@@ -68,7 +68,7 @@ described! {
     /// A repeat that was not done.
     #[derive(Clone, Debug)]
     pub struct Skipped {
-        /// What would have been different.
+        /// Change that the repeat would have made.
         pub change: &'static str,
         /// Why it says nothing here.
         pub reason: String,

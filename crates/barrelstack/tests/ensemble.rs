@@ -62,11 +62,11 @@ fn random_case(seed: u64) -> Prepared {
 }
 
 fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
-    let mut told = 0;
-    let mut tell = |_: &CaseResult| told += 1;
-    let mut audience = Audience { tell: &mut tell, stop: &|| false };
+    let mut reported = 0;
+    let mut on_case = |_: &CaseResult| reported += 1;
+    let mut audience = Audience { on_case: &mut on_case, stop: &|| false };
     let results = simulate_in(width, cases, &mut audience).unwrap();
-    assert_eq!(told, cases.len(), "every case is told once");
+    assert_eq!(reported, cases.len(), "every case is reported once");
     results
 }
 
@@ -208,9 +208,12 @@ fn a_motion_too_long_to_run_is_told_whatever_shares_its_stack() {
     let long = Prepared { ground: shaken(4500).ground, ..short.clone() };
     for cases in [[short.clone(), long.clone()], [long, short]] {
         let outcomes = results(Width::Scalar, &cases).into_iter().map(|result| result.outcome);
-        let (told, ran): (Vec<_>, Vec<_>) = outcomes.partition(Result::is_err);
+        let (reported, ran): (Vec<_>, Vec<_>) = outcomes.partition(Result::is_err);
         assert!(matches!(&ran[..], [Ok(Outcome::Collapse { .. })]), "{ran:?}");
-        assert!(matches!(&told[..], [Err(reason)] if reason.contains("1e9 steps")), "{told:?}");
+        assert!(
+            matches!(&reported[..], [Err(reason)] if reason.contains("1e9 steps")),
+            "{reported:?}"
+        );
     }
 }
 
@@ -222,6 +225,6 @@ fn an_ensemble_stops_when_asked() {
         asked.set(asked.get() + 1);
         asked.get() > 14
     };
-    let mut audience = Audience { tell: &mut |_| {}, stop: &stop };
+    let mut audience = Audience { on_case: &mut |_| {}, stop: &stop };
     assert!(simulate_in(Width::widest(), &cases, &mut audience).is_none());
 }

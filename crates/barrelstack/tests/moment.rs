@@ -107,13 +107,13 @@ fn ghosts_are_the_ways_of_the_variants_as_single_runs_have_them() {
         }
     }
     let times = &shown.run.recording.times;
-    for (body, way) in trail.top.iter().zip(&trail.ways) {
+    for (body, path) in trail.top.iter().zip(&trail.paths) {
         let name = &shown.run.assembly.parts[*body].name;
         let channel = shown.run.recording.displacement(name).unwrap();
-        assert!(way.len() as f64 >= RATE * shown.run.end_time - 1.0, "{} places", way.len());
-        let rest = f64::from(way[0][0]) - channel.values[0];
+        assert!(path.len() as f64 >= RATE * shown.run.end_time - 1.0, "{} places", path.len());
+        let rest = f64::from(path[0][0]) - channel.values[0];
         let mut compared = 0;
-        for (at, place) in way.iter().enumerate() {
+        for (at, place) in path.iter().enumerate() {
             let time = at as f64 / RATE;
             // Histories have a sample every eighth of a second.
             if let Some(sample) = times.iter().position(|sample| (sample - time).abs() < 1e-9) {

@@ -15,7 +15,7 @@ fn prepared(name: &str, changes: &[&str]) -> Prepared {
 }
 
 fn results(width: Width, cases: &[Prepared]) -> Vec<CaseResult> {
-    let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
+    let mut audience = Audience { on_case: &mut |_| {}, stop: &|| false };
     simulate_in(width, cases, &mut audience).unwrap()
 }
 

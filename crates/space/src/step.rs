@@ -36,7 +36,7 @@ pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f
     let own = round_down(sound) * scenario.run.accuracy.step();
     match scenario.run.step {
         Some(step) if step >= critical && !adapts(scenario.run.method) => Err(RunFailure::Step {
-            asked: 1e3 * step,
+            given: 1e3 * step,
             reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical),
             instead: 1e3 * own,
         }),

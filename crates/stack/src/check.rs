@@ -12,7 +12,7 @@ use crate::stand::{Standing, stand};
 use crate::stick::SoftStick;
 
 described! {
-    /// What a check found: the scenario is sound.
+    /// Result of a check that found the scenario sound.
     #[derive(Clone, Debug)]
     pub struct Checked {
         /// Name and version of this layout.
@@ -29,13 +29,13 @@ described! {
         pub free_bodies: usize,
         /// Time step.
         pub time_step: f64 as "s",
-        /// How it came to rest; null where the scenario starts without.
+        /// State at rest; null where the scenario starts without.
         pub rest: Option<AtRest>,
-        /// What shakes it.
+        /// Ground motion.
         pub motion: Option<MotionSummary>,
-        /// What its elastic sticks are too soft for, one sentence each.
+        /// Warnings of elastic sticks that are too soft for the motion, one sentence each.
         pub sticks: Vec<String>,
-        /// What the reader should know.
+        /// Warnings.
         pub warnings: Vec<String>,
         /// Hash of the scenario with every default written out.
         pub scenario_hash: String,
@@ -43,7 +43,7 @@ described! {
         pub other_plane: Option<Box<Checked>>,
     }
 
-    /// How a stack came to rest.
+    /// State of a stack at rest.
     #[derive(Clone, Debug)]
     pub struct AtRest {
         /// Steps taken to find equilibrium.

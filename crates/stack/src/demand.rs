@@ -76,8 +76,8 @@ macro_rules! demands {
                 joints: &Joints,
                 span: Span,
             ) -> Self {
-                let seen = Seen { assembly, fates, stresses, joints, span };
-                Self { $($name: seen.most($of)),* }
+                let sources = Sources { assembly, fates, stresses, joints, span };
+                Self { $($name: sources.most($of)),* }
             }
         }
     };
@@ -85,48 +85,48 @@ macro_rules! demands {
 
 demands! {
     /// Largest displacement of the top barrels against the ground, over the height of the stack.
-    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |seen, body| {
-        let height = seen.assembly.height;
-        let drift = seen.motion(body, PartKind::Barrel, Some(seen.assembly.levels))?.displacement;
+    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |sources, body| {
+        let height = sources.assembly.height;
+        let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
     /// Largest normal stress on a barrel of the bottom level over the largest at rest, wherever on it each of them is.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
-        |seen, body| match seen.span {
-            Span::UntilLoss => seen.stress(body)?.amplification(),
-            Span::WholeRun => seen.stress(body)?.amplification_whole_run(),
+        |sources, body| match sources.span {
+            Span::UntilLoss => sources.stress(body)?.amplification(),
+            Span::WholeRun => sources.stress(body)?.amplification_whole_run(),
         };
     /// Largest normal stresses on a barrel of the bottom level, averaged over the boundary that is loaded at rest, over
     /// the average at rest.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
-        |seen, body| match seen.span {
-            Span::UntilLoss => seen.stress(body)?.mean_amplification(),
-            Span::WholeRun => seen.stress(body)?.mean_amplification_whole_run(),
+        |sources, body| match sources.span {
+            Span::UntilLoss => sources.stress(body)?.mean_amplification(),
+            Span::WholeRun => sources.stress(body)?.mean_amplification_whole_run(),
         };
     /// Largest vertical force between a barrel and a rack in any step, over what its staves bear
     /// (`stack.barrel.stave_capacity`).
-    stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |seen, body| {
-        seen.fate(body, PartKind::Barrel, None)?;
-        let load = seen.joints.stave_load(body, &|id| seen.assembly.parts[id].kind, seen.span);
-        Some(load? / seen.assembly.stave_capacity)
+    stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |sources, body| {
+        sources.fate(body, PartKind::Barrel, None)?;
+        let load = sources.joints.stave_load(body, &|id| sources.assembly.parts[id].kind, sources.span);
+        Some(load? / sources.assembly.stave_capacity)
     };
     /// Largest slip of the bottom rack on the ground.
     base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
-        |seen, body| Some(seen.motion(body, PartKind::Rack, Some(1))?.slip);
+        |sources, body| Some(sources.motion(body, PartKind::Rack, Some(1))?.slip);
     /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
     base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm" 1,
-        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
+        |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
     /// The same at the end of the run.
     base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm" 1,
-        |seen, body| Some(seen.fate(body, PartKind::Rack, Some(1))?.residual_slip);
+        |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.residual_slip);
     /// Largest walk of any rack on the barrels below, or of its foot on the posts of the rack below.
-    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |seen, body| {
-        let motion = seen.motion(body, PartKind::Rack, None)?;
-        (!seen.assembly.parts[body].supports.is_empty()).then_some(motion.slip)
+    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |sources, body| {
+        let motion = sources.motion(body, PartKind::Rack, None)?;
+        (!sources.assembly.parts[body].supports.is_empty()).then_some(motion.slip)
     };
     /// Largest tilt of any rack.
     rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg" 1,
-        |seen, body| Some(seen.motion(body, PartKind::Rack, None)?.tilt);
+        |sources, body| Some(sources.motion(body, PartKind::Rack, None)?.tilt);
 }
 
 impl Described for Demands {
@@ -147,7 +147,7 @@ impl Described for Demands {
 }
 
 /// Sources of demands.
-struct Seen<'a> {
+struct Sources<'a> {
     assembly: &'a Assembly,
     fates: &'a Fates,
     stresses: &'a Stresses,
@@ -155,7 +155,7 @@ struct Seen<'a> {
     span: Span,
 }
 
-impl Seen<'_> {
+impl Sources<'_> {
     /// Returns the value that is largest in size, with its sign, over all bodies that have one.
     fn most(&self, of: fn(&Self, usize) -> Option<f64>) -> Option<f64> {
         let larger = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };

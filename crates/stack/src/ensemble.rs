@@ -40,7 +40,7 @@ const BATCH: usize = 32;
 /// Progress callback and cancellation of an ensemble.
 pub struct Audience<'a> {
     /// Called for each finished case, in any order.
-    pub tell: &'a mut dyn FnMut(&CaseResult),
+    pub on_case: &'a mut dyn FnMut(&CaseResult),
     /// Polled; returns `true` to stop.
     pub stop: &'a dyn Fn() -> bool,
 }
@@ -104,13 +104,13 @@ impl Ensemble {
         let stopped = AtomicBool::new(false);
         let lanes = self.lanes.unwrap_or_else(Width::widest);
         let together = |cases: &&[Prepared]| {
-            let mut tell = |result: &CaseResult| {
+            let mut report = |result: &CaseResult| {
                 if observer(result).is_break() {
                     stopped.store(true, Ordering::Relaxed);
                 }
             };
             let stop = || stopped.load(Ordering::Relaxed) || asked_to_stop();
-            simulate_as_far(lanes, cases, &mut Audience { tell: &mut tell, stop: &stop })
+            simulate_as_far(lanes, cases, &mut Audience { on_case: &mut report, stop: &stop })
         };
         let batches: Vec<&[Prepared]> = self.cases.chunks(BATCH).collect();
         pool::map(&batches, together, &|_| ()).concat()
@@ -158,7 +158,7 @@ fn simulate_as_far(
             Err(reason) => Ok(CaseResult::failed(reason)),
         };
         match refused {
-            Ok(refused) => (audience.tell)(result.insert(refused)),
+            Ok(refused) => (audience.on_case)(result.insert(refused)),
             Err(run) => ready.push(run),
         }
     }

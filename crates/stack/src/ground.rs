@@ -13,7 +13,7 @@ pub use barrelstack_shaking::ground::{
 };
 
 described! {
-    /// What shook it.
+    /// Ground motion of the run.
     #[derive(Clone, Debug)]
     pub struct MotionSummary of motion: &GroundMotion {
         /// Its name.
@@ -24,7 +24,7 @@ described! {
         pub pgv: f64 as "m/s" = motion.pgv(),
         /// Peak horizontal displacement (m).
         pub pgd: f64 as "m" = motion.pgd(),
-        /// Whether there is a vertical component.
+        /// True if there is a vertical component.
         pub vertical: bool = motion.vertical.is_some(),
         /// When the shaking ends.
         pub duration: f64 as "s" = motion.duration,

@@ -203,7 +203,7 @@ impl Scenario {
         check_memory(&assembly, end_time, rates)?;
         let (evaluations, tested) = (scratch.evaluations, scratch.contact_evaluations);
         let sticks = SoftStick::of(&assembly, &scratch, ground.motion.as_ref());
-        let mut seen = |glance: Glance<'_>| eye(glance);
+        let mut callback = |glance: Glance<'_>| eye(glance);
         let mut watch = Watch::new(
             &assembly,
             &ground,
@@ -212,7 +212,7 @@ impl Scenario {
             thresholds,
             rates,
             End::new(self, &assembly, &ground),
-            &mut seen,
+            &mut callback,
             pace,
         );
         let result = simulate(model, &ground, &mut state, &mut scratch, &simulation, &mut watch);
@@ -293,7 +293,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
         return Ok(step);
     }
     Err(RunFailure::Step {
-        asked: milliseconds(step / scale),
+        given: milliseconds(step / scale),
         reason: format!("the stiffest contact allows {:.2} ms at most", 1e3 * critical / scale),
         instead: milliseconds(assembly.step / scale),
     })

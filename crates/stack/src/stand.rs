@@ -27,7 +27,7 @@ pub struct Standing {
     pub state: State<Planar>,
     /// The forces of that state.
     pub scratch: Scratch<Planar>,
-    /// How rest was found; none where the scenario starts without.
+    /// Settling to rest; `None` if the scenario starts without.
     pub settled: Option<Settled>,
     /// The time step (s).
     pub step: f64,

@@ -12,7 +12,7 @@ use barrelstack_motion::GroundMotion;
 use crate::assemble::Assembly;
 
 /// Share of slip above which the error is reported.
-const TOLD: f64 = 0.05;
+const REPORTED: f64 = 0.05;
 
 /// An interface whose stick is soft for the motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl SoftStick {
             let yields = limit / stiffness;
             let error = (yields / swing).sqrt();
             let interface = interface.name.clone();
-            (error > TOLD).then_some(Self { interface, yields, swing, error })
+            (error > REPORTED).then_some(Self { interface, yields, swing, error })
         };
         model.interfaces().iter().zip(sums).filter_map(soft).collect()
     }
@@ -70,8 +70,8 @@ impl fmt::Display for SoftStick {
             1e3 * self.yields,
             1e3 * self.swing,
             100.0 * self.error,
-            ((self.error / TOLD) * (self.error / TOLD)).ceil(),
-            100.0 * TOLD
+            ((self.error / REPORTED) * (self.error / REPORTED)).ceil(),
+            100.0 * REPORTED
         )
     }
 }

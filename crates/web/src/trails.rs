@@ -22,7 +22,7 @@ pub(crate) fn written<'a>(trails: impl IntoIterator<Item = ((u32, u32), &'a Trai
                 number(*body, &mut out);
             }
         }
-        for path in &trail.ways {
+        for path in &trail.paths {
             number(path.len(), &mut out);
             out.extend(path.iter().flatten().flat_map(|place| place.to_le_bytes()));
         }
@@ -51,7 +51,7 @@ pub(crate) fn read(mut bytes: &[u8]) -> Option<Trails> {
         for _ in &barrels {
             last.push([place(&mut bytes)?, place(&mut bytes)?, place(&mut bytes)?]);
         }
-        all.insert(key, Trail { top, ways: paths, barrels, last });
+        all.insert(key, Trail { top, paths, barrels, last });
     }
     Some(all)
 }
@@ -78,7 +78,7 @@ mod tests {
     fn trails_come_back_and_no_end_of_them_is_taken_for_whole() {
         let trail = |seed: f32| Trail {
             top: vec![7, 9],
-            ways: vec![vec![[seed, 0.1]; 3], vec![[f32::MIN_POSITIVE, -seed]]],
+            paths: vec![vec![[seed, 0.1]; 3], vec![[f32::MIN_POSITIVE, -seed]]],
             barrels: vec![3, 7, 9],
             last: vec![[seed, f32::NAN.min(1.0), 1e-30]; 3],
         };

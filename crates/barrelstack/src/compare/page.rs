@@ -172,9 +172,9 @@ fn effect(sides: &[Side]) -> Option<String> {
         }
     };
     // The other plane is named if any variant collapses in it.
-    let told =
+    let named =
         pairs[0].iter().enumerate().filter(|(at, pair)| *at == 0 || pair.collapsed() != [0, 0]);
-    let clauses: Vec<String> = told.map(|(_, pair)| clause(pair)).collect();
+    let clauses: Vec<String> = named.map(|(_, pair)| clause(pair)).collect();
     let colon = if cause == "Straps" || cause == WITHOUT { "" } else { ":" };
     Some(format!("{cause}{colon}{}.", clauses.join(";")))
 }
@@ -289,7 +289,7 @@ fn by_themselves(sides: &[Side]) -> String {
 }
 
 /// Describes the result of a run, with the interval of its share, and the drift of a stack that stands.
-fn told(at: usize, side: &Side) -> String {
+fn describe(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
     let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
     let shown = side.summary.ensemble.as_ref() == Some(spread);
@@ -298,16 +298,16 @@ fn told(at: usize, side: &Side) -> String {
     let place = place.unwrap_or_default();
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
-    let told = format!(
+    let result = format!(
         "{name}: falls{place} in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
     );
     let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
     match drift {
         Some(drift) => format!(
-            "{told}; where it stands it still sways, its top by up to {} % of its height in the run that is shown.",
+            "{result}; where it stands it still sways, its top by up to {} % of its height in the run that is shown.",
             significant(100.0 * drift, 2)
         ),
-        None => format!("{told}."),
+        None => format!("{result}."),
     }
 }
 
@@ -317,7 +317,7 @@ fn number(count: usize) -> String {
 
 fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
     let mut sentences: Vec<String> =
-        sides.iter().enumerate().map(|(at, side)| told(at, side)).collect();
+        sides.iter().enumerate().map(|(at, side)| describe(at, side)).collect();
     sentences.extend(differences_in(sides));
     let mut fine = Vec::new();
     fine.push(match differing {
@@ -390,11 +390,11 @@ fn players(sides: &[Side]) -> Players {
 
 /// `true` if one motion shakes all; the length scale of a run stretches its time.
 fn one_motion(sides: &[Side]) -> bool {
-    let asked = |side: &Side| {
+    let motion = |side: &Side| {
         let scenario = &side.run.scenario;
         (scenario.motion.clone(), scenario.run.similitude)
     };
-    sides.iter().all(|side| asked(side) == asked(&sides[0]))
+    sides.iter().all(|side| motion(side) == motion(&sides[0]))
 }
 
 /// Returns the motion under the stages: that of the longest run where all share it, else one of each.

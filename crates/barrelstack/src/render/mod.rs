@@ -130,7 +130,7 @@ const FASTEST: f64 = 50.0;
 pub struct RenderFolder {
     path: PathBuf,
     parts: Vec<Part>,
-    /// Whether what an earlier rendering wrote may be replaced.
+    /// `true` if the files of an earlier rendering may be replaced.
     overwrite: bool,
 }
 

@@ -140,11 +140,11 @@ impl Section<'_> {
     }
 
     /// Scales a solid of a rack, and moves it (m).
-    fn scale(&self, volume: &mut Volume, way: Point3) {
+    fn scale(&self, volume: &mut Volume, offset: Point3) {
         let scaled = |point: &mut Point3| point.iter_mut().for_each(|v| *v *= self.length);
         let placed = |point: &mut Point3| {
             scaled(point);
-            point.iter_mut().zip(way).for_each(|(v, by)| *v += by);
+            point.iter_mut().zip(offset).for_each(|(v, by)| *v += by);
         };
         match volume {
             Volume::Tube { ends, radius } => {
@@ -319,17 +319,17 @@ mod tests {
                 vec![at[axis] - reach, at[axis] + reach]
             }
             Volume::Ball { at, radius } => vec![at[axis] - radius, at[axis] + radius],
-            Volume::Turned { at, axis: way, profile } => {
-                let side = (1.0 - way[axis] * way[axis]).max(0.0).sqrt();
+            Volume::Turned { at, axis: along, profile } => {
+                let side = (1.0 - along[axis] * along[axis]).max(0.0).sqrt();
                 let ends = profile.iter().flat_map(|[x, r]| {
-                    [at[axis] + way[axis] * x - side * r, at[axis] + way[axis] * x + side * r]
+                    [at[axis] + along[axis] * x - side * r, at[axis] + along[axis] * x + side * r]
                 });
                 ends.collect()
             }
         }))
     }
 
-    /// What is turned has the sides of what is computed: across the barrels those of all bodies, along them those of
+    /// Turned bodies have the extents of the computed ones: across the barrels those of all bodies, along them those of
     /// the barrels, and of the racks their length and their underside.
     #[test]
     fn bodies_have_the_extents_of_their_plane() {

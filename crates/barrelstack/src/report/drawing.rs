@@ -74,15 +74,17 @@ const DRAWN: usize = 128;
 fn ghosts(variants: &Variants) -> Option<Ghosts> {
     let trails = || variants.results.iter().skip(1).take(DRAWN).map(|result| &result.trail);
     let wide = |place: &[f32; 2]| place.map(f64::from);
-    let ways: Vec<Vec<Point>> =
-        trails().flat_map(|trail| &trail.ways).map(|way| way.iter().map(wide).collect()).collect();
+    let paths: Vec<Vec<Point>> = trails()
+        .flat_map(|trail| &trail.paths)
+        .map(|path| path.iter().map(wide).collect())
+        .collect();
     let ends = trails().flat_map(|trail| {
         trail.barrels.iter().zip(&trail.last).map(|(body, last)| (*body, last.map(f64::from)))
     });
-    (!ways.is_empty()).then(|| Ghosts {
+    (!paths.is_empty()).then(|| Ghosts {
         label: "all variants".into(),
         count: trails().filter(|trail| !trail.barrels.is_empty()).count(),
-        paths: ways,
+        paths,
         ends: ends.collect(),
     })
 }
@@ -103,12 +105,12 @@ pub fn legend(scene: &Scene) -> String {
         legend += " The disc in a barrel is what swings of its wine.";
     }
     if let Some(ghosts) = &scene.ghosts {
-        let ways = format!(
+        let paths = format!(
             " With “{}” thin lines are the paths of the barrels of the top level in each until it ends, and the darker a \
              place, the more often a barrel is there then.",
             ghosts.label
         );
-        legend += &ways;
+        legend += &paths;
     }
     legend
 }
@@ -144,16 +146,17 @@ fn furthest(run: &Run) -> Option<Moment> {
             let channel = run.recording.channel(&format!("{} displacement {axis}", part.name));
             let values = channel.map_or(&[][..], |channel| &channel.values);
             for (time, value) in run.recording.times.iter().zip(values) {
-                let way = if axis == "x" { value.abs() } else { *value };
-                if furthest.is_none_or(|(most, ..)| way > most) {
-                    furthest = Some((way, *time, body, word));
+                let displacement = if axis == "x" { value.abs() } else { *value };
+                if furthest.is_none_or(|(most, ..)| displacement > most) {
+                    furthest = Some((displacement, *time, body, word));
                 }
             }
         }
     }
-    let (way, time, body, word) = furthest.filter(|(way, ..)| *way > STILL)?;
+    let (displacement, time, body, word) =
+        furthest.filter(|(displacement, ..)| *displacement > STILL)?;
     let name = &run.assembly.parts[body].name;
-    let text = format!("here {name} {word}, by {} cm", significant(100.0 * way, 2));
+    let text = format!("here {name} {word}, by {} cm", significant(100.0 * displacement, 2));
     Some(Moment { time, body, text, falls: false })
 }
 

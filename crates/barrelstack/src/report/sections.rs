@@ -213,25 +213,25 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
 /// A variant that has ended keeps its last displacement.
 fn band(run: &Run, variants: &Variants) -> Vec<Series> {
     let trails = variants.results.iter().skip(1).map(|result| &result.trail);
-    let ways: Vec<&[[f32; 2]]> =
-        trails.filter_map(|trail| trail.ways.first()).map(Vec::as_slice).collect();
+    let paths: Vec<&[[f32; 2]]> =
+        trails.filter_map(|trail| trail.paths.first()).map(Vec::as_slice).collect();
     let name = variants.results.iter().find_map(|result| result.trail.top.first());
-    let (Some(name), true) = (name.map(|body| &run.assembly.parts[*body].name), ways.len() > 1)
+    let (Some(name), true) = (name.map(|body| &run.assembly.parts[*body].name), paths.len() > 1)
     else {
         return Vec::new();
     };
-    let longest = ways.iter().map(|way| way.len()).max().unwrap_or(0);
+    let longest = paths.iter().map(|path| path.len()).max().unwrap_or(0);
     // The histories of the run end with it.
-    let seen = |at: &usize| *at as f64 <= RATE * run.end_time;
-    let count = (0..longest).take_while(seen).count();
-    let displacement = |way: &&[[f32; 2]], at: usize| {
-        let now = way.get(at).or(way.last())?;
+    let recorded = |at: &usize| *at as f64 <= RATE * run.end_time;
+    let count = (0..longest).take_while(recorded).count();
+    let displacement = |path: &&[[f32; 2]], at: usize| {
+        let now = path.get(at).or(path.last())?;
         // To a tenth of a millimeter, which keeps the page short.
-        Some((1e4 * f64::from(now[0] - way.first()?[0])).round() / 100.0)
+        Some((1e4 * f64::from(now[0] - path.first()?[0])).round() / 100.0)
     };
     let times: Vec<f64> = (0..count).map(|at| at as f64 / RATE).collect();
     let ranges: Vec<Option<Range>> = (0..count)
-        .map(|at| Range::of(ways.iter().filter_map(|way| displacement(way, at))))
+        .map(|at| Range::of(paths.iter().filter_map(|path| displacement(path, at))))
         .collect();
     let line = |percent: u32, value: fn(&Range) -> f64| {
         let values = ranges.iter().map(|range| range.as_ref().map_or(f64::NAN, value)).collect();

@@ -173,7 +173,7 @@ fn answered(
     let scenario = &scenario.with_event()?.with_records(&mut from_disk)?;
     let planes = planes(scenario)?;
     let observer = Mutex::new(observer);
-    let tell = |reached: Advance| match observer.lock() {
+    let report = |reached: Advance| match observer.lock() {
         Ok(mut observer) => observer(reached),
         // Another thread has panicked: cancel.
         Err(_) => ControlFlow::Break(()),
@@ -187,7 +187,7 @@ fn answered(
     let numbers = || planes.first().map(Plane::numbers).unwrap_or_default();
     let results = match known {
         Some(results) if varied => results,
-        _ if varied => in_order(&planes, &numbers(), &tell)?,
+        _ if varied => in_order(&planes, &numbers(), &report)?,
         _ => Vec::new(),
     };
     let done = |one: &&CaseResult| one.outcome != Ok(Outcome::Interrupted);
@@ -208,7 +208,7 @@ fn answered(
         .map(|(plane, (variants, _))| (plane, number(choice, variants.as_ref())))
         .collect();
     let mut shown = Vec::new();
-    let runs = seen(scenario, &tasks, &tell)?;
+    let runs = run_selected(scenario, &tasks, &report)?;
     for (((plane, number), run), (variants, stopped)) in tasks.iter().zip(runs).zip(all) {
         let mut run = run;
         run.warnings.extend(plane.warning(planes.len()));
@@ -281,25 +281,25 @@ fn number(choice: RunChoice, variants: Option<&Variants>) -> u32 {
 }
 
 /// Runs the selected variants of a scenario, each on a core of its own.
-fn seen(
+fn run_selected(
     scenario: &Scenario,
     tasks: &[(&Plane, u32)],
-    tell: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
+    report: &(dyn Fn(Advance) -> ControlFlow<()> + Sync),
 ) -> Result<Vec<Run>, RunFailure> {
     let scenarios: Vec<Scenario> =
         tasks.iter().map(|(plane, number)| plane.variant(*number)).collect();
     // As it was given, both planes together.
     let stated = |_, run| Run { stated: Box::new(scenario.clone()), ..run };
-    run_together(&scenarios, 0.0, &mut |now| tell(Advance::Run(now)), &stated)
+    run_together(&scenarios, 0.0, &mut |now| report(Advance::Run(now)), &stated)
 }
 
-/// Runs scenarios on all cores and maps each result by `seen`, given its index. The observer receives the progress in
+/// Runs scenarios on all cores and maps each result by `finish`, given its index. The observer receives the progress in
 /// aggregate; runs that have not begun count with an expected end (s).
 pub(crate) fn run_together<T: Send>(
     scenarios: &[Scenario],
     end_time: f64,
     observer: &mut (dyn FnMut(Progress) -> ControlFlow<()> + Send),
-    seen: &(dyn Fn(usize, Run) -> T + Sync),
+    finish: &(dyn Fn(usize, Run) -> T + Sync),
 ) -> Result<Vec<T>, RunFailure> {
     let reached = Mutex::new((vec![Progress { time: 0.0, end_time }; scenarios.len()], observer));
     let tasks: Vec<(usize, &Scenario)> = scenarios.iter().enumerate().collect();
@@ -312,7 +312,7 @@ pub(crate) fn run_together<T: Send>(
             let sum = |of: fn(&Progress) -> f64| all.iter().map(of).sum();
             observer(Progress { time: sum(|one| one.time), end_time: sum(|one| one.end_time) })
         })?;
-        Ok(seen(*at, run))
+        Ok(finish(*at, run))
     };
     pool::map(&tasks, run, &|_| ()).into_iter().collect()
 }

@@ -227,11 +227,11 @@ pub(crate) fn run_as_far(
         cases.extend(plane.prepared(numbers)?);
     }
     let (done, of) = (AtomicUsize::new(0), cases.len());
-    let told = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
+    let count = |_: &CaseResult| observer(done.fetch_add(1, Ordering::Relaxed) + 1, of);
     let stop = || observer(done.load(Ordering::Relaxed), of).is_break();
     let ensemble = Ensemble { cases, ..Ensemble::default() };
     let results: Vec<CaseResult> = ensemble
-        .run_as_far(&told, &stop)
+        .run_as_far(&count, &stop)
         .into_iter()
         .map(|one| one.unwrap_or_else(CaseResult::interrupted))
         .collect();

@@ -30,7 +30,7 @@ pub const PRETENSIONS: [f64; 5] = [1e3, 2e3, 3e3, 4e3, 5e3];
 const BATCH: usize = 8;
 
 described! {
-    /// What would have kept the stack up, as far as it was looked for.
+    /// Changes that would have kept the stack up, as far as they were searched.
     #[derive(Clone, Debug, Default, PartialEq)]
     pub struct Remedy {
         /// Share of variants that has to stand in every plane.
@@ -43,7 +43,7 @@ described! {
         pub candidates: u32,
         /// Every change that was tried, changes of height first.
         pub tried: Vec<Tried>,
-        /// Whether all was tried; false where it was stopped.
+        /// True if all changes were tried; false if the search was stopped.
         pub complete: bool,
         /// The command that sets what suffices beside the stack as it is; null where nothing does, or no command
         /// can say it.
@@ -53,7 +53,7 @@ described! {
     /// One change of the stack.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Tried {
-        /// What is changed.
+        /// Kind of the change.
         pub kind: &'static str ["height", "straps"],
         /// Levels of the stack.
         pub levels: u32,
@@ -61,11 +61,11 @@ described! {
         pub pretension: Option<f64> as "N",
         /// The change as overrides of the scenario.
         pub changes: Vec<String>,
-        /// Whether enough variants stand.
+        /// True if enough variants stand.
         pub suffices: bool,
         /// Variants that were counted: all of them, or the first so many by their numbers where these have rejected it.
         pub variants: u32,
-        /// Those of them that collapse, or have no verdict, in the plane in which most do.
+        /// Number of them that collapse, or have no verdict, in the plane in which most do.
         pub failed: u32,
         /// The share that fails; null where the change was rejected, or the search stopped, before all variants were
         /// counted.
@@ -170,15 +170,15 @@ fn look(
         Ok(trial.run(block, observer))
     };
     let search::Found { counts, complete } = search::search::<GroundError>(&plan, &mut run)?;
-    let told: Vec<Option<Tried>> = changes
+    let tried: Vec<Option<Tried>> = changes
         .iter()
         .zip(&counts)
-        .map(|(change, counts)| Some(change.told(counts.as_ref()?, &plan)))
+        .map(|(change, counts)| Some(change.summarize(counts.as_ref()?, &plan)))
         .collect();
-    let (lower, strapped) = told.split_at(heights);
+    let (lower, strapped) = tried.split_at(heights);
     let first = |of: &[Option<Tried>]| of.iter().flatten().find(|tried| tried.suffices).cloned();
     (found.height, found.straps) = (first(lower), first(strapped));
-    found.tried = told.into_iter().flatten().collect();
+    found.tried = tried.into_iter().flatten().collect();
     found.candidates = u32::try_from(plan.changes()).unwrap_or(u32::MAX);
     found.complete = complete;
     Ok(())
@@ -249,7 +249,7 @@ fn given(scenario: &Scenario, table: &str) -> Vec<String> {
 
 impl Change {
     /// Summarizes its counts.
-    fn told(&self, counts: &Counts, plan: &Plan) -> Tried {
+    fn summarize(&self, counts: &Counts, plan: &Plan) -> Tried {
         let Self { kind, levels, pretension, changes, .. } = self;
         let whole = counts.whole(plan);
         Tried {
@@ -288,7 +288,7 @@ impl InPlanes {
 impl Trial for InPlanes {
     fn run(&mut self, block: Range<u32>, observer: Observer<'_>) -> Failed {
         let stopped = AtomicBool::new(false);
-        let asked = || {
+        let canceled = || {
             if observer(self.done.load(Ordering::Relaxed)).is_break() {
                 stopped.store(true, Ordering::Relaxed);
             }
@@ -306,14 +306,14 @@ impl Trial for InPlanes {
             })
             .collect();
         let work = |(plane, cases): &(usize, &[Prepared])| {
-            let mut tell = |result: &CaseResult| {
+            let mut on_case = |result: &CaseResult| {
                 if fails(result) {
                     failed[*plane].fetch_add(1, Ordering::Relaxed);
                 }
                 self.done.fetch_add(1, Ordering::Relaxed);
             };
             // If it is canceled, no variant of the block counts.
-            let _ = simulate(cases, &mut Audience { tell: &mut tell, stop: &asked });
+            let _ = simulate(cases, &mut Audience { on_case: &mut on_case, stop: &canceled });
         };
         pool::map(&batches, work, &|_| ());
         if stopped.load(Ordering::Relaxed) {

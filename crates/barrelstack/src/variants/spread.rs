@@ -15,16 +15,16 @@ use crate::scenario::field::Named as _;
 pub const LEVEL: f64 = 0.95;
 
 described! {
-    /// What all variants say together; the case as it is stated is none of them.
+    /// Statistics of all variants; the nominal case is not among them.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Spread {
-        /// What they differ in.
+        /// Source of their differences.
         pub kind: &'static str ["hair", "ignorance", "both"],
         /// Seed that they were drawn by.
         pub seed: u32,
         /// Variants that have a verdict.
         pub variants: u32,
-        /// Those of them that collapse: while they are shaken, or under their own weight before.
+        /// Number of variants that collapse: while they are shaken, or under their own weight before.
         pub collapsed: u32,
         /// The share of those; null where no variant has a verdict.
         pub share: Option<f64> as "1",
@@ -58,7 +58,7 @@ described! {
         pub broken: u32,
         /// Why the first of those that fall before they are shaken, or have no verdict, does.
         pub reason: Option<String>,
-        /// What happens to the case as it is stated.
+        /// Outcome of the nominal case.
         pub stated: &'static str ["stable", "collapse", "not-judged", "invalid"],
         /// The number of the run that is most like all others, by outcome, mode, time and what falls, in all
         /// planes together; 0 is the case as it is stated.
@@ -69,7 +69,7 @@ described! {
         pub worst: u32,
     }
 
-    /// How values are spread: shares of 5, 50 and 95 % lie below, and the ends.
+    /// Distribution of values: their 5, 50 and 95 % fractiles, and the extremes.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Range {
         /// A share of 5 % lies below.

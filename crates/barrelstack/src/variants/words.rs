@@ -177,10 +177,10 @@ pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
         return Vec::new();
     }
     let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
-    let told = |(view, spread): &(View, &Spread)| {
+    let sentence = |(view, spread): &(View, &Spread)| {
         format!("Where it falls {}: {}.", view.words(), course(spread))
     };
-    falls.map(told).collect()
+    falls.map(sentence).collect()
 }
 
 /// Describes the shown run, and the differences of variants, in the governing plane.

@@ -6,10 +6,10 @@ use super::Repeat;
 use crate::summary::OutcomeSummary;
 
 described! {
-    /// What all repeats have in common with the run; nothing where there are no repeats.
+    /// Properties of the run that all repeats share; none without repeats.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Robust {
-        /// Whether it stands or collapses.
+        /// True if all agree that it stands or that it collapses.
         pub kind: bool,
         /// The mode of the collapse.
         pub mode: bool,

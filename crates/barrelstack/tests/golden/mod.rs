@@ -191,7 +191,7 @@ fn of_run(name: &str, scenario: &str, changes: &[&str]) -> Line {
 }
 
 fn of_lanes(width: Width, cases: &[Prepared]) -> Line {
-    let mut audience = Audience { tell: &mut |_| {}, stop: &|| false };
+    let mut audience = Audience { on_case: &mut |_| {}, stop: &|| false };
     let results = simulate_in(width, cases, &mut audience).expect("nobody stops it");
     let mut hash = Hash::default();
     for result in &results {

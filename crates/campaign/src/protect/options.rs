@@ -113,7 +113,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
             cost: price(&words.cost, &changes, levels),
             source: words.cost.source.to_owned(),
             changes,
-            degraded: words.degraded.iter().map(Setting::told).collect(),
+            degraded: words.degraded.iter().map(Setting::to_candidate).collect(),
             ..none(Kind::Device(words.one), &slug(name), name)
         };
         let settings = words.settings(levels);

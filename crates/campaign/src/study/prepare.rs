@@ -119,7 +119,7 @@ impl Study {
         let ready = built.iter().filter_map(|built| built.prepared.as_ref().ok());
         let ready: Vec<Prepared> =
             ready.filter(|prepared| !prepared.scenario.is_spatial()).cloned().collect();
-        let mut audience = Audience { tell: &mut *resources.report, stop: resources.stop };
+        let mut audience = Audience { on_case: &mut *resources.report, stop: resources.stop };
         let mut results = simulate_in(resources.lanes, &ready, &mut audience)?.into_iter();
         let mut done = Vec::with_capacity(cases.len());
         for (case, Built { shaken, prepared }) in cases.iter().zip(built) {

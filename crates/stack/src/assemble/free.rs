@@ -168,7 +168,7 @@ fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec
 /// Returns the contact pairs of two bodies.
 ///
 /// Between bodies of one kind both carry nodes; of two that roll, one is enough. Convex boundaries without nodes are
-/// tested both ways; against a round boundary its rolling node is enough.
+/// tested each against the other; against a round boundary its rolling node is enough.
 fn pairs(
     scene: &FreeScene,
     between: [BodyId; 2],

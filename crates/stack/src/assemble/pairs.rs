@@ -2,8 +2,8 @@
 //!
 //! Two bodies that the stack joins meet at a seat: the supports of a cradle under its barrel, the underside of a rack
 //! on its support. All their other boundaries, and any other two bodies, meet in impacts only.
-//! A round barrel is tested against the solids of others with its deepest point; solids with corners are tested both
-//! ways, and every contact belongs to one round piece.
+//! A round barrel is tested against the solids of others with its deepest point; solids with corners are tested each
+//! against the other, and every contact belongs to one round piece.
 //! A face with nodes is tested by its nodes while the body that it bears lies before it, and by the exact test once
 //! that body has moved beside it: so no contact is counted twice.
 
@@ -78,8 +78,8 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds two solids with exact tests: the round one against the other, or both ways; `counts` gives the active
-    /// side of each.
+    /// Adds two solids with exact tests, of the round one against the other or of each against the other; `counts`
+    /// gives the active side of each.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),

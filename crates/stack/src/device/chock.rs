@@ -36,7 +36,7 @@ section! {
     pub struct Chocks;
     /// Chocks on the racks to both sides of their barrels, higher than the cradle; they do nothing along the barrels.
     pub static SECTION = "chock";
-    /// How many of the highest levels have chocks; 0 for none.
+    /// Number of the highest levels that have chocks; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
     /// Angle of the top of a chock from the vertical through the center of the barrel: an assumption.
     angle: f64 =

@@ -54,7 +54,7 @@ pub(super) static WORDS: Words = Words {
 };
 
 named! {
-    /// What the platform moves on.
+    /// Path of the platform.
     pub enum Path {
         /// There is no isolator.
         None = "none",
@@ -78,7 +78,7 @@ section! {
     /// Radius of the dishes, which is the length of the pendulum; not used on a flat path. An assumption: 2 s.
     dish_radius: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
-    /// How far the platform may move to either side before it meets a stop: an assumption.
+    /// Stroke of the platform to either side before it meets a stop: an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.001, 10.0)), Default::Value("\"20 cm\"");
     /// Stiffness of a stop: an assumption.

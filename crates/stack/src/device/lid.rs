@@ -39,11 +39,11 @@ section! {
     pub struct Lids;
     /// Lids over the barrels of the highest levels, such as a cap rack clamped to the rack below: they bound how far a barrel rises in its cradle, until it is out from under them by more than 0.6 of its radius to a side.
     pub static SECTION = "lid";
-    /// How many of the highest levels have lids; 0 for none.
+    /// Number of the highest levels that have lids; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// How far a barrel may rise from its place at rest before it meets its lid: an assumption.
+    /// Rise of a barrel from its place at rest before it meets its lid: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"1 cm\"");
-    /// Force per way into one lid: an assumption.
+    /// Force per displacement into one lid: an assumption.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
     /// Force per speed into one lid, on approach only: an assumption.

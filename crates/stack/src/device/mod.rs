@@ -151,7 +151,7 @@ pub struct Setting {
 
 impl Setting {
     /// Returns the words and the overrides as owned strings.
-    pub fn told(&self) -> (String, Vec<String>) {
+    pub fn to_candidate(&self) -> (String, Vec<String>) {
         let overrides = self.overrides.iter().map(|change| (*change).to_owned());
         (self.name.to_owned(), overrides.collect())
     }
@@ -189,9 +189,9 @@ impl Words {
     /// Returns candidate settings for a stack with a number of levels, each in words and as overrides of the
     /// scenario.
     ///
-    /// Whether one fits the stack is up to the scenario to check.
+    /// The scenario checks if one fits the stack.
     pub fn settings(&self, levels: u32) -> Vec<(String, Vec<String>)> {
-        let mut all: Vec<_> = self.candidates.iter().map(Setting::told).collect();
+        let mut all: Vec<_> = self.candidates.iter().map(Setting::to_candidate).collect();
         if self == &strap::WORDS {
             all.extend(strap::about_all(levels));
         }

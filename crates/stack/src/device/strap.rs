@@ -64,7 +64,7 @@ pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String
 }
 
 named! {
-    /// What straps tie.
+    /// Bodies that straps tie together.
     pub enum Ties {
         /// Every barrel to its own rack, down both of its sides.
         BarrelsToRacks = "barrels-to-racks",
@@ -79,7 +79,7 @@ section! {
     pub struct Straps;
     /// Straps on the highest levels: they pull, never push, and have no mass.
     pub static SECTION = "strap";
-    /// How many of the highest levels are strapped; 0 for no straps.
+    /// Number of the highest levels that are strapped; 0 for no straps.
     levels: u32 = LEVELS, Default::Value("0");
     /// Every barrel to its rack, or besides every rack to the one below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
@@ -89,7 +89,7 @@ section! {
     /// Force per rate of elongation of one strap, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// How far one strap gives, on the stack at rest, before it pulls.
+    /// Slack of one strap on the stack at rest, before it pulls.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
     /// Force in one strap as it is put on; the stack gives under it, and a part of it is lost.
@@ -136,23 +136,23 @@ impl Straps {
     pub fn strap<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
-        way: f64,
+        distance: f64,
         scale: Similitude,
     ) -> Result<(Strap<S>, f64), String> {
         let Self { stiffness, damping, slack, pretension, strength, .. } = *self;
         let give = (slack - pretension / stiffness) * scale.length;
-        if way + give <= 0.0 {
+        if distance + give <= 0.0 {
             return Err(format!(
                 "the pretension of {pretension} N stretches a strap of {stiffness} N/m by {:.3} m, but the strap \
                  {} is only {:.3} m long: take a stiffer strap, or less pretension",
                 pretension / stiffness,
                 link.name,
-                way / scale.length
+                distance / scale.length
             ));
         }
         let strap = Strap {
             link,
-            length: way + give,
+            length: distance + give,
             stiffness: stiffness * scale.stiffness(1.0, false),
             damping: damping * scale.damping(false),
             yields_at: f64::INFINITY,

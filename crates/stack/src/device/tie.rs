@@ -42,7 +42,7 @@ pub(super) static WORDS: Words = Words {
 };
 
 named! {
-    /// What racks are tied to.
+    /// Anchor of the ties of racks.
     pub enum Anchor {
         /// A wall at either end of the rack.
         Wall = "wall",
@@ -71,9 +71,9 @@ section! {
     pub struct AnchorTies;
     /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never push.
     pub static SECTION = "tie";
-    /// How many of the highest levels are tied; 0 for none.
+    /// Number of the highest levels that are tied; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// What they are tied to; walls and ceiling move as the ground does.
+    /// Anchor of the ties; walls and ceiling move as the ground does.
     to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
     /// On which side there is a wall or a ceiling, before mirroring.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
@@ -86,7 +86,7 @@ section! {
     /// Force per rate of elongation of one tie, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// How far one tie gives, on the stack at rest, before it pulls.
+    /// Slack of one tie on the stack at rest, before it pulls.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"1 cm\"");
     /// Force at which one tie yields: it becomes longer for good; without it none does.

@@ -85,7 +85,7 @@ section! {
         Kind::Quantity(&[Dimension::TIME], Range::between(0.05, 20.0)), Default::Value("\"1 s\"");
     /// Damping over the critical one: for a share μ of the mass √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog 1956).
     damping_ratio: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.13");
-    /// How far it may swing to either side before it meets a stop: an assumption.
+    /// Stroke to either side before it meets a stop: an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::up_to(10.0)), Default::Value("\"30 cm\"");
     /// Stiffness of the stops: an assumption.

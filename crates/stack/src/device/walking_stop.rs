@@ -63,15 +63,15 @@ section! {
     pub struct WalkingStops;
     /// Stops between racks and the barrels below: lips that a rack meets once it has walked through a gap.
     pub static SECTION = "walking_stop";
-    /// How many of the highest levels have racks with stops, the bottom rack never; 12 for all, 0 for none.
+    /// Number of the highest levels that have racks with stops, the bottom rack never; 12 for all, 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Whether they hold along the barrels, across them, or both.
+    /// Direction in which they hold: along the barrels, across them, or both.
     holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");
-    /// How far a rack may move from its place at rest, to either side, before it meets a lip: an assumption.
+    /// Displacement of a rack from its place at rest, to either side, before it meets a lip: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
     /// Height of the lips: a rack that has risen by more is off them; an assumption.
     lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
-    /// Force per way into the lips of one barrel; of bent steel plate, an assumption.
+    /// Force per displacement into the lips of one barrel; of bent steel plate, an assumption.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
     /// Force per speed into the lips of one barrel, on approach only; an assumption.

@@ -4,7 +4,7 @@ use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, r
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
-use super::case::Seen;
+use super::case::Observed;
 use super::trail::Trail;
 use super::{Audience, CaseResult, Run};
 use crate::ground::Ground;
@@ -163,9 +163,9 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         self.rested = rested;
         let ended = collapsed | rested;
         // Lanes without a case have ended as well.
-        let seen = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
-        if seen.any() {
-            for lane in (0..R::LANES).filter(|lane| seen.lane(*lane)) {
+        let due = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
+        if due.any() {
+            for lane in (0..R::LANES).filter(|lane| due.lane(*lane)) {
                 let trail = &mut self.trails[lane];
                 trail.see(state.time.lane(lane), |body| state.poses[body].of_lane(lane));
                 self.due.put(lane, &trail.due());
@@ -194,10 +194,10 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let ended = end.finish.map(|_| Ended { energy: end.energy, steps: end.steps });
         let (assembly, ground) = (&standing.assembly, &*run.case.ground);
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
-        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
-        let result = CaseResult::of(assembly, ground, seen, verdict, end.time);
+        let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(assembly, ground, observed, verdict, end.time);
         let index = run.index;
-        (self.audience.tell)(&result);
+        (self.audience.on_case)(&result);
         self.results.push((index, result));
     }
 }

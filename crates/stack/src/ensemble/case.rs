@@ -77,7 +77,7 @@ pub struct CaseResult {
 }
 
 /// Observations of a case.
-pub(super) struct Seen<'a> {
+pub(super) struct Observed<'a> {
     pub(super) fates: &'a Fates,
     pub(super) stresses: &'a Stresses,
     pub(super) joints: &'a Joints,
@@ -94,11 +94,11 @@ impl CaseResult {
     pub(super) fn of(
         assembly: &Assembly,
         ground: &Ground,
-        seen: Seen<'_>,
+        observed: Observed<'_>,
         verdict: Verdict,
         time: f64,
     ) -> Self {
-        let Seen { fates, stresses, joints, trail } = seen;
+        let Observed { fates, stresses, joints, trail } = observed;
         let sound = !matches!(verdict.outcome, Outcome::Invalid { .. });
         let barrels: Vec<usize> = assembly.of_kind(PartKind::Barrel).collect();
         let all = || barrels.iter().map(|body| fates.fate(*body));
@@ -109,7 +109,7 @@ impl CaseResult {
         let residual = all().map(|fate| fate.residual_displacement);
         let largest = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         let left = ground.end() - time;
-        let told = Self {
+        let common = Self {
             outcome: Ok(verdict.outcome),
             barrels: barrels.len(),
             wine: barrels.iter().map(|body| assembly.parts[*body].wine).sum(),
@@ -122,7 +122,7 @@ impl CaseResult {
             ..Self::failed(String::new())
         };
         if !sound {
-            return told;
+            return common;
         }
         Self {
             first_fall: fates.first_fall(),
@@ -139,7 +139,7 @@ impl CaseResult {
             joints: joints.listed().into_iter().map(named).collect(),
             residual_displacement: (!barrels.is_empty()).then(|| residual.fold(0.0, largest)),
             trail,
-            ..told
+            ..common
         }
     }
 

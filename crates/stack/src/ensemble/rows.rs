@@ -102,7 +102,7 @@ pub fn rows(
     let stopped = AtomicBool::new(false);
     let lanes = lanes.unwrap_or_else(Width::widest);
     let together = |numbers: &&[usize]| -> Option<Vec<Column>> {
-        let tell = |result: &CaseResult| {
+        let report = |result: &CaseResult| {
             if observer(result).is_break() {
                 stopped.store(true, Ordering::Relaxed);
             }
@@ -116,14 +116,14 @@ pub fn rows(
             made.push(make(*number));
         }
         let ready: Vec<Prepared> = made.iter().filter_map(|one| one.clone().ok()).collect();
-        let mut tell_one = |result: &CaseResult| tell(result);
-        let mut audience = Audience { tell: &mut tell_one, stop: &stop };
+        let mut report_one = |result: &CaseResult| report(result);
+        let mut audience = Audience { on_case: &mut report_one, stop: &stop };
         let mut done = simulate_in(lanes, &ready, &mut audience)?.into_iter();
         let result = |one: Result<Prepared, String>| match one {
             Ok(_) => done.next(),
             Err(reason) => {
                 let failed = CaseResult::failed(reason);
-                tell(&failed);
+                report(&failed);
                 Some(failed)
             }
         };

@@ -6,7 +6,7 @@ use barrelstack_dynamics::{
     EnergyLedger, Model, Observer, Planar, Scratch, Simulation, State, simulate,
 };
 
-use super::case::Seen;
+use super::case::Observed;
 use super::trail::Trail;
 use super::{Audience, CaseResult, Run};
 use crate::run::{Ended, conclude, method, thresholds};
@@ -52,9 +52,9 @@ pub(super) fn run(
         let stresses = watch.stresses.finish(0);
         watch.trail.see_state(&state);
         let Watch { fates, joints, trail, .. } = watch;
-        let seen = Seen { fates: &fates, stresses: &stresses, joints: &joints, trail };
-        let result = CaseResult::of(&standing.assembly, ground, seen, verdict, state.time);
-        (audience.tell)(&result);
+        let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
+        let result = CaseResult::of(&standing.assembly, ground, observed, verdict, state.time);
+        (audience.on_case)(&result);
         results.push((run.index, result));
     }
     results

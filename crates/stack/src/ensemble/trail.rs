@@ -14,7 +14,7 @@ pub struct Trail {
     /// The barrels of the top level.
     pub top: Vec<BodyId>,
     /// Path of each of them: `x` and `z` (m) relative to the ground.
-    pub ways: Vec<Vec<[f32; 2]>>,
+    pub paths: Vec<Vec<[f32; 2]>>,
     /// All barrels.
     pub barrels: Vec<BodyId>,
     /// Last position of each of them: `x`, `z` (m) relative to the ground and the angle (rad).
@@ -27,7 +27,7 @@ impl Trail {
         let of_top = |body: &BodyId| assembly.parts[*body].level == Some(assembly.levels);
         let top: Vec<BodyId> = barrels.iter().copied().filter(of_top).collect();
         Self {
-            ways: vec![Vec::new(); top.len()],
+            paths: vec![Vec::new(); top.len()],
             last: vec![[0.0; 3]; barrels.len()],
             top,
             barrels,
@@ -36,7 +36,7 @@ impl Trail {
 
     /// Returns the time (s) at which the next sample is due; infinite where no barrel is followed.
     pub(super) fn due(&self) -> f64 {
-        self.ways.first().map_or(f64::INFINITY, |way| way.len() as f64 / RATE)
+        self.paths.first().map_or(f64::INFINITY, |path| path.len() as f64 / RATE)
     }
 
     /// Records all barrels by their poses, and extends their paths where a sample is due.
@@ -50,9 +50,9 @@ impl Trail {
         for (body, last) in self.barrels.iter().zip(&mut self.last) {
             *last = place(*body);
         }
-        for (body, way) in self.top.iter().zip(&mut self.ways).filter(|_| due) {
+        for (body, path) in self.top.iter().zip(&mut self.paths).filter(|_| due) {
             let [x, z, _] = place(*body);
-            way.push([x, z]);
+            path.push([x, z]);
         }
     }
 

@@ -22,10 +22,10 @@ pub enum RunFailure {
     #[error(transparent)]
     Settle(#[from] Restless),
     /// The step is too long for the contacts.
-    #[error("run.step = {asked} ms is too long: {reason}; try {instead} ms, or leave it out")]
+    #[error("run.step = {given} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
         /// The step requested (ms).
-        asked: f64,
+        given: f64,
         /// The symptom.
         reason: String,
         /// The default step (ms).

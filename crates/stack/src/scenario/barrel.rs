@@ -17,7 +17,7 @@ use super::writer::Writer;
 use crate::slosh::{self, Wave};
 
 named! {
-    /// What the barrel holds and how the contents turn with it.
+    /// Contents of the barrel, and their rotation with it.
     pub enum Fill {
         /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
         /// turns only in part about a transverse axis.

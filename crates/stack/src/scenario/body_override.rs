@@ -22,7 +22,7 @@ named! {
 }
 
 section! {
-    /// What differs at one body of a stack.
+    /// Properties of one body of a stack that differ from the others.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]

@@ -20,7 +20,7 @@ section! {
     pub static ELEMENT = "element", by kind of LAWS;
     /// Unique name.
     name: String = Kind::Text, Default::Required;
-    /// What it does.
+    /// Law of the element.
     kind: ElementLaw = Kind::Choice(ElementLaw::names), Default::Required;
     /// The names of two bodies; the ground is called by its label.
     between: [String; 2] = Kind::Pair, Default::Required;
@@ -35,7 +35,7 @@ section! {
 }
 
 choices! {
-    /// What a force element does.
+    /// Law of a force element.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +64,7 @@ choices! {
         /// Inclination of the axis in the first body, counterclockwise.
         axis: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
-        /// Way to either side after which there are stops; without it there are none.
+        /// Stroke to either side after which there are stops; without it there are none.
         gap: Option<f64> =
             Kind::Quantity(&[Dimension::LENGTH], Range::NOT_NEGATIVE), Default::Nothing;
         /// Stiffness of the stops.

@@ -181,7 +181,7 @@ table! {
     boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
     /// Bodies of one group do not meet by an interface that says `within_groups = false`.
     group = Kind::Text, Default::Nothing;
-    /// Whether the body moves with the ground.
+    /// True if the body moves with the ground.
     fixed_to_ground = Kind::Flag, Default::Value("false");
     /// Viscous drag.
     viscous = Kind::Table(&VISCOUS), Default::Nothing;

@@ -7,7 +7,7 @@ use super::field::{Default, Kind, Range, names};
 use super::run::Until;
 
 named! {
-    /// What variants differ in.
+    /// Source of the differences of variants.
     pub enum Imperfection {
         /// Both.
         Both = "both",
@@ -22,18 +22,18 @@ const SHARE: Kind = Kind::Number(Range::between(0.0, 0.1));
 const DISPERSION: Kind = Kind::Number(Range::between(0.0, 1.0));
 
 section! {
-    /// How the variants of a stack differ from what the scenario states.
+    /// Differences of the variants of a stack from the scenario.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Imperfections;
-    /// How the variants of a stack differ from what the scenario states, which is always their middle.
+    /// Differences of the variants of a stack from the scenario, which is always their middle.
     pub static IMPERFECTIONS = "imperfections";
     /// Variants of the stack that are run beside it, in each plane; 0 for the stated case alone.
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
-    /// What ends a variant by itself where `run.until` is "rest": "verdict" 2 s after its first loss of a seat, or when it has come to rest on ground that stays below 0.02 g; "rest" when every barrel has come to its end.
+    /// Criterion that ends a variant where `run.until` is "rest": "verdict" 2 s after its first loss of a seat, or when it has come to rest on ground that stays below 0.02 g; "rest" when every barrel has come to its end.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
     /// Seed of the sequence that they are drawn by.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
-    /// What they differ in: "hair", places and masses, which no cellar has twice; "ignorance", friction and contact constants, which nobody has measured on this stack; or both.
+    /// Source of their differences: "hair", places and masses, which no cellar has twice; "ignorance", friction and contact constants, which nobody has measured on this stack; or both.
     kind: Imperfection = Kind::Choice(names::<Imperfection>), Default::Value("\"both\"");
     /// Hair: every rack on what is below and every barrel in its cradle lies up to this far to either side, each place as likely (assumption: forklifts set down no nearer).
     placement: f64 =
@@ -50,6 +50,6 @@ section! {
     impact_stiffness: f64 = DISPERSION, Default::Value("0.1");
     /// Ignorance: standard deviation of ln c, or of the logarithm of the damping ratio where a restitution is stated, lognormal, one draw for all seats with a damper (with 0.3 a restitution of 0.8 lies between 0.69 and 0.88 in nineteen of twenty; the number is an assumption).
     damping: f64 = DISPERSION, Default::Value("0.3");
-    /// Whether half of the variants are shaken the other way round, as stacks that face the other way are.
+    /// True if half of the variants are shaken with the opposite sign, as stacks that face the opposite side are.
     sign: bool = Kind::Flag, Default::Value("false");
 }

@@ -23,12 +23,12 @@ pub enum RackKind {
 }
 
 choices! {
-    /// How a rack holds a barrel in the transverse view.
+    /// Support of a barrel by a rack in the transverse view.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub enum Cradle;
-    /// The ways.
+    /// The kinds of cradle.
     static CRADLES;
     /// Two supports at equal angles from the lowest point of the barrel.
     Supports = "supports" {
@@ -45,7 +45,7 @@ choices! {
 }
 
 named! {
-    /// How a seat is divided into contact elements. Where the scenario states its constants per node, the division is
+    /// Division of a seat into contact elements. Where the scenario states its constants per node, the division is
     /// part of the physics; where it states them per seat, the elements share them.
     pub enum SeatContact {
         /// Nodes along flat undersides, one at each support of a cradle, as in the paper.
@@ -82,7 +82,7 @@ known! {
     half_spacing as "post_half_spacing": f64 = size(0.01, 100.0), CATALOG;
     /// Distance of each post from the middle of the barrel beside it, in the longitudinal view.
     half_spacing_along as "post_half_spacing_along": f64 = size(0.01, 100.0), CATALOG;
-    /// How far the foot of the next rack reaches over the sides of the post.
+    /// Overlap of the foot of the next rack over the sides of the post.
     spigot as "post_spigot": f64 = size(0.01, 100.0), CATALOG;
 }
 
@@ -94,7 +94,7 @@ known! {
     pub struct Rack {
         /// Catalog name the rack was made from.
         pub base: &'static str,
-        /// How the rack stands on what is below.
+        /// Support of the rack on the level below.
         pub kind: RackKind,
         /// Posts; present exactly when `kind` is [`RackKind::OnRacks`].
         pub posts: Option<Posts>,
@@ -126,11 +126,11 @@ known! {
     beam_height: f64 = size(1e-3, 10.0), CATALOG;
     /// Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet.
     foot_height: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), CATALOG;
-    /// How the rack holds a barrel.
+    /// Support of a barrel by the rack.
     cradle: Cradle = Kind::ChoiceOrTable(Cradle::names, "type", &CRADLE), CATALOG;
     /// Half of the length of a foot.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
-    /// How a seat is divided into contact elements: nodes along flat undersides, one element, or one for each of two
+    /// Division of a seat into contact elements: nodes along flat undersides, one element, or one for each of two
     /// rails. Each has the constants that are stated per node; those that are stated per seat are divided among them.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
     /// Penetration of a seat beyond which the solids themselves meet, by the law of impacts.
@@ -148,7 +148,7 @@ const fn size(least: f64, greatest: f64) -> Kind {
 const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5));
 
 table! {
-    /// How a rack holds a barrel in the transverse view.
+    /// Support of a barrel by a rack in the transverse view.
     pub static CRADLE = "cradle";
     /// Two supports, or a circular trough.
     type = Kind::Choice(Cradle::names), Default::Value("\"supports\"");

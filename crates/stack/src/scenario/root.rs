@@ -26,7 +26,7 @@ named! {
 }
 
 table! {
-    /// What stands where, what shakes it, and how it is run.
+    /// A scenario: the bodies, the ground motion, and the settings of the run.
     pub static ROOT = "scenario";
     /// Version of the scenario language.
     schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
@@ -34,13 +34,13 @@ table! {
     title = Kind::Text, Default::Derived("name of the file");
     /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
     extends = Kind::Text, Default::Nothing;
-    /// What stands.
+    /// Kind of the scene.
     kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
     /// The ground motion.
     motion = Kind::Table(&motion::MOTION), Default::Nothing;
-    /// How it is run.
+    /// Settings of the run.
     run = Kind::Table(&run::RUN), Default::Nothing;
-    /// What is kept.
+    /// Recording.
     record = Kind::Table(&run::RECORD), Default::Nothing;
     by kind {
         /// A stack of barrels on racks.
@@ -49,9 +49,9 @@ table! {
             stack = Kind::Table(&stack::STACK), Default::Required;
             /// Laws of contact by pair.
             interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
-            /// Thresholds that tell a collapse.
+            /// Thresholds that define a collapse.
             outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
-            /// How the variants of the stack differ from what is stated here.
+            /// Differences of the variants of the stack from the stated values.
             imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
 
         }

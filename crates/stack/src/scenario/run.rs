@@ -34,7 +34,7 @@ choices! {
 }
 
 named! {
-    /// What ends a run by itself.
+    /// Criterion that ends a run before its time limit.
     pub enum Until {
         /// The motion is over, and what moves has come to rest.
         Rest = "rest",
@@ -46,7 +46,7 @@ named! {
 }
 
 named! {
-    /// How near the motion of the bodies is computed.
+    /// Accuracy of the computed motion.
     pub enum Accuracy {
         /// For many cases, of which shares are wanted.
         Screening = "screening",
@@ -75,14 +75,14 @@ const LONGEST_RUN: f64 = 3600.0;
 const MOST_STEPS: f64 = 1e9;
 
 section! {
-    /// How a scenario is run.
+    /// Settings of a run.
     ///
     /// Under a similitude `λ` masses are scaled by `λ³`, stiffness by `λ²`, damping by `λ^2.5` and time by `√λ`.
     #[derive(Debug, Clone, PartialEq)]
     pub struct RunSpec;
-    /// How the scenario is run.
+    /// Settings of the run.
     pub static RUN = "run", by method of METHODS;
-    /// What ends the run by itself: "rest" when the ground is still, or below 0.02 g after a collapse, and what moves has come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when that is over. Variants of a run that ends by "rest" end by `imperfections.until`.
+    /// Criterion that ends the run: "rest" when the ground is still, or below 0.02 g after a collapse, and what moves has come to rest; "verdict" 2 s after the first loss of a seat, or when a standing stack has come to rest on ground that stays below 0.02 g; "duration" when that is over. Variants of a run that ends by "rest" end by `imperfections.until`.
     until: Until = Kind::Choice(names::<Until>),
         Default::Derived("\"rest\" for a stack, \"duration\" for a free scene");
     /// Longest time that a run which ends by rest goes on after the motion.
@@ -92,7 +92,7 @@ section! {
         Default::Derived("that of the motion, and `patience` or else 5 s more");
     /// Time integration.
     method: Method = Kind::Choice(Method::names), Default::Value("\"velocity-verlet\"");
-    /// How near the motion is computed where no step is given: "standard" takes steps with which falls come within 10 ms and drifts within 1 % of those of ten times shorter ones, "screening" 1.5 times as long ones, "fine" a quarter.
+    /// Accuracy of the motion where no step is given: "standard" takes steps with which falls come within 10 ms and drifts within 1 % of those of ten times shorter ones, "screening" 1.5 times as long ones, "fine" a quarter.
     accuracy: Accuracy = Kind::Choice(names::<Accuracy>), Default::Value("\"standard\"");
     /// Time step, or first step of an adaptive method; "auto" takes it from the contacts and the accuracy. Impacts divide it while they last.
     step: Option<f64> =
@@ -106,15 +106,15 @@ section! {
         Default::Value("\"9.80665 m/s^2\"");
     /// Length scale of Froude similitude applied to bodies, contacts and motion together.
     similitude: f64 = Kind::Number(Range { least: 1e-3, above: false, greatest: 1e3 }), Default::Value("1.0");
-    /// Whether the bodies are brought to rest under gravity before the motion starts.
+    /// True if the bodies are brought to rest under gravity before the motion starts.
     settle: bool = Kind::Flag, Default::Value("true");
 }
 
 section! {
-    /// What is kept of a run.
+    /// Recording of a run.
     #[derive(Debug, Clone, PartialEq)]
     pub struct RecordSpec;
-    /// What is kept of the run.
+    /// Recording of the run.
     pub static RECORD = "record";
     /// Frames of all poses per second of simulated time.
     frame_rate: f64 =
@@ -125,10 +125,10 @@ section! {
 }
 
 section! {
-    /// Thresholds that tell a collapse.
+    /// Thresholds that define a collapse.
     #[derive(Debug, Clone, PartialEq)]
     pub struct OutcomeSpec;
-    /// Thresholds that tell a collapse; every default is an assumption to be varied.
+    /// Thresholds that define a collapse; every default is an assumption to be varied.
     pub static OUTCOME = "outcome";
     /// A barrel has lost its seat when its center is this many barrel radii away from its place in the rack.
     seat_loss_ratio: f64 = Kind::Number(Range::up_to(10.0)), Default::Value("0.5");

@@ -49,7 +49,7 @@ choices! {
         half_angle: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)), Default::Required;
     }
-    /// A barrel seen from the side, axis along local x; the reference point is the middle.
+    /// A barrel in side view, axis along local x; the reference point is the middle.
     BarrelProfile = "barrel-profile" {
         /// Length.
         length: f64 = SIZE, Default::Required;
@@ -97,7 +97,7 @@ section! {
     shape: Shape = Kind::Table(&PART_SHAPE), Default::Required;
     /// Place of its reference point in the body.
     offset: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\"]");
-    /// How it is turned in the body, counterclockwise.
+    /// Rotation in the body, counterclockwise.
     turn: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
 }

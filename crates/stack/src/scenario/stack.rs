@@ -177,7 +177,7 @@ const OWN: [Field; 9] = fields! {
     /// Barrels per level along the barrels, where the stack is looked at in both planes or in space.
     columns_along = COLUMNS,
         Default::Derived("in both planes and in space, those that one rack carries; must not be given otherwise");
-    /// Angle by which the stack is turned, seen from above against the clock, from where `motion.component` shakes
+    /// Angle by which the stack is turned, counterclockwise in the view from above, from where `motion.component` shakes
     /// it across its barrels and the other horizontal component along them.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
         Default::Derived("in space, 0 deg; must not be given otherwise");
@@ -185,7 +185,7 @@ const OWN: [Field; 9] = fields! {
     barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
     /// The rack.
     rack = Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK), Default::Derived("two-barrel");
-    /// Whether left and right change places.
+    /// True if left and right change places.
     mirror = Kind::Flag, Default::Value("false");
     /// Free distance between racks side by side.
     gap = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"0.05 m\"");

@@ -7,7 +7,7 @@ use barrelstack_dynamics::{Scratch, Space, State};
 pub struct ElementFate {
     /// Force (N) of the largest magnitude until the first loss of seat, and its time (s).
     pub peak: (f64, f64),
-    /// That force and time over the whole run.
+    /// Largest force, and its time, over the whole run.
     pub peak_whole_run: (f64, f64),
     /// Time (s) at which it broke.
     pub broken_at: Option<f64>,

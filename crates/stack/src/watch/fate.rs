@@ -112,7 +112,7 @@ pub struct Fates<R: Real = f64> {
     bodies: Vec<Followed<R>>,
     /// Time (s) at which the first body left its seat; infinite before.
     collapse: R,
-    /// That body.
+    /// The first body to leave its seat.
     first: PerLane<Option<BodyId>>,
     /// Time (s) at which the first barrel had fallen; infinite before.
     first_fall: R,
@@ -311,11 +311,11 @@ impl<R: Real> Fates<R> {
             if standing.any() {
                 let now = R::select(standing, moved.x, body.displacement_at_collapse);
                 body.displacement_at_collapse = now;
-                raise(&mut body.peak_displacement, seen(standing, moved.x.abs()));
-                raise(&mut body.peak_slip, seen(standing, slip.x.abs()));
-                raise(&mut body.peak_uplift, seen(standing, moved.z));
+                raise(&mut body.peak_displacement, masked(standing, moved.x.abs()));
+                raise(&mut body.peak_slip, masked(standing, slip.x.abs()));
+                raise(&mut body.peak_uplift, masked(standing, moved.z));
                 if body.place.kind == PartKind::Rack {
-                    raise(&mut body.peak_tilt, seen(standing, state.poses[i].orientation.abs()));
+                    raise(&mut body.peak_tilt, masked(standing, state.poses[i].orientation.abs()));
                 }
             }
             let fallen = self.fall_drop.lt(-moved.z);
@@ -323,7 +323,7 @@ impl<R: Real> Fates<R> {
                 let first = fallen & !body.fell_at.lt(R::splat(f64::INFINITY));
                 body.fell_at = R::select(first, state.time, body.fell_at);
                 let down = body.fell_at.lt(R::splat(f64::INFINITY));
-                raise(&mut body.fall_force, seen(down, scratch.wrenches[i].force.length()));
+                raise(&mut body.fall_force, masked(down, scratch.wrenches[i].force.length()));
                 if body.place.kind == PartKind::Barrel {
                     let first = first & !self.first_fall.lt(R::splat(f64::INFINITY));
                     self.first_fall = R::select(first, state.time, self.first_fall);
@@ -335,7 +335,7 @@ impl<R: Real> Fates<R> {
             if falling.any() {
                 let ground = state.twists[Assembly::GROUND].linear.z;
                 let down = ground - state.twists[i].linear.z;
-                raise(&mut body.landing_speed, seen(falling, down));
+                raise(&mut body.landing_speed, masked(falling, down));
                 let landed = falling & down.lt(R::splat(0.5) * body.landing_speed);
                 body.landed_at = R::select(landed, state.time, body.landed_at);
             }
@@ -427,6 +427,6 @@ fn raise<R: Real>(peak: &mut R, value: R) {
 /// Returns a value in masked lanes, and zero in others.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
-fn seen<R: Real>(standing: R::Mask, value: R) -> R {
+fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }
