@@ -1,4 +1,4 @@
-//! How far a rack walks in one cycle of shaking, over the stiffness of its seats: the table and the figure of
+//! Walk of a rack in one cycle of shaking, over the stiffness of its seats: the table and the figure of
 //! `validation/rack-walk.md`.
 //!
 //! `cargo run --release --package barrelstack-space --example rack_walk FIGURE.svg`
@@ -36,7 +36,7 @@ impl Shown {
     ];
 }
 
-/// How far (m) the upper rack of two levels is from its place on the lower one after a cycle, without sign, and off the
+/// Returns the walk (m) of the upper rack of two levels on the lower one after a cycle, without sign, and off the
 /// barrels as not a number: mean over variants.
 fn walk(shown: Shown, stiffness: f64, friction: f64, cycle: Cycle) -> Result<f64, Box<dyn Error>> {
     let (.., view) = Shown::ALL.into_iter().find(|(one, ..)| *one == shown).ok_or("a view")?;

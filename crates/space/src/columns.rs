@@ -23,7 +23,7 @@ const COLUMNS: [(&str, ValueKind, &str); 5] = [
         ValueKind::Integer,
         "fallen barrels that came to lie away along the barrels, more than across them",
     ),
-    ("debris_near", ValueKind::Integer, "the same the other way along the barrels"),
+    ("debris_near", ValueKind::Integer, "the same in the opposite direction along the barrels"),
 ];
 
 /// Returns the specifications of the columns, in the order of [`values`].
@@ -38,10 +38,13 @@ pub fn meaning(name: &str) -> Option<&'static str> {
 
 /// Returns the values of a case, from the direction of the first body, if one left its seat, and those of fallen
 /// barrels; `None` for a case without a verdict.
-pub fn values(ways: Option<(Option<Heading>, &[Heading])>) -> impl Iterator<Item = Option<Value>> {
-    let first = ways.and_then(|(first, _)| first).map(|way| Value::Text(way.name().to_owned()));
-    let lie = move |way: Heading| {
-        let barrels = ways?.1.iter().filter(|one| **one == way).count();
+pub fn values(
+    headings: Option<(Option<Heading>, &[Heading])>,
+) -> impl Iterator<Item = Option<Value>> {
+    let first =
+        headings.and_then(|(first, _)| first).map(|heading| Value::Text(heading.name().to_owned()));
+    let lie = move |heading: Heading| {
+        let barrels = headings?.1.iter().filter(|one| **one == heading).count();
         i64::try_from(barrels).ok().map(Value::Integer)
     };
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
@@ -50,7 +53,7 @@ pub fn values(ways: Option<(Option<Heading>, &[Heading])>) -> impl Iterator<Item
 /// Returns the columns of cases.
 pub fn table(cases: &[Case]) -> Vec<Column> {
     let rows: Vec<Vec<Option<Value>>> =
-        cases.iter().map(|case| values(case.ways()).collect()).collect();
+        cases.iter().map(|case| values(case.headings()).collect()).collect();
     let text = |value: &Option<Value>| match value {
         Some(Value::Text(text)) => Some(text.clone()),
         _ => None,

@@ -5,7 +5,7 @@
 //! degrees, and each frame shows one of them.
 
 mod deep;
-mod seen;
+mod view;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use barrelstack_report::{
     Event, EventKind, Frames, History, Moment, Point, Polyline, Role, Scene, SceneBody, Tie,
 };
 
-use self::seen::Seen;
+use self::view::BodyView;
 use crate::fate::Heading;
 use crate::run::Run;
 use crate::stack::Stack;
@@ -109,14 +109,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         for (at, frame) in frames.iter().enumerate() {
             let (place, rotation) = placed(run.frames.poses[*frame][body]);
             let page = [right, up].map(|axis| rotation.unapply(axis));
-            let seen = Seen::of(kind, page);
-            let slot = *known.entry(seen.key()).or_insert_with(|| {
-                drawn.push(seen.draw(part, &bodies[body]));
+            let view = BodyView::of(kind, page);
+            let slot = *known.entry(view.key()).or_insert_with(|| {
+                drawn.push(view.draw(part, &bodies[body]));
                 drawn.len() - 1
             });
             let row = &mut poses[at];
             row.resize(drawn.len(), [f64::NAN; 3]);
-            row[slot] = [place.dot(right), place.dot(up), seen.angle];
+            row[slot] = [place.dot(right), place.dot(up), view.angle];
         }
     }
     let ties = bands(run, sight, drawn.len());
@@ -135,7 +135,8 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         },
         ties: ties.iter().map(|tie| tie.drawn).collect(),
         events: events(run, &first, sight),
-        moment: moment(run, &first).filter(|_| run.heading.is_some_and(|way| sight.shows(way))),
+        moment: moment(run, &first)
+            .filter(|_| run.heading.is_some_and(|heading| sight.shows(heading))),
         // All views are of one run, which is turned in the place of the first.
         depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
@@ -160,10 +161,10 @@ impl Band<'_> {
     }
 }
 
-/// Minimum distance (m) of the ends on the page: a band seen end-on is not drawn.
+/// Minimum distance (m) of the ends on the page: a band in end view is not drawn.
 const END_ON: f64 = 0.01;
 
-/// Returns the straps and ties, whose ends follow a number of drawings; without those seen end-on.
+/// Returns the straps and ties, whose ends follow a number of drawings; without those in end view.
 fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     let straps = run.devices().filter_map(|((element, _), fate)| match element {
         Element::Strap(strap) => Some((&strap.link, fate)),
@@ -173,11 +174,11 @@ fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
         link,
         drawn: Tie { bodies: [0; 2], points: [[0.0; 2]; 2], torn_at: fate.broken_at },
     };
-    let seen = |band: &Band<'_>| {
+    let visible = |band: &Band<'_>| {
         let [a, b] = band.ends(run, 0, sight.page());
         (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > END_ON
     };
-    let mut bands: Vec<_> = straps.map(band).filter(seen).collect();
+    let mut bands: Vec<_> = straps.map(band).filter(visible).collect();
     for (band, end) in bands.iter_mut().zip((drawings..).step_by(2)) {
         band.drawn.bodies = [end, end + 1];
     }
@@ -234,7 +235,7 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
 /// picture, and around all paths of a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
-        ways(run, sight)
+        bounds(run, sight)
     } else {
         let far = if sight == Sight::Above { 0.7 * run.stack.height } else { 0.0 };
         [[-far, -far], [far, far]]
@@ -244,16 +245,16 @@ fn yard(run: &Run, sight: Sight) -> SceneBody {
 }
 
 /// Returns the corners of the area that all bodies cover, relative to the ground.
-fn ways(run: &Run, sight: Sight) -> [Point; 2] {
+fn bounds(run: &Run, sight: Sight) -> [Point; 2] {
     let page = sight.page();
     let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
     for poses in &run.frames.poses {
         let place = |body: usize| Vec3::new(poses[body][0], poses[body][1], poses[body][2]);
         for (body, of) in run.stack.model.bodies().iter().enumerate().skip(1) {
-            let way = place(body) - place(0);
+            let offset = place(body) - place(0);
             for (axis, along) in page.into_iter().enumerate() {
-                lower[axis] = way.dot(along).min(lower[axis] + of.reach()) - of.reach();
-                upper[axis] = way.dot(along).max(upper[axis] - of.reach()) + of.reach();
+                lower[axis] = offset.dot(along).min(lower[axis] + of.reach()) - of.reach();
+                upper[axis] = offset.dot(along).max(upper[axis] - of.reach()) + of.reach();
             }
         }
     }
@@ -267,13 +268,13 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
         // A barrel that leaves its seat by falling is one event, not two.
         let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
         let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
-        if let Some((time, loss, heading)) = left.filter(|(.., way)| sight.shows(*way)) {
+        if let Some((time, loss, heading)) = left.filter(|(.., heading)| sight.shows(*heading)) {
             // The pane shows whether it is along the barrels or across them.
             let text = format!("{}, {}", leaves(&part.name, loss), heading.name());
             events.push(Event { time, body: Some(first[body]), kind: EventKind::LossOfSeat, text });
         }
-        let seen = fate.left_seat.is_none_or(|(.., way)| sight.shows(way));
-        if let (Some(time), true) = (fate.fell_at.filter(|_| seen), barrel) {
+        let visible = fate.left_seat.is_none_or(|(.., heading)| sight.shows(heading));
+        if let (Some(time), true) = (fate.fell_at.filter(|_| visible), barrel) {
             let text = format!("{} falls", part.name);
             events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
         }

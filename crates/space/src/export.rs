@@ -67,7 +67,7 @@ fn variants_csv(answer: &Answer) -> String {
             Err(reason) => ("cannot-stand", "", None, "", reason.as_str()),
         };
         let number_or_none = |value: Option<f64>| value.map(shortest).unwrap_or_default();
-        let debris = |way: Heading| case.debris.iter().filter(|one| **one == way).count();
+        let debris = |heading: Heading| case.debris.iter().filter(|one| **one == heading).count();
         let _ = writeln!(
             text,
             "{number},{kind},{mode},{},{},{},{},{},{},{},{},{},{},{}",

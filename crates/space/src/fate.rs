@@ -27,8 +27,12 @@ impl Heading {
     pub const ALL: [Self; 4] = [Self::Right, Self::Left, Self::Away, Self::Near];
 
     /// Returns the direction of the largest component of a displacement.
-    pub fn of(way: Vec3) -> Self {
-        match (way.x.abs() >= way.y.abs(), way.x >= 0.0, way.y >= 0.0) {
+    pub fn of(displacement: Vec3) -> Self {
+        match (
+            displacement.x.abs() >= displacement.y.abs(),
+            displacement.x >= 0.0,
+            displacement.y >= 0.0,
+        ) {
             (true, true, _) => Self::Right,
             (true, false, _) => Self::Left,
             (false, _, true) => Self::Away,
@@ -203,11 +207,11 @@ impl<'a> Fates<'a> {
             // A barrel may roll about its axis without limit.
             let up = if kind == PartKind::Rack { self.up(i).z } else { 1.0 };
             let tilt = if up < 1.0 { math::acos(up.max(-1.0)) } else { 0.0 };
-            let (way, slip) = (level(moved).length(), level(mean).length());
+            let (displacement, slip) = (level(moved).length(), level(mean).length());
             let fate = &mut self.all[i];
-            fate.whole_run.raise(way, slip, tilt);
+            fate.whole_run.raise(displacement, slip, tilt);
             if standing {
-                fate.until_loss.raise(way, slip, tilt);
+                fate.until_loss.raise(displacement, slip, tilt);
                 fate.peak_uplift = fate.peak_uplift.max(moved.z);
                 fate.peak_slip[0] = fate.peak_slip[0].max(mean.x.abs());
                 fate.peak_slip[1] = fate.peak_slip[1].max(mean.y.abs());
@@ -234,8 +238,9 @@ impl<'a> Fates<'a> {
             let most = self.thresholds.seat_loss_ratio * part.size;
             if slip.dot(slip) > most * most {
                 // Relative to the ground, not in the frame of a rack that may be tilted.
-                let way = part.carrier.map_or(fate.moved, |rack| fate.moved - self.all[rack].moved);
-                return Some((Loss::Displaced, Heading::of(way)));
+                let displacement =
+                    part.carrier.map_or(fate.moved, |rack| fate.moved - self.all[rack].moved);
+                return Some((Loss::Displaced, Heading::of(displacement)));
             }
         } else {
             let [across, along] = self.stack.reach.map(|m| m * self.thresholds.rack_slide_ratio);
@@ -298,6 +303,6 @@ fn mean(slips: &[Vec3]) -> Vec3 {
 }
 
 /// Returns the horizontal part.
-fn level(way: Vec3) -> Vec3 {
-    Vec3::new(way.x, way.y, 0.0)
+fn level(vector: Vec3) -> Vec3 {
+    Vec3::new(vector.x, vector.y, 0.0)
 }

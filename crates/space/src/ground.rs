@@ -101,14 +101,14 @@ impl Ground {
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
-        let mut told: Vec<String> = Vec::new();
+        let mut steps: Vec<String> = Vec::new();
         for step in motions.flat_map(|motion| &motion.provenance) {
             // Both are of one record, and the vertical component goes with the first.
-            if !told.contains(step) {
-                told.push(step.clone());
+            if !steps.contains(step) {
+                steps.push(step.clone());
             }
         }
-        told
+        steps
     }
 
     fn each(&self, of: impl Fn(&barrelstack::Ground) -> f64) -> f64 {

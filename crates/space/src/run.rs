@@ -212,10 +212,15 @@ pub fn run_on(
     let ending = ending.unwrap_or(Ending::of_time(scenario));
     let ended = result.map(|totals| Ended::of(&totals));
     let judge = || judge(&stack, &fates);
-    let Verdict { outcome, energy, steps, warnings: told, ending } =
+    let Verdict { outcome, energy, steps, warnings: warned, ending } =
         Verdict::of(ended, judge, state.time, ground.end(), ending);
-    let warnings =
-        ground.warnings.iter().cloned().chain(told).chain(restitution_warning(scenario)).collect();
+    let warnings = ground
+        .warnings
+        .iter()
+        .cloned()
+        .chain(warned)
+        .chain(restitution_warning(scenario))
+        .collect();
     let heading = fates.collapse().and_then(|(_, body)| fates.all()[body].left_seat);
     let first_fall = fates.first_fall();
     let all = fates.at_end(&state);

@@ -26,15 +26,15 @@ described! {
         pub title: String,
         /// Which variant of the stack this is; 0 as it is stated.
         pub variant: u32,
-        /// What all variants say together; null where none were run.
+        /// Statistics of all variants; null where none were run.
         pub ensemble: Option<Spread>,
-        /// How many of its runs were done; null unless they were stopped before all were.
+        /// Number of its runs that were done; null unless they were stopped before all were.
         pub unfinished: Option<Unfinished>,
-        /// What would have kept the stack up; null where it stands, or none was searched.
+        /// Changes that would have kept the stack up; null where it stands, or none was searched.
         pub remedy: Option<Remedy>,
         /// In which directions they fall; null where none were run.
         pub directions: Option<Directions>,
-        /// What happened.
+        /// Outcome of the run.
         pub outcome: OutcomeInSpace,
         /// Every body but the ground; none where the run is invalid.
         pub bodies: Vec<BodyInSpace>,
@@ -44,7 +44,7 @@ described! {
         pub demands_whole_run: Demands,
         /// Forces between all bodies that have pressed on each other; none where the run is invalid.
         pub interfaces: Vec<JointSummary>,
-        /// What every element of the devices bore, where there are any.
+        /// Force of every element of the devices, where there are any.
         #[serde(flatten)]
         pub devices: Devices,
         /// The energy balance; null where numbers were lost.
@@ -53,11 +53,11 @@ described! {
         pub motion: Option<MotionSummary>,
         /// The other horizontal component; null where the motion has none.
         pub other_component: Option<MotionSummary>,
-        /// How it was computed.
+        /// Settings and work of the computation.
         pub run: RunInSpace,
-        /// What the reader should know.
+        /// Warnings.
         pub warnings: Vec<String>,
-        /// What made the result.
+        /// Provenance of the result.
         pub provenance: Provenance,
     }
 
@@ -70,7 +70,7 @@ described! {
         pub first_left: u32 = first(cases, Heading::Left),
         /// Away along the barrels, y positive.
         pub first_away: u32 = first(cases, Heading::Away),
-        /// The other way along the barrels.
+        /// The opposite direction along the barrels.
         pub first_near: u32 = first(cases, Heading::Near),
         /// Fallen barrels of all variants that came to lie to the right of where they stood, more than along.
         pub debris_right: u32 = debris(cases, Heading::Right),
@@ -78,20 +78,20 @@ described! {
         pub debris_left: u32 = debris(cases, Heading::Left),
         /// Away along the barrels, more than across.
         pub debris_away: u32 = debris(cases, Heading::Away),
-        /// The other way along the barrels.
+        /// The opposite direction along the barrels.
         pub debris_near: u32 = debris(cases, Heading::Near),
     }
 
-    /// What happened in space.
+    /// Outcome of a run in space.
     #[derive(Clone, Debug, Default)]
     pub struct OutcomeInSpace {
-        /// What it was.
+        /// Kind of the outcome.
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
-        /// How it collapsed.
+        /// Mode of the collapse.
         pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
         /// When the first body left its seat.
         pub time: Option<f64> as "s",
-        /// That body.
+        /// Name of the first body that left its seat.
         pub first: Option<String>,
         /// In which direction it left.
         pub heading: Option<&'static str> ["right", "left", "away", "near"],
@@ -114,7 +114,7 @@ described! {
     pub struct BodyInSpace {
         /// Its name.
         pub name: String,
-        /// What it is.
+        /// Kind of the body.
         pub kind: &'static str ["barrel", "rack", "device", "body"],
         /// Level, 1 at the bottom; 0 in a free scene.
         pub level: u32,
@@ -136,7 +136,7 @@ described! {
         pub moved: [f64; 3] as "m",
         /// Its center of mass x, y, z at the end, where the ground was at the start.
         pub position: [f64; 3] as "m",
-        /// How it is turned at the end: the quaternion w, x, y, z that turns its principal axes.
+        /// Orientation at the end: the quaternion w, x, y, z that turns its principal axes.
         pub orientation: [f64; 4] as "1",
         /// Velocity x, y, z of its center of mass at the end, the ground's included.
         pub velocity: [f64; 3] as "m/s",
@@ -160,7 +160,7 @@ described! {
         pub mean_stress_amplification: Option<f64> as "1",
     }
 
-    /// How it was computed.
+    /// Settings and work of the computation.
     #[derive(Clone, Debug)]
     pub struct RunInSpace of run: &Run {
         /// Integration method.
@@ -186,13 +186,13 @@ described! {
 }
 
 /// Returns the number of cases whose first body falls in a direction.
-fn first(cases: &[Case], way: Heading) -> u32 {
-    count(cases, |case| usize::from(case.first == Some(way)))
+fn first(cases: &[Case], heading: Heading) -> u32 {
+    count(cases, |case| usize::from(case.first == Some(heading)))
 }
 
 /// Returns the number of fallen barrels of all cases in a direction.
-fn debris(cases: &[Case], way: Heading) -> u32 {
-    count(cases, |case| case.debris.iter().filter(|lies| **lies == way).count())
+fn debris(cases: &[Case], heading: Heading) -> u32 {
+    count(cases, |case| case.debris.iter().filter(|lies| **lies == heading).count())
 }
 
 fn count(cases: &[Case], of: impl Fn(&Case) -> usize) -> u32 {

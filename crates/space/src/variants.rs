@@ -55,11 +55,11 @@ impl Case {
         let barrels: Vec<usize> = run.stack.of_kind(PartKind::Barrel).collect();
         let fall = |body: &usize| (run.stack.parts[*body].name.clone(), run.fates[*body].fell_at);
         let left = run.ground.end() - run.end_time;
-        let way = |body: &usize| {
+        let displacement = |body: &usize| {
             let moved = run.fates[*body].moved;
             (moved.x * moved.x + moved.y * moved.y).sqrt()
         };
-        let told = CaseResult {
+        let common = CaseResult {
             outcome: Ok(run.outcome.clone()),
             barrels: barrels.len(),
             wine: barrels.iter().map(|body| run.stack.parts[*body].wine).sum(),
@@ -72,7 +72,7 @@ impl Case {
             ..CaseResult::failed(String::new())
         };
         if !sound {
-            return Self { result: told, first: None, debris: Vec::new() };
+            return Self { result: common, first: None, debris: Vec::new() };
         }
         let named = run.seats.named(&run.stack);
         let result = CaseResult {
@@ -84,8 +84,8 @@ impl Case {
             demands: demands(run, Span::UntilLoss),
             demands_whole_run: demands(run, Span::WholeRun),
             joints: named.map(|(name, joint)| (name, joint.clone())).collect(),
-            residual_displacement: Some(barrels.iter().map(way).fold(0.0, f64::max)),
-            ..told
+            residual_displacement: Some(barrels.iter().map(displacement).fold(0.0, f64::max)),
+            ..common
         };
         Self { result, first: run.heading, debris: run.debris().collect() }
     }
@@ -99,7 +99,7 @@ impl Case {
     }
 
     /// Returns the directions of the first body and of fallen barrels; `None` without a verdict.
-    pub fn ways(&self) -> Option<(Option<Heading>, &[Heading])> {
+    pub fn headings(&self) -> Option<(Option<Heading>, &[Heading])> {
         let judged = matches!(self.result.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some((self.first, self.debris.as_slice()))
     }
@@ -189,14 +189,14 @@ fn run_some(
     observer: &(dyn Fn(usize) -> ControlFlow<()> + Sync),
 ) -> Vec<Case> {
     let (done, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let hear = |done: usize| {
+    let report = |done: usize| {
         if observer(done).is_break() {
             stopped.store(true, Ordering::Relaxed);
         }
     };
     let work = |number: &u32| {
         let going = |()| {
-            hear(done.load(Ordering::Relaxed));
+            report(done.load(Ordering::Relaxed));
             let over = stopped.load(Ordering::Relaxed);
             if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
@@ -213,7 +213,7 @@ fn run_some(
             Ok(run) => Case::of(&run),
             Err(failure) => Case::refused(&variant, &failure),
         };
-        hear(done.fetch_add(1, Ordering::Relaxed) + 1);
+        report(done.fetch_add(1, Ordering::Relaxed) + 1);
         case
     };
     pool::map(numbers, work, &|_| ())
@@ -278,14 +278,14 @@ pub fn answer(
     let scenario = &scenario.with_event()?;
     let plane = plane(scenario)?;
     let observer = Mutex::new(observer);
-    let tell = |reached: Advance| match observer.lock() {
+    let report = |reached: Advance| match observer.lock() {
         Ok(mut observer) => observer(reached),
         // Another thread has panicked; this work is no longer needed.
         Err(_) => ControlFlow::Break(()),
     };
     let varied = !matches!(choice, RunChoice::Alone(_)) && plane.count() > 0;
     let cases = if varied {
-        run_all(&plane.scenario, &|done, of| tell(Advance::Variants { done, of }))?
+        run_all(&plane.scenario, &|done, of| report(Advance::Variants { done, of }))?
     } else {
         Vec::new()
     };
@@ -305,7 +305,7 @@ pub fn answer(
     };
     let variant = plane.variant(number);
     let ground = Ground::of(&plane.scenario)?;
-    let mut run = run_on(&variant, ground, &mut |now| tell(Advance::Run(now)))?;
+    let mut run = run_on(&variant, ground, &mut |now| report(Advance::Run(now)))?;
     run.warnings.extend(unfinished.as_ref().map(Unfinished::warning));
     let mut summary = Summary::of(&run, &plane.scenario);
     summary.unfinished = unfinished;

@@ -98,8 +98,8 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         if let Some((_, loss, heading)) = part.and_then(|body| run.fates[body].left_seat) {
             let shown = if summary.ensemble.is_some() { "In the run that is shown " } else { "" };
             let kind = run.stack.parts[part.unwrap_or(0)].kind.name();
-            let told = format!("{} {}", leaves(&format!("{kind} {first}"), loss), toward(heading));
-            sentences.push(format!("{} after {time:.1} s.", capital(&format!("{shown}{told}"))));
+            let event = format!("{} {}", leaves(&format!("{kind} {first}"), loss), toward(heading));
+            sentences.push(format!("{} after {time:.1} s.", capital(&format!("{shown}{event}"))));
         }
     }
     sentences.extend(summary.devices.0.iter().filter_map(device_sentence));
@@ -107,10 +107,10 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
 }
 
 /// Maximum number of bodies of a free scene listed individually in the console; files list all.
-const MOST_TOLD: usize = 10;
+const MOST_LISTED: usize = 10;
 
 /// Demands shown in the console; the page shows all.
-const TOLD: [&str; 5] = [
+const SHOWN: [&str; 5] = [
     "top_drift_ratio",
     "stress_amplification",
     "stave_utilization",
@@ -124,31 +124,32 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
     row("outcome", summary.outcome.mode.unwrap_or(summary.outcome.kind).to_owned());
     if let (Some(first), Some(time)) = (&summary.outcome.first, summary.outcome.time) {
-        let way = run.heading.map_or("", toward);
-        row("first", format!("{first} at {time:.2} s, {way}"));
+        let direction = run.heading.map_or("", toward);
+        row("first", format!("{first} at {time:.2} s, {direction}"));
     }
     if let Some(fallen) = summary.outcome.barrels_fallen.filter(|fallen| *fallen > 0) {
-        let side = |wanted: Heading| run.debris().filter(|way| *way == wanted).count();
-        let ways = Heading::ALL.map(|way| (side(way), way.name()));
-        let told: Vec<String> = ways
+        let side = |wanted: Heading| run.debris().filter(|heading| *heading == wanted).count();
+        let counts = Heading::ALL.map(|heading| (side(heading), heading.name()));
+        let listed: Vec<String> = counts
             .iter()
             .filter(|(count, _)| *count > 0)
             .map(|(count, name)| format!("{count} {name}"))
             .collect();
         row(
             "barrels fallen",
-            format!("{fallen} of {}: {}", summary.outcome.barrels, told.join(", ")),
+            format!("{fallen} of {}: {}", summary.outcome.barrels, listed.join(", ")),
         );
     }
-    for body in summary.bodies.iter().filter(|_| run.stack.is_free()).take(MOST_TOLD) {
+    for body in summary.bodies.iter().filter(|_| run.stack.is_free()).take(MOST_LISTED) {
         let [x, y, z] = body.moved;
         let [u, v, w] = body.velocity;
         let speed = (u * u + v * v + w * w).sqrt();
         row(&body.name, format!("moved by ({x:.3}, {y:.3}, {z:.3}) m, ends at {speed:.3} m/s"));
     }
-    for demand in TOLD {
-        let told = DEMANDS.iter().find(|one| one.name == demand);
-        if let Some((one, value)) = told.and_then(|one| Some((one, one.shown(&summary.demands)?))) {
+    for demand in SHOWN {
+        let demand = DEMANDS.iter().find(|one| one.name == demand);
+        if let Some((one, value)) = demand.and_then(|one| Some((one, one.shown(&summary.demands)?)))
+        {
             row(one.label, format!("{value:.*} {}", one.decimals, one.shown_unit));
         }
     }

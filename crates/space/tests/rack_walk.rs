@@ -1,4 +1,4 @@
-//! How far a rack walks on soft seats: the rigid limit, and the smallest model beside the program.
+//! Walk of a rack on soft seats: the rigid limit, and the smallest model beside the program.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
 use crate::two_seats::{Cycle, GRAVITY, TwoSeats, newmark};

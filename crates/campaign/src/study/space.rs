@@ -32,7 +32,7 @@ impl From<CaseResult> for FinishedCase {
 
 impl From<InSpace> for FinishedCase {
     fn from(case: InSpace) -> Self {
-        let headings = case.ways().map(|(first, debris)| (first, debris.to_vec()));
+        let headings = case.headings().map(|(first, debris)| (first, debris.to_vec()));
         Self { headings, result: case.result }
     }
 }

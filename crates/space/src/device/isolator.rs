@@ -91,9 +91,9 @@ fn bear(
             // Drawn up to the stops.
             let arc = |across: bool| -> Vec<Vec3> {
                 let at = |share: f64| {
-                    let way = share * device.stroke;
-                    let rise = (radius * radius - way * way).sqrt();
-                    let [x, y] = if across { [way, 0.0] } else { [0.0, way] };
+                    let travel = share * device.stroke;
+                    let rise = (radius * radius - travel * travel).sqrt();
+                    let [x, y] = if across { [travel, 0.0] } else { [0.0, travel] };
                     offset + Vec3::new(x, y, -rise)
                 };
                 (-6..=6).map(|step| at(f64::from(step) / 6.0)).collect()

@@ -22,8 +22,8 @@ pub(super) fn place(device: &Lids, builder: &mut Builder<'_>) {
         builder.loose.push(Loose::new(guide, 0.0, Lids::WORDS));
         let [half, rise] = device.drawn(size, Similitude::FULL);
         let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, rise);
-        for way in [Vec3::new(half, 0.0, 0.0), Vec3::new(0.0, half, 0.0)] {
-            builder.draw(rack, &[top - way, top + way]);
+        for arm in [Vec3::new(half, 0.0, 0.0), Vec3::new(0.0, half, 0.0)] {
+            builder.draw(rack, &[top - arm, top + arm]);
         }
     }
 }

@@ -34,8 +34,8 @@ pub(super) fn place(device: &TunedMass, builder: &mut Builder<'_>) {
             builder.draw(mass, &corners.map(|[y, z]| corner(side, y, z)));
         }
         let turned = builder.turned(rack);
-        for (way, x, y) in [("across", 1.0, 0.0), ("along", 0.0, 1.0)] {
-            let name = format!("{name} {way}");
+        for (axis_name, x, y) in [("across", 1.0, 0.0), ("along", 0.0, 1.0)] {
+            let name = format!("{name} {axis_name}");
             let link = Link { name, bodies: [rack, mass], points: [Vec3::default(); 2] };
             let axis = turned.unapply(Vec3::new(x, y, 0.0));
             builder

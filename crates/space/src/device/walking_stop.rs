@@ -30,8 +30,8 @@ pub(super) fn place(device: &WalkingStops, builder: &mut Builder<'_>) {
     }
 }
 
-fn named(builder: &Builder<'_>, rack: BodyId, barrel: BodyId, way: &str) -> String {
-    format!("{}-{} {way}", builder.parts[rack].name, builder.parts[barrel].name)
+fn named(builder: &Builder<'_>, rack: BodyId, barrel: BodyId, direction: &str) -> String {
+    format!("{}-{} {direction}", builder.parts[rack].name, builder.parts[barrel].name)
 }
 
 fn hook(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [BodyId; 2]) {

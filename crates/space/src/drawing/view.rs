@@ -12,7 +12,7 @@ use crate::part::Part;
 const STEPS: f64 = 10.0;
 
 /// View of a body.
-pub(super) struct Seen {
+pub(super) struct BodyView {
     /// Right and up axes of its drawing, in the body frame.
     axes: [Vec3; 2],
     /// Rotation of the drawing on the page (rad).
@@ -20,7 +20,7 @@ pub(super) struct Seen {
     kind: PartKind,
 }
 
-impl Seen {
+impl BodyView {
     /// Creates the view from the right and up axes of the page in the body frame.
     pub(super) fn of(kind: PartKind, page: [Vec3; 2]) -> Self {
         let toward = page[0].cross(page[1]);
@@ -136,8 +136,8 @@ impl Seen {
                         // The visible half is one stretch: it starts after a hidden point.
                         let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
                         let start = start.unwrap_or(0);
-                        let seen = (0..=32).map(|at| (start + at) % 32).take_while(near);
-                        marks.push(Polyline::open(seen.map(|at| flat(place(on(at)))).collect()));
+                        let visible = (0..=32).map(|at| (start + at) % 32).take_while(near);
+                        marks.push(Polyline::open(visible.map(|at| flat(place(on(at)))).collect()));
                     }
                 }
                 Solid::Block(block) => {
