@@ -210,7 +210,7 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             found => {
                 regular(&found?)?;
-                match File::options().read(true).write(true).open(path) {
+                match open_unfollowed(path) {
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     opened => return opened,
                 }
@@ -218,6 +218,20 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
         }
     }
     Err(io::Error::other("it is made and removed all the time"))
+}
+
+/// Opens an existing regular file for modification, even if something else has just taken the place of what was
+/// checked: on Unix the system itself refuses a link and does not wait for the other end of a pipe.
+fn open_unfollowed(path: &Path) -> io::Result<File> {
+    let mut options = File::options();
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(
+        &mut options,
+        libc::O_NOFOLLOW | libc::O_NONBLOCK,
+    );
+    let file = options.read(true).write(true).open(path)?;
+    regular(&file.metadata()?)?;
+    Ok(file)
 }
 
 /// Returns the name of a file while it is incomplete, specific to this process.
@@ -353,6 +367,7 @@ mod tests {
         assert!(said(Path::new("/dev/zero")).starts_with("it is a device, not a file"));
         assert_eq!(said(&place.0), "it is a folder, not a file");
         assert!(open_to_change(&pipe).is_err());
+        assert!(open_unfollowed(&pipe).is_err());
         fs::write(place.0.join("file"), "text")?;
         symlink(place.0.join("file"), place.0.join("link"))?;
         assert_eq!(read(&place.0.join("link"), 100).as_deref(), Ok(&b"text"[..]));
@@ -375,6 +390,8 @@ mod tests {
         store(&out.join("a"), b"new")?;
         begin(&out.join("b"))?.write_all(b"new")?;
         assert!(open_to_change(&out.join("c")).is_err());
+        // As if the link came after the check.
+        assert!(open_unfollowed(&out.join("c")).is_err());
         let said = folder_below(&out, Path::new("figures/more")).unwrap_err().to_string();
         assert!(said.contains("figures is a link, not a folder"), "{said}");
         assert_eq!(fs::read_to_string(&target)?, "kept");
