@@ -82,7 +82,7 @@ pub(crate) fn all(root: &Path) -> Vec<Extra> {
         name: "tests of the Python package",
         command: python::find(root),
         remedy: "see above; `cargo xtask python` runs this step alone, `cargo xtask python heavy` also what needs ObsPy, \
-                 OpenQuake, Dask and Slurm",
+                 OpenQuake, Pelicun, Dask and Slurm",
         pages: None,
     };
     [licenses, oldest, bundle, web]

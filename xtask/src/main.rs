@@ -28,7 +28,7 @@ tasks:
   web        one page that holds the program, as WebAssembly, and works without a network; says how large it is
   bundle     packs what pages use of three.js, with esbuild; `check` compares it with the one that is kept
   python     the Python package in an environment of its own under target/: its tests, its notebooks, its site;
-             `heavy` also those that need ObsPy, OpenQuake, Dask and Slurm; `site` the site alone
+             `heavy` also those that need ObsPy, OpenQuake, Pelicun, Dask and Slurm; `site` the site alone
   validate   every problem with an exact answer, in full, with a report; `--out DIR`, `--only TEXT`, `--fast`
   bench      how fast stacks are computed, beside a game engine on the same scenes; `--cases N`, `table`, `growth`,
              `history` (the work of runs beside that of the last release; `history keep` writes it down)

@@ -5,9 +5,9 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::steps::{build_program, cargo, program, target};
+use crate::steps::{build_program, program, target};
 
-/// Packages that the tests need beside the own one.
+/// What the tests need beside the package.
 const TESTS: [&str; 15] = [
     "maturin>=1.9,<2",
     "numpy",
@@ -26,37 +26,25 @@ const TESTS: [&str; 15] = [
     "distributed",
 ];
 
-/// Packages that some tests need and that take long to install.
+/// What some of them need that takes long to install.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
-/// OpenQuake; with all of its dependencies it would have to build GDAL, which its readers do not need.
-const OPENQUAKE: &str = "openquake-engine";
-
-/// Packages that the readers of OpenQuake need.
-const READERS: [&str; 14] = [
+/// Pelicun, and what `OpenQuake` needs; with all that it asks for, it has to build GDAL.
+const OTHERS: [&str; 14] = [
     "alpha_shapes",
     "decorator",
+    "django>=4.2,<5",
+    "docutils",
     "fiona",
+    "geopandas",
     "h3",
     "h5py",
     "numba",
+    "pelicun",
     "psutil",
-    "pyproj",
-    "pyyaml",
     "pyzmq",
     "requests",
-    "scipy",
-    "shapely",
     "toml",
-];
-
-/// What its calculators need beside them, and Pelicun.
-const CALCULATORS: [&str; 5] = [
-    "django>=4.2,<5",
-    "docutils~=0.19.0",
-    "geopandas~=1.1.4",
-    "django_cors_headers~=4.3.1",
-    "pelicun",
 ];
 
 /// The step of the test command, where there is a Python; else what is missing.
@@ -107,15 +95,15 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own.
+/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own: Pelicun asks for older pandas.
 fn run_others(root: &Path) -> anyhow::Result<()> {
     let python = made(&target(root).join("python-others"))?;
-    for words in [&READERS[..], &CALCULATORS, &["--no-deps", OPENQUAKE]] {
+    for words in [&OTHERS[..], &["--no-deps", "openquake-engine"]] {
         let mut pip = inside(&python);
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
         checked(&mut pip, "the installation of OpenQuake and Pelicun")?;
     }
-    let mut tests = Command::new(cargo());
+    let mut tests = Command::new("cargo");
     tests.args(["test", "-p", "barrelstack-campaign", "--test", "all", "exports::"]);
     tests.args(["--", "--ignored", "--nocapture"]).current_dir(root);
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
@@ -137,14 +125,14 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     let python = made(&target(root).join("python"))?;
     let mut needed = TESTS.to_vec();
     if heavy {
-        needed.extend(HEAVY.iter().chain(&READERS).chain([&OPENQUAKE]));
+        needed.extend(HEAVY);
     }
     let pip = |words: &[&str]| {
         let mut pip = inside(&python);
         pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
         pip.current_dir(root).status().is_ok_and(|status| status.success())
     };
-    // Installed packages need no network.
+    // The net is not asked for what is there.
     let there = |name: &&&str| {
         let name = name.split(['<', '>', '=']).next().unwrap_or(name);
         let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
@@ -152,8 +140,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         run.is_ok_and(|status| status.success())
     };
     for name in needed.iter().filter(|name| !there(name)) {
-        let alone: &[&str] = if **name == *OPENQUAKE { &["--no-deps"] } else { &[] };
-        if !pip(&[alone, &[*name]].concat()) {
+        if !pip(&[*name]) {
             // Tests say by themselves what they lack.
             println!("pip cannot install {name}; is there a net?");
         }
@@ -161,7 +148,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
     if !there(&&"maturin") {
         return Ok(None);
     }
-    // With the environment's own maturin, so that installed packages need no network.
+    // With the environment's own maturin, so that no net is asked for what is there.
     if !pip(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
         bail!("`pip install .` failed: see above");
     }

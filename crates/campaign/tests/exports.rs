@@ -182,7 +182,7 @@ fn python(module: &str) -> Option<String> {
         return Some(name);
     }
     assert!(named.is_none(), "{name} cannot import {module}: {import:?}");
-    skipped(&format!("python3 has no module {module}; `cargo xtask python heavy` installs it"));
+    skipped(&format!("python3 has no module {module}; `cargo xtask python heavy` runs with it"));
     None
 }
 

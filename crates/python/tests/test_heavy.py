@@ -1,4 +1,4 @@
-"""Tests with packages that take long to install: ObsPy, OpenQuake, Dask, Slurm. Skipped if missing."""
+"""Tests with packages that take long to install: ObsPy, Dask, Slurm. Skipped if missing."""
 
 from __future__ import annotations
 
@@ -45,42 +45,6 @@ def test_a_stream_of_obspy_measures_what_its_file_measures(tmp_path: Path) -> No
     stream[1].stats.delta *= 2
     with pytest.raises(ValueError, match="resample"):
         Record.from_obspy(stream, unit="m/s2")
-
-
-STRIPES = """
-schema = 1
-[base]
-extends = "candia-8-barrels"
-stack = { levels = 3 }
-[[motion]]
-bundled = "napa-college-2014"
-[[motion]]
-synthetic = { kind = "boore", count = 2, magnitude = 6.0, distance = "8 km" }
-[intensity]
-measure = "pgv"
-range = { from = "10 cm/s", to = "90 cm/s", count = 5 }
-[design]
-kind = "stripes"
-"""
-
-
-def test_openquake_reads_the_curves_of_an_export(tmp_path: Path) -> None:
-    nrml = pytest.importorskip("openquake.hazardlib.nrml", reason="no openquake", exc_type=ImportError)
-    pytest.importorskip("openquake.risklib.read_nrml", reason="no openquake", exc_type=ImportError)
-    Study(STRIPES).run(tmp_path / "study")
-    Study.export(tmp_path / "study", tmp_path / "out", asset="stack")
-    model = nrml.to_python(str(tmp_path / "out" / "openquake-fragility.xml"))
-    (functions,) = model.values()
-    curves = Study.fragility(tmp_path / "study").curves
-    fitted = [curve for curve in curves.values() if curve.median is not None]
-    assert model.limitStates == [curve.limit_state.replace("-", "_") for curve in fitted]
-    built = functions.build(model.limitStates)
-    for function, curve in zip(built, fitted, strict=True):
-        for pgv in (0.2, 0.4, 0.8):
-            theirs = float(np.squeeze(function([100 * pgv])))
-            # Mean and deviation are written with all digits; measured 4e-16.
-            assert theirs == pytest.approx(curve.probability([pgv])[0], abs=1e-9)
-    nrml.to_python(str(tmp_path / "out" / "openquake-vulnerability-wine.xml"))
 
 
 CHEAP = """
