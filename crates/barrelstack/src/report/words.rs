@@ -24,18 +24,23 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
 /// Describes the result of the shown run in one sentence.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     match &run.outcome {
-        Outcome::Stable => match crushed(summary) {
-            Some(load) => format!(
-                "The stack stands, but staves are crushed: they bear up to {load} of what they are stated to bear."
-            ),
-            None => match cut(run, summary) {
-                Some(left) => format!(
-                    "The stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does.",
-                    run.end_time
+        Outcome::Stable => {
+            let stands = cut(run, summary).map_or_else(
+                || "The stack stands".to_owned(),
+                |left| {
+                    format!(
+                        "The stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does",
+                        run.end_time
+                    )
+                },
+            );
+            match crushed(summary) {
+                Some(load) => format!(
+                    "{stands}, but staves are crushed: they bear up to {load} of what they are stated to bear."
                 ),
-                None => "The stack stands.".into(),
-            },
-        },
+                None => stands + ".",
+            }
+        }
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
