@@ -13,6 +13,8 @@ mod python;
 mod steps;
 mod tally;
 mod web;
+#[cfg(test)]
+mod wording;
 
 use std::process::ExitCode;
 

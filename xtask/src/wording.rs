@@ -1,0 +1,77 @@
+//! Limits on words for which the field has a better one, such as `report`, `request` and `displacement`.
+
+use std::path::Path;
+
+use crate::lines::{entries, sources};
+use crate::steps::root;
+
+/// Maximum number of occurrences of each group of words in the sources.
+const LIMIT: usize = 20;
+
+/// Words that count together.
+const GROUPS: [&[&str]; 5] = [
+    &["told", "tell", "tells"],
+    &["asked", "asks", "ask"],
+    &["hear", "hears", "heard"],
+    &["seen"],
+    &["way", "ways"],
+];
+
+/// Fixed phrases that do not count; to give way is to fail, of a stack or a part.
+const PHRASES: [&str; 7] =
+    ["by the way", "either way", "all the way", "half way", "give way", "gives way", "gave way"];
+
+/// Returns how often any of some words stands in a line as a whole word, in letters of any case and outside of
+/// [`PHRASES`]; a letter, a digit or an underscore next to it makes it part of a longer word.
+fn count(line: &str, words: &[&str]) -> usize {
+    let mut line = line.to_ascii_lowercase();
+    for phrase in PHRASES {
+        line = line.replace(phrase, "");
+    }
+    line.split(|c: char| !c.is_alphanumeric() && c != '_')
+        .filter(|word| words.contains(word))
+        .count()
+}
+
+/// Returns the lines with some words in the sources of all crates and of this program, as `file:line: text`, one entry
+/// for each occurrence.
+fn places(root: &Path, words: &[&str]) -> anyhow::Result<Vec<String>> {
+    let mut folders = entries(&root.join("crates"))?;
+    folders.push(root.join("xtask"));
+    folders.sort();
+    let mut found = Vec::new();
+    for folder in folders {
+        let mut files = sources(&folder.join("src"))?;
+        files.sort();
+        // This file has to spell the words.
+        for path in files.iter().filter(|path| !path.ends_with("xtask/src/wording.rs")) {
+            let name = path.strip_prefix(root)?.display().to_string();
+            for (line, at) in std::fs::read_to_string(path)?.lines().zip(1..) {
+                let place = format!("{name}:{at}: {}", line.trim());
+                found.extend(std::iter::repeat_n(place, count(line, words)));
+            }
+        }
+    }
+    Ok(found)
+}
+
+#[test]
+fn words_count_as_whole_words_outside_of_fixed_phrases() {
+    assert_eq!(count("/// Tell what is told; TELLS, tell.", GROUPS[0]), 4);
+    assert_eq!(count("fn telling(retell: u8, told_so: u8, untold: u8)", GROUPS[0]), 0);
+    assert_eq!(count("By the way, half way is a way of ways; it gives way.", GROUPS[4]), 2);
+}
+
+#[test]
+fn words_with_a_better_one_in_the_field_stay_rare() {
+    for words in GROUPS {
+        let found = places(&root(), words).unwrap();
+        assert!(
+            found.len() <= LIMIT,
+            "{} occurrences of {}, at most {LIMIT} are allowed; name what things are or do:\n{}",
+            found.len(),
+            words.join(", "),
+            found.join("\n")
+        );
+    }
+}
