@@ -571,3 +571,27 @@ fn a_hole_in_times_since_1970_is_found() {
         }
     }
 }
+
+#[test]
+fn a_factor_beside_the_unit_is_not_passed_over() {
+    let values: String = (0..400).map(|k| format!("{:.5}\n", 100.0 * wave(k))).collect();
+    for unit in [
+        "units: % g",
+        "units: percent g",
+        "units: 0.001 g",
+        "units: thousandths of g",
+        "units: 10^-3 g",
+        "units: 1/100 g",
+        "units: g x 100",
+        "unit = 0.01 m/s2",
+        "units: cm/s2 (x 10)",
+        "Acceleration in units of 0.1 gal",
+    ] {
+        let text = format!("dt = 0.005 s\n{unit}\n{values}");
+        let error = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap_err();
+        assert_eq!(error.refusal, Refusal::Missing(Given::Unit), "{unit}: {error}");
+    }
+    for unit in ["units: cm/s2", "units = g, npts = 400", "Acceleration in units of gal"] {
+        given(&format!("dt = 0.005 s\n{unit}\n{values}"), &ReadOptions::default());
+    }
+}

@@ -364,8 +364,9 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     }
     if let Some((_, behind)) = lower.split_once("unit") {
         let tokens = behind.split([' ', ',', ';', ':', '=', '(', ')', '[', ']', '\t']);
-        if let Some(unit) = tokens.filter(|word| !word.is_empty()).find_map(rate) {
-            return Some(unit);
+        let words: Vec<&str> = tokens.filter(|word| !word.is_empty()).collect();
+        if let Some(at) = words.iter().position(|word| rate(word).is_some()) {
+            return rate(words[at]).filter(|_| !is_scaled(&words, at));
         }
     }
     if !says_acceleration(lower) {
@@ -376,6 +377,18 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     let after_in = behind.split(" in ").skip(1).filter_map(|text| text.split([' ', ',']).next());
     let last = behind.rsplit([':', '=', ',']).next();
     groups.chain(after_in).chain(last).find_map(rate)
+}
+
+/// `true` if a number or a share stands beside the unit among words: `0.001 g`, `% g`, `thousandths of g`, `g x 100`.
+fn is_scaled(words: &[&str], unit: usize) -> bool {
+    let before = words[..unit].iter().rev().find(|word| **word != "of").unwrap_or(&"");
+    let shares = ["%", "percent", "tenth", "hundredth", "thousandth", "milli", "micro"];
+    let behind = words.get(unit + 1).unwrap_or(&"");
+    before.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+        || shares.iter().any(|share| before.starts_with(share))
+        || ["x", "*", "times"].contains(behind)
+        || behind.trim_start_matches(['x', '*']).parse::<f64>().is_ok()
+            && behind.starts_with(['x', '*'])
 }
 
 /// Returns the word after "unit" at the beginning of a line, if it is not a unit of motion.
