@@ -573,6 +573,18 @@ fn a_hole_in_times_since_1970_is_found() {
 }
 
 #[test]
+fn a_hole_in_times_behind_row_numbers_is_found() {
+    let table = |lost: std::ops::Range<usize>| -> String {
+        let rows = (0..3200).filter(|k| !lost.contains(k)).enumerate();
+        rows.map(|(row, k)| format!("{row},{:.3},{:.5}\n", 0.005 * k as f64, wave(k))).collect()
+    };
+    let text = |lost| format!("No,Time (s),Acceleration (m/s2)\n{}", table(lost));
+    let record = given(&text(0..0), &ReadOptions::default());
+    assert!((record.channels[0].time_step - 0.005).abs() < 1e-12);
+    refused(&text(1000..1060), "a gap of 0.3050 s");
+}
+
+#[test]
 fn a_factor_beside_the_unit_is_not_passed_over() {
     let values: String = (0..400).map(|k| format!("{:.5}\n", 100.0 * wave(k))).collect();
     for unit in [
@@ -594,4 +606,15 @@ fn a_factor_beside_the_unit_is_not_passed_over() {
     for unit in ["units: cm/s2", "units = g, npts = 400", "Acceleration in units of gal"] {
         given(&format!("dt = 0.005 s\n{unit}\n{values}"), &ReadOptions::default());
     }
+}
+
+#[test]
+fn pairs_of_time_and_value_beside_each_other_are_no_channels() {
+    let row = |k: usize| -> String {
+        (0..4)
+            .map(|j| format!("{:.3}, {:.5}, ", 0.005 * (4 * k + j) as f64, wave(4 * k + j)))
+            .collect()
+    };
+    let rows: String = (0..200).map(|k| row(k).trim_end_matches(", ").to_owned() + "\n").collect();
+    refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time to a row");
 }

@@ -96,6 +96,7 @@ fn read_table(
     }
     let (names, table) =
         without_index(&mut record, named.map(|(_, names)| names), table, names_line, first);
+    let index_columns = width - table.len();
     let width = table.len();
     let line = names_line.unwrap_or(first);
     let speaks = |name: &Name| name.holds == Holds::Motion(Quantity::Acceleration);
@@ -116,7 +117,7 @@ fn read_table(
     let (time_step, names, columns) = if let Some(factor) = time {
         let (names, mut table) = (without_first(names), table);
         let time = scaled(&table.remove(0), factor);
-        let resolution = factor * shape::time_resolution(source, first, end);
+        let resolution = factor * shape::time_resolution(source, first, end, index_columns);
         if let Some(row) = shape::repeated_time(&time, resolution) {
             return Err(source.damaged(
                 first + row,
@@ -291,6 +292,15 @@ fn accelerations(
                 "columns of acceleration alone, or names above the columns",
                 format!("unnamed columns of which one is the integral of another ({} of {})", integral + 1, of + 1),
                 "name the columns in a line above them, such as \"time (s), acceleration (g), velocity (cm/s)\"",
+            ));
+        }
+        let times = |column: &Vec<f64>| shape::is_time(column) && shape::is_even(column);
+        if names.is_none() && table.len() > 1 && table.iter().any(times) {
+            return Err(source.damaged(
+                line,
+                "one time to a row",
+                "a further unnamed column whose values rise evenly, as times do",
+                "write one pair of time and acceleration to a row, or name the columns in a line above them",
             ));
         }
         if names.is_none() && shape::is_one_sided(&table) {

@@ -51,11 +51,12 @@ pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     (1..column.len()).find(|&row| column[row] == column[row - 1])
 }
 
-/// Returns the coarsest resolution of the printed times: one unit of the last digit.
-pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize) -> f64 {
+/// Returns the coarsest resolution of the times printed in a column: one unit of the last digit.
+pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize, column: usize) -> f64 {
     let resolution = |line: usize| {
         let text = latin1(source.raw(line));
-        let word = text.split([' ', '\t', ',', ';']).find(|word| !word.is_empty()).unwrap_or("");
+        let mut words = text.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty());
+        let word = words.nth(column).unwrap_or("");
         crate::format::source::resolution(word)
     };
     (first..end.min(first + ROWS)).map(resolution).reduce(f64::min).unwrap_or(1e-6)
