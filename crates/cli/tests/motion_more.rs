@@ -290,3 +290,20 @@ fn matching_and_processing_are_drawn_beside_what_they_start_from() {
         barrelstack(["motion", "process", text(&first), "-o", "x.txt", "--figure", text(&page)]);
     assert!(stderr(&again).contains("is there already"), "{}", stderr(&again));
 }
+
+#[test]
+fn a_damaged_stationxml_beside_a_record_is_named_with_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../motion/tests/data");
+    let file = folder.path().join("made.mseed");
+    fs::copy(data.join("miniseed/steim2.mseed"), &file).unwrap();
+    let alone = refused(&["info", text(&file)]);
+    assert!(alone.contains("expected a sensitivity"), "{alone}");
+    // A catalog of events does not concern it.
+    fs::write(folder.path().join("event.xml"), "<q:quakeml xmlns:q=\"q\"></q:quakeml>").unwrap();
+    assert_eq!(refused(&["info", text(&file)]), alone);
+    fs::write(folder.path().join("made.xml"), "<FDSNStationXML><Network code=\"XX\">").unwrap();
+    let said = refused(&["info", text(&file)]);
+    assert!(said.contains("made.xml") && said.contains("nothing else beside it"), "{said}");
+    assert!(said.contains("expected a sensitivity"), "{said}");
+}

@@ -195,12 +195,17 @@ impl Input {
         }
         let beside = beside(Path::new(file));
         let mut more = options.clone();
-        let mut used = Vec::new();
+        let (mut used, mut damaged) = (Vec::new(), None);
         for path in &beside {
-            // A file that is not StationXML does not concern this record.
-            let Ok(found) = instruments_of_file(path) else { continue };
-            more.instruments.extend(found);
-            used.push(path.display().to_string());
+            match read_station_xml(path) {
+                // A catalog of events, or a station without responses, does not concern this record.
+                Ok(found) if found.is_empty() => {}
+                Ok(found) => {
+                    more.instruments.extend(found);
+                    used.push(path.display().to_string());
+                }
+                Err(error) => damaged = damaged.or(Some(error)),
+            }
         }
         if more.instruments.len() > options.instruments.len() {
             let mut record = read_file(file, &more).map_err(with_option)?;
@@ -211,7 +216,11 @@ impl Input {
             record.notes.push(format!("sensitivities from {of}, {lie} beside"));
             return Ok(record);
         }
-        first.map_err(with_option)
+        first.map_err(|error| match damaged {
+            Some(why) => with_option(error)
+                .context(format!("{why:#}; nothing else beside it has a sensitivity")),
+            None => with_option(error),
+        })
     }
 
     /// Reads all files as one record.

@@ -246,6 +246,7 @@ fn step(text: &str) -> Option<f64> {
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
     let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
+    let plain = text.trim_start_matches(['#', '%', '!', '/', ' ']);
     let by_key = SAMPLING_KEYS.iter().find_map(|key| {
         let value = value_behind(text, key)?;
         let unit = value.in_parentheses.unwrap_or(value.behind);
@@ -253,6 +254,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
         match (time_factor(unit), unit) {
             (Some(factor), _) => size(number * factor),
             (None, "hz" | "sps") => rate(number),
+            // At the beginning of a line a rate is that of the samples, before something else that of a line or a drum.
+            (None, "") if *key == "rate" && plain.starts_with(key) => rate(number),
             // A bare number may be something else; "delta" is a distance in degrees as well.
             (None, "") if BARE.contains(key) => rate(number)
                 .filter(|_| *key != "delta")
@@ -261,7 +264,6 @@ fn unnamed_step(text: &str) -> Option<f64> {
             _ => None,
         }
     });
-    let plain = text.trim_start_matches(['#', '%', '!', '/', ' ']);
     let alone = || rate(plain.strip_suffix("hz")?.trim().parse().ok()?);
     let beside = || {
         BESIDE_STEPS.iter().find(|word| text.contains(**word))?;
