@@ -6,9 +6,11 @@
 
 mod collection;
 mod column_headers;
+mod column_statements;
 mod columns;
 mod consistency;
 mod corners;
+mod damaged_files;
 mod formats;
 mod fuzz;
 mod fuzz_readers;
