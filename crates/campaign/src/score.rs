@@ -35,8 +35,8 @@ const LEVEL: f64 = 0.95;
 pub enum Capacity {
     /// From the lognormal curve, with its 95 % interval where the records determine one.
     Fitted(f64, Option<Interval>),
-    /// Between the highest level at which none collapsed and the lowest at which some did, where at most one level has
-    /// some of each, so that there is no curve; the lower one counts.
+    /// Between the highest level at which no more than one in ten collapsed and the lowest at which more did, where at
+    /// most one level has some of each, so that there is no curve; the lower one counts.
     Between(f64, f64),
     /// Above the highest level.
     Above(f64),
@@ -52,7 +52,9 @@ impl Capacity {
             Ok(fit) => fit,
             Err(FitError::NothingFailed { .. }) => return Ok(Self::Above(highest)),
             Err(FitError::EverythingFailed { .. }) => return Ok(Self::Below(lowest)),
-            Err(FitError::Separated { .. }) => return Ok(Self::between(&curve.stripes)),
+            Err(FitError::Separated { .. }) => {
+                return Ok(Self::between(&curve.stripes, protocol.chance));
+            }
             Err(other) => return Err(*other),
         };
         let at = fit.curve.intensity(protocol.chance);
@@ -69,16 +71,13 @@ impl Capacity {
         })
     }
 
-    /// Returns the levels between which collapses begin.
-    fn between(stripes: &[Stripe]) -> Self {
-        let levels = |collapsed: bool| {
-            let of = stripes.iter().filter(move |stripe| (stripe.failures > 0) == collapsed);
-            of.map(|stripe| stripe.intensity)
-        };
-        let lowest = levels(true).fold(f64::INFINITY, f64::min);
-        match levels(false).filter(|level| *level < lowest).reduce(f64::max) {
-            Some(highest) => Self::Between(highest, lowest),
-            None => Self::Below(lowest),
+    /// Returns the levels (m/s) between which the share that collapsed exceeds a chance, of stripes in ascending order.
+    fn between(stripes: &[Stripe], chance: f64) -> Self {
+        let above = stripes.partition_point(|stripe| stripe.fraction() <= chance);
+        match (stripes[..above].last(), stripes.get(above)) {
+            (Some(low), Some(high)) => Self::Between(low.intensity, high.intensity),
+            (Some(highest), None) => Self::Above(highest.intensity),
+            (None, lowest) => Self::Below(lowest.map_or(0.0, |stripe| stripe.intensity)),
         }
     }
 
@@ -269,15 +268,17 @@ mod tests {
     fn between(failures: [u32; 4]) -> Capacity {
         let level = |(at, failures)| Stripe { intensity: at, cases: 24, failures };
         let stripes = [0.3, 0.6, 0.9, 1.35].into_iter().zip(failures).map(level);
-        Capacity::between(&stripes.collect::<Vec<_>>())
+        Capacity::between(&stripes.collect::<Vec<_>>(), 0.1)
     }
 
     #[test]
-    fn without_a_curve_what_counts_is_the_highest_level_at_which_all_stood() {
+    fn without_a_curve_the_highest_level_counts_at_which_nine_in_ten_stood() {
         assert_eq!(between([0, 0, 0, 8]), Capacity::Between(0.9, 1.35));
         assert_eq!(between([0, 0, 8, 24]), Capacity::Between(0.6, 0.9));
         assert_eq!(between([0, 0, 24, 24]), Capacity::Between(0.6, 0.9));
         assert_eq!(between([8, 24, 24, 24]), Capacity::Below(0.3));
+        assert_eq!(between([2, 24, 24, 24]), Capacity::Between(0.3, 0.6));
+        assert_eq!(between([0, 0, 0, 1]), Capacity::Above(1.35));
         assert_eq!(between([0, 0, 0, 8]).velocity(), 0.9);
     }
 }

@@ -39,7 +39,7 @@ described! {
         pub direction: &'static str ["transverse", "longitudinal"] = row.0.view.name(),
         /// The velocity at which the chance is reached.
         pub velocity: f64 as "m/s" = row.0.capacity.velocity(),
-        /// Source: a fitted curve, the highest level at which none collapsed, or beyond all levels.
+        /// Source: a fitted curve, the highest level at which no more than one in ten collapsed, or beyond all levels.
         pub found: &'static str ["curve", "between-levels", "above-all-levels", "below-all-levels"] =
             match row.0.capacity {
                 Capacity::Fitted(..) => "curve",

@@ -65,14 +65,11 @@ fn headline(sheet: &Sheet) -> String {
     let stacks = format!("stacks of {} levels on {}", sheet.protocol.levels, scored(sheet));
     let direction = weakest.view.words();
     match weakest.capacity {
-        Capacity::Fitted(..) => format!(
+        Capacity::Fitted(..) | Capacity::Between(..) => format!(
             "RockScore {score}: shaken {direction} to {score} cm/s, nine in ten {stacks} stand."
         ),
-        Capacity::Between(..) => {
-            format!("RockScore {score}: shaken {direction} to {score} cm/s, all {stacks} stand.")
-        }
         Capacity::Above(_) => format!(
-            "RockScore {score} at least: nothing in the protocol is stronger than what {stacks} bear."
+            "RockScore {score} at least: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
             "RockScore 0: of {stacks} more than one in ten collapses when shaken {direction} to {} cm/s, the weakest \
@@ -97,7 +94,7 @@ fn sentences(sheet: &Sheet) -> Vec<String> {
 fn bears(capacity: Capacity) -> String {
     match capacity {
         Capacity::Fitted(at, _) => format!("{} cm/s", shown(at)),
-        Capacity::Between(above, below) => format!("{}–{} cm/s", shown(above), shown(below)),
+        Capacity::Between(above, below) => format!("{} to {} cm/s", shown(above), shown(below)),
         Capacity::Above(highest) => format!("above {} cm/s", shown(highest)),
         Capacity::Below(lowest) => format!("below {} cm/s", shown(lowest)),
     }
@@ -151,7 +148,7 @@ fn chart(sheet: &Sheet) -> Figure {
 }
 
 fn inputs(sheet: &Sheet) -> Table {
-    let settings = sheet.scenario.stated_settings().into_iter();
+    let settings = sheet.scenario.settings().into_iter();
     Table::of(
         "Inputs that differ from their defaults. Quantities are in SI units.",
         settings.filter(|setting| setting.source == Source::Given),
