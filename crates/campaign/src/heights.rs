@@ -24,7 +24,7 @@ use crate::system;
 
 pub use crate::scenario::View;
 pub use json::HeightsDocument;
-pub use plan::{LARGEST, SMALLEST, VELOCITIES};
+pub use plan::{HIGHEST, LOWEST, VELOCITIES};
 pub(crate) use plan::{quoted, synthetic};
 
 /// Request for a study of heights.
@@ -40,7 +40,7 @@ pub struct Request {
     pub synthetic: u32,
     /// Seed of everything that is drawn.
     pub seed: u32,
-    /// Levels of the highest stacks, from [`SMALLEST`] to [`LARGEST`].
+    /// Levels of the highest stacks, from [`LOWEST`] to [`HIGHEST`].
     pub highest: u32,
 }
 
@@ -52,7 +52,7 @@ impl Default for Request {
             records: Vec::new(),
             synthetic: 22,
             seed: 1,
-            highest: LARGEST,
+            highest: HIGHEST,
         }
     }
 }
@@ -60,7 +60,7 @@ impl Default for Request {
 impl Request {
     /// Returns the levels of the stacks, from two on.
     pub fn heights(&self) -> impl Iterator<Item = u32> + use<> {
-        SMALLEST..=self.highest
+        LOWEST..=self.highest
     }
 }
 
@@ -181,7 +181,7 @@ pub enum HeightsError {
     #[error("there is no barrel `{0}`; those are {1}")]
     Barrel(String, String),
     /// The highest stack has too few levels, or too many.
-    #[error("the highest stack cannot have {0} levels; state {SMALLEST} to {LARGEST}")]
+    #[error("the highest stack cannot have {0} levels; state {LOWEST} to {HIGHEST}")]
     Levels(u32),
     /// A study cannot be run.
     #[error(transparent)]
@@ -206,7 +206,7 @@ pub fn heights(
     options: &RunOptions,
     report: &(dyn Fn(u64, u64) -> ControlFlow<()> + Sync),
 ) -> Result<Heights, HeightsError> {
-    if !(SMALLEST..=LARGEST).contains(&request.highest) {
+    if !(LOWEST..=HIGHEST).contains(&request.highest) {
         return Err(HeightsError::Levels(request.highest));
     }
     let mut studies: Vec<(View, bool, Study)> = Vec::new();

@@ -8,13 +8,15 @@ use super::{AtLevel, Heights};
 use crate::decision::percent;
 use crate::scenario::View;
 
-/// Levels of the lowest stacks that are set beside what was found.
-const FOUND: u32 = 4;
+/// Levels of the lowest stacks that are compared with the observations.
+const LOWEST_OBSERVED: u32 = 4;
 
 /// Compares the results with observations at Napa.
 pub(super) fn napa(all: &Heights) -> Vec<Block> {
-    let beside = (all.request.highest >= FOUND).then(|| Block::Table(beside_the_field(all)));
-    let mut blocks = Vec::from_iter(beside);
+    let mut blocks = Vec::new();
+    if all.request.highest >= LOWEST_OBSERVED {
+        blocks.push(Block::Table(observations(all)));
+    }
     blocks.push(Block::Table(recorded(all)));
     blocks.push(Block::List(vec![
         "In the field: peak accelerations above 0.5 g and velocities above 50 cm/s near Napa (USGS 2015); half of the \
@@ -31,12 +33,12 @@ pub(super) fn napa(all: &Heights) -> Vec<Block> {
     blocks
 }
 
-/// Tabulates shares of high stacks beside those of Napa.
-fn beside_the_field(all: &Heights) -> Table {
+/// Tabulates shares of high stacks beside those observed at Napa.
+fn observations(all: &Heights) -> Table {
     let mut table = Table::new(
         format!(
             "Stacks of {}: ours at the strength of shaking of Napa, and what was found there.",
-            span(FOUND, all.request.highest)
+            span(LOWEST_OBSERVED, all.request.highest)
         ),
         &[("", ""), ("ours", ""), ("found at Napa", "")],
     );
@@ -45,7 +47,7 @@ fn beside_the_field(all: &Heights) -> Table {
             .into_iter()
             .filter(|velocity| (0.4..=0.75).contains(velocity))
             .flat_map(|velocity| {
-                let high = all.heights.iter().filter(|height| height.levels >= FOUND);
+                let high = all.heights.iter().filter(|height| height.levels >= LOWEST_OBSERVED);
                 high.filter_map(move |height| height.at(velocity))
             })
             .map(|at| of(&at))

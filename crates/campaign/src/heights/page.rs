@@ -5,7 +5,7 @@ use barrelstack_report::{
     Axis, Block, Cell, Document, Figure, Plot, Rating, Table, Verdict, significant,
 };
 
-use super::plan::{LARGEST, SMALLEST, VELOCITIES};
+use super::plan::{LOWEST, VELOCITIES};
 use super::{AtLevel, Height, Heights, field};
 use crate::decision::{
     LimitCurve, chance_axis, fallen_at_rest, heading, left_out, percent, points, range, refusal,
@@ -148,7 +148,7 @@ fn headline(all: &Heights) -> String {
 /// Names the directions in which two levels are not low in risk at a level of PGV (m/s): ", along the barrels".
 fn weaker(all: &Heights, velocity: f64) -> String {
     let low = |view: &View| {
-        let at = all.of(SMALLEST, *view).and_then(|height| height.at(velocity));
+        let at = all.of(LOWEST, *view).and_then(|height| height.at(velocity));
         at.is_none_or(|at| rating(&at) == Rating::Good)
     };
     let not: Vec<&str> = View::ALL.into_iter().filter(|view| !low(view)).map(View::words).collect();
@@ -178,7 +178,7 @@ fn bound(high: f64) -> String {
 fn sentences(all: &Heights) -> Vec<String> {
     let mut said = vec![format!(
         "Stacks of {} on {} racks were shaken {} times, across and along the barrels, by {} motions.",
-        span(SMALLEST, all.request.highest),
+        span(LOWEST, all.request.highest),
         all.request.rack,
         all.runs,
         all.motions
@@ -341,8 +341,9 @@ fn static_margins(all: &Heights) -> Table {
     )
 }
 
-fn level_axis() -> Axis {
-    Axis { range: Some([1.6, f64::from(LARGEST) + 0.4]), ..Axis::new("levels", "") }
+fn level_axis(all: &Heights) -> Axis {
+    let range = [f64::from(LOWEST) - 0.4, f64::from(all.request.highest) + 0.4];
+    Axis { range: Some(range), ..Axis::new("levels", "") }
 }
 
 /// Plots the probability against height at three levels of shaking, with intervals.
@@ -367,7 +368,12 @@ fn chart(all: &Heights) -> Figure {
         "height-chart",
         "Chance of collapse against height in the weaker direction, at three strengths of shaking. Each end of an upright bar \
          holds with 95 % confidence.",
-        Plot { x: level_axis(), y: chance_axis("chance of collapse"), series, ..Plot::default() },
+        Plot {
+            x: level_axis(all),
+            y: chance_axis("chance of collapse"),
+            series,
+            ..Plot::default()
+        },
     )
 }
 
@@ -399,7 +405,7 @@ fn medians(all: &Heights) -> Figure {
         "Peak ground velocity at which half of the stacks collapse, by the fitted curves, with 95 % intervals. A height \
          without a dot has no curve: the table says why.",
         Plot {
-            x: level_axis(),
+            x: level_axis(all),
             y: Axis::new("median PGV of collapse", "cm/s"),
             series,
             ..Plot::default()

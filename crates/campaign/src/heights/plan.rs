@@ -9,9 +9,9 @@ use crate::study::StudyError;
 use crate::unknown::factors;
 
 /// Levels of the lowest stacks.
-pub const SMALLEST: u32 = 2;
+pub const LOWEST: u32 = 2;
 /// Levels of the highest stacks that may be requested.
-pub const LARGEST: u32 = 6;
+pub const HIGHEST: u32 = 6;
 
 /// Levels of peak ground velocity (m/s) to which every motion is scaled.
 pub const VELOCITIES: [f64; 6] = [0.12, 0.24, 0.36, 0.50, 0.70, 1.00];

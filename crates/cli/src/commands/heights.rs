@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use barrelstack_campaign::heights::{
-    Heights, HeightsError, LARGEST, Request, SMALLEST, VELOCITIES, View, heights,
+    HIGHEST, Heights, HeightsError, LOWEST, Request, VELOCITIES, View, heights,
 };
 use barrelstack_campaign::study::StudyError;
 
@@ -21,7 +21,7 @@ pub(crate) struct HeightsArgs {
     #[arg(long, value_name = "NAME", default_value = "bordeaux-225")]
     barrel: String,
     /// Levels of the highest stack.
-    #[arg(long, value_name = "LEVELS", default_value_t = LARGEST, value_parser = clap::value_parser!(u32).range(i64::from(SMALLEST)..=i64::from(LARGEST)))]
+    #[arg(long, value_name = "LEVELS", default_value_t = HIGHEST, value_parser = clap::value_parser!(u32).range(i64::from(LOWEST)..=i64::from(HIGHEST)))]
     highest: u32,
     /// File of a further motion, such as that of your own site; may be repeated.
     #[arg(long, value_name = "FILE")]
