@@ -260,6 +260,13 @@ impl Scenario {
     }
 }
 
+impl Run {
+    /// Returns the time (s) of the motion that is left where `run.duration` ended the run; `None` where none is.
+    pub fn cut(&self) -> Option<f64> {
+        verdict::cut(self.ending, self.ground.end(), self.end_time)
+    }
+}
+
 /// Judges a run in a plane that ended at a time (s), with warnings about its end.
 pub(crate) fn conclude(
     assembly: &Assembly,

@@ -71,7 +71,7 @@ const DIGITS: usize = 6;
 /// Tabulates the stated inputs, and, collapsed, all values.
 pub(super) fn inputs(run: &Run) -> Vec<Block> {
     let absent = run.stated.stack().map(|stack| stack.devices.absent()).unwrap_or_default();
-    let mut settings = run.stated.stated_settings();
+    let mut settings = run.stated.settings();
     settings.retain(|setting| {
         let inside = setting.path.strip_prefix("stack.").and_then(|path| path.split('.').next());
         setting.source == Source::Given || inside.is_none_or(|table| !absent.contains(&table))
@@ -120,7 +120,7 @@ mod tests {
         let text = "schema = 1\n[stack]\nlevels = 2\ncolumns = 4\n[motion]\nbundled = \"napa-college-2014\"\n";
         let change = "interface.barrel-rack.stiffness=9 MN/m".to_owned();
         let scenario = Scenario::parse("two.toml", text, &[change]).unwrap();
-        let settings = scenario.stated_settings();
+        let settings = scenario.settings();
         let given = settings.iter().filter(|one| one.source == Source::Given);
         let paths: Vec<&str> = given.map(|one| one.path.as_str()).collect();
         let written =

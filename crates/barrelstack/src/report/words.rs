@@ -6,11 +6,10 @@ use barrelstack_report::{capital, significant};
 use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
-use crate::run::{CUT, Run};
+use crate::run::Run;
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
-use crate::watch::Ending;
 
 /// Returns the answer in one sentence: of all variants, where they were run.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
@@ -25,7 +24,7 @@ pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
     match &run.outcome {
         Outcome::Stable => {
-            let stands = cut(run, summary).map_or_else(
+            let stands = run.cut().map_or_else(
                 || "The stack stands".to_owned(),
                 |left| {
                     format!(
@@ -59,13 +58,6 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
             format!("{who}: the stack gives way after {time:.1} s.")
         }
     }
-}
-
-/// Returns the time (s) of the motion that is left at the end of a run; `None` where none is.
-fn cut(run: &Run, summary: &Summary) -> Option<f64> {
-    let motion = summary.motion.as_ref()?;
-    let left = motion.duration - run.end_time;
-    (run.ending == Ending::Duration && left > CUT).then_some(left)
 }
 
 /// Returns the largest utilization of staves until the first loss of seat; `None` up to 100 %.
@@ -167,7 +159,7 @@ pub fn fine(run: &Run, summary: &Summary) -> Vec<String> {
         view.map_or_else(|| "The".to_owned(), |view| format!("{} the", capital(view.words())));
     let strength = |motion: &MotionSummary| {
         // A run that ends before its motion may not have met the peaks.
-        let whole = cut(run, summary).map_or_else(String::new, |_| {
+        let whole = run.cut().map_or_else(String::new, |_| {
             format!(
                 " in its {:.1} s, of which the run takes {:.1} s",
                 motion.duration, run.end_time

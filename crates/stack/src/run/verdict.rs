@@ -99,6 +99,12 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
+/// Returns the time (s) of the motion that is left where the stated duration ended a run; `None` where none is.
+pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
+    let left = motion_end - time;
+    (ending == Ending::Duration && left > CUT).then_some(left)
+}
+
 /// Returns a warning about an end that leaves the outcome open.
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
@@ -106,7 +112,9 @@ fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64)
             "the run was stopped at {time:.3} s, before its end: its numbers hold until then, and it has no outcome"
         )),
         // A stack that stands in the middle of a motion has not survived it.
-        Ending::Duration if *outcome == Outcome::Stable && motion_end - time > CUT => {
+        Ending::Duration
+            if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
+        {
             Some(format!(
                 "the run ends at {time:.1} s, the motion at {motion_end:.1} s: what the rest of it does is not \
                  known; leave out run.duration to see all of it"

@@ -255,14 +255,8 @@ impl Scenario {
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
         settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));
-        settings
-    }
-
-    /// Returns every value as [`Scenario::settings`]; of those whose default is derived, the ones that were written are
-    /// given.
-    pub fn stated_settings(&self) -> Vec<Setting> {
-        let mut settings = self.settings();
         for setting in &mut settings {
+            // Of a value with a derived default only the file can say whether it was given.
             if matches!(setting.source, Source::Derived(_)) && self.node(&setting.path).is_some() {
                 setting.source = Source::Given;
             }
