@@ -29,24 +29,22 @@ pub struct Side {
     pub run: Run,
     /// Its summary.
     pub summary: Summary,
-    /// Statistics of the variants in the other plane, where the scenario has both.
-    pub other: Option<Spread>,
-    /// The stack as it is shown, in the other plane, where the scenario has both.
-    pub elsewhere: Option<Elsewhere>,
+    /// Results in the other plane, where the scenario has both.
+    pub other: Option<OtherPlane>,
     /// For each plane, the shown one first, `true` for every variant that collapses, by its number; `None` for variants
     /// without a verdict.
     pub collapsed: Vec<(Option<View>, Vec<Option<bool>>)>,
 }
 
-/// Result of a run in the plane that is not shown.
+/// Results of a stack in the plane that is not shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Elsewhere {
+pub struct OtherPlane {
     /// The plane.
     pub view: View,
-    /// The outcome.
+    /// Outcome of the run with the number of the one that is shown.
     pub outcome: Outcome,
-    /// Its name in documents for programs.
-    pub kind: &'static str,
+    /// Statistics of the variants, where there are any.
+    pub spread: Option<Spread>,
 }
 
 /// Makes all answers show the same variant, under the same component of their motion: the medoid over all of them.
@@ -95,12 +93,11 @@ pub fn sides(answers: Vec<(String, Answer)>) -> Vec<Side> {
         };
         let collapsed = std::iter::once(&shown).chain(&other).filter_map(collapsed).collect();
         let summary = Summary { other_plane: None, ..shown.summary };
-        let elsewhere = other.as_ref().and_then(|other| {
-            let (outcome, kind) = (other.run.outcome.clone(), other.summary.outcome.kind);
-            Some(Elsewhere { view: other.run.assembly.view?, outcome, kind })
+        let other = other.and_then(|Shown { run, summary, .. }| {
+            let (outcome, spread) = (run.outcome, summary.ensemble);
+            Some(OtherPlane { view: run.assembly.view?, outcome, spread })
         });
-        let other = other.and_then(|other| other.summary.ensemble);
-        Side { name, run: shown.run, summary, other, elsewhere, collapsed }
+        Side { name, run: shown.run, summary, other, collapsed }
     };
     answers.into_iter().map(side).collect()
 }
@@ -175,11 +172,12 @@ described! {
         /// Its summary.
         pub summary: Summary = side.summary.clone(),
         /// Statistics of its variants in the other plane; null where it has one plane.
-        pub ensemble_of_other_plane: Option<Spread> = side.other.clone(),
+        pub ensemble_of_other_plane: Option<Spread> =
+            side.other.as_ref().and_then(|other| other.spread.clone()),
         /// What becomes of the run that is shown in the other plane; null where it has one plane.
         pub outcome_of_other_plane: Option<&'static str>
             ["stable", "collapse", "not-judged", "interrupted", "invalid"] =
-            side.elsewhere.as_ref().map(|elsewhere| elsewhere.kind),
+            side.other.as_ref().map(|other| other.outcome.kind()),
     }
 
     /// One input that is not the same in all runs.

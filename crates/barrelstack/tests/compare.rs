@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use barrelstack::compare::{self, CompareError, Elsewhere, Side, differences};
+use barrelstack::compare::{self, CompareError, OtherPlane, Side, differences};
 use barrelstack::outcome::Outcome;
 use barrelstack::scenario::{Source, View};
 use barrelstack::variants::{RunChoice, answer};
@@ -19,7 +19,7 @@ fn scenario(name: &str, changes: &[&str]) -> Scenario {
 fn side(name: &str, scenario: &Scenario) -> Side {
     let run = scenario.run().unwrap();
     let summary = Summary::of(&run, None);
-    Side { name: name.into(), run, summary, other: None, elsewhere: None, collapsed: Vec::new() }
+    Side { name: name.into(), run, summary, other: None, collapsed: Vec::new() }
 }
 
 /// Returns the rows of the table under a heading, as text.
@@ -264,33 +264,37 @@ fn without_variants_both_planes_are_judged_and_named() {
         ("weak".to_owned(), answered(weak)),
         ("strong".to_owned(), answered(strong)),
     ]);
-    let elsewhere = sides.iter().map(|side| side.elsewhere.as_ref().unwrap());
-    let [weak, strong] = [0, 1].map(|at| elsewhere.clone().nth(at).unwrap());
-    assert_eq!((&sides[0].run.outcome, &weak.outcome), (&Outcome::Stable, &Outcome::Stable));
-    let shown = (sides[1].run.assembly.view.unwrap(), &sides[1].run.outcome);
-    let fallen: Vec<&str> = [shown, (strong.view, &strong.outcome)]
-        .into_iter()
-        .filter(|(_, outcome)| outcome.is_collapse())
-        .map(|(view, _)| view.words())
-        .collect();
+    let outcomes = |side: &Side| {
+        let other = side.other.as_ref().unwrap();
+        let shown = (side.run.assembly.view.unwrap(), side.run.outcome.clone());
+        [shown, (other.view, other.outcome.clone())]
+    };
+    assert!(outcomes(&sides[0]).iter().all(|(_, outcome)| *outcome == Outcome::Stable));
+    let strong = outcomes(&sides[1]);
+    let fallen = strong.iter().filter(|(_, outcome)| outcome.is_collapse());
+    let fallen: Vec<&str> = fallen.map(|(view, _)| view.words()).collect();
     assert!(!fallen.is_empty());
-    let said = compare::document(&sides).verdict.headline;
-    assert_eq!(said, format!("Stands: weak. Falls: strong ({}).", listed(fallen)));
+    let expected = format!(
+        "Stands: weak. Falls: strong ({}). Runs end before their motion does: what stands until then may fall later.",
+        listed(fallen)
+    );
+    assert_eq!(compare::document(&sides).verdict.headline, expected);
 }
 
 #[test]
 fn a_stack_that_falls_in_the_plane_that_is_not_shown_falls() {
+    let cut = " Runs end before their motion does: what stands until then may fall later.";
     let mut sides = vec![
         side("one", &scenario("candia-8-barrels", &["run.duration=0.2 s"])),
         side("other", &scenario("candia-8-barrels", &["run.duration=0.3 s"])),
     ];
-    assert_eq!(compare::document(&sides).verdict.headline, "Both stand: one and other.");
-    let outcome = scenario("candia-8-barrels", &["run.stop_after_collapse=0.1 s"]).run().unwrap();
-    assert!(outcome.outcome.is_collapse());
-    let kind = outcome.outcome.kind();
-    let view = View::Longitudinal;
-    sides[1].elsewhere = Some(Elsewhere { view, outcome: outcome.outcome, kind });
-    let page = compare::document(&sides);
-    assert_eq!(page.verdict.headline, "Stands: one. Falls: other (along the barrels).");
-    assert!(markdown(&page, "figures").text.contains("outcome in the other plane"));
+    let headline = |sides: &[Side]| compare::document(sides).verdict.headline;
+    assert_eq!(headline(&sides), format!("Both stand: one and other.{cut}"));
+    let fallen = scenario("candia-8-barrels", &["run.stop_after_collapse=0.1 s"]).run().unwrap();
+    let (view, outcome, spread) = (View::Longitudinal, fallen.outcome, None);
+    assert!(outcome.is_collapse());
+    sides[1].other = Some(OtherPlane { view, outcome, spread });
+    assert_eq!(headline(&sides), format!("Stands: one. Falls: other (along the barrels).{cut}"));
+    let page = markdown(&compare::document(&sides), "figures").text;
+    assert!(page.contains("outcome in the other plane"));
 }

@@ -34,8 +34,8 @@ fn found(planes: &[Plane]) -> Vec<Variants> {
     run(planes, &|_, _| ControlFlow::Continue(())).unwrap().unwrap()
 }
 
-fn answered(scenario: &Scenario, asked: RunChoice) -> Answer {
-    answer(scenario, asked, &mut |_| ControlFlow::Continue(())).unwrap()
+fn answered(scenario: &Scenario, choice: RunChoice) -> Answer {
+    answer(scenario, choice, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
 #[test]

@@ -5,7 +5,7 @@ use barrelstack_report::{
     Verdict, capital, listed, significant,
 };
 
-use super::{Difference, Elsewhere, Paired, Side, differences, letter, tables};
+use super::{Difference, OtherPlane, Paired, Side, differences, letter, tables};
 use crate::assemble::PartKind;
 use crate::outcome::Outcome;
 use crate::report;
@@ -55,8 +55,8 @@ fn fate(side: &Side) -> String {
         Outcome::Interrupted => "was stopped before its end and says nothing".into(),
         Outcome::Invalid { .. } => "broke down and says nothing".into(),
     };
-    match (&side.elsewhere, side.run.assembly.view) {
-        (Some(Elsewhere { view, outcome, .. }), Some(shown)) => format!(
+    match (&side.other, side.run.assembly.view) {
+        (Some(OtherPlane { view, outcome, .. }), Some(shown)) => format!(
             "{} {}, {} {}",
             shown.words(),
             one(&side.run.outcome),
@@ -70,14 +70,14 @@ fn fate(side: &Side) -> String {
 /// Returns the outcomes of a single run, with their planes where both are analyzed.
 fn singles(side: &Side) -> impl Iterator<Item = (Option<View>, &Outcome)> {
     let shown = std::iter::once((side.run.assembly.view, &side.run.outcome));
-    shown.chain(side.elsewhere.iter().map(|other| (Some(other.view), &other.outcome)))
+    shown.chain(side.other.iter().map(|other| (Some(other.view), &other.outcome)))
 }
 
 /// Returns the planes in which a single run collapses, where both are analyzed: " along the barrels".
 fn falls_where(side: &Side) -> String {
     let falls = singles(side).filter(|(_, outcome)| outcome.is_collapse());
     let views: Vec<&str> = falls.filter_map(|(view, _)| Some(view?.words())).collect();
-    if share(side).is_some() || side.elsewhere.is_none() || views.is_empty() {
+    if share(side).is_some() || side.other.is_none() || views.is_empty() {
         return String::new();
     }
     format!(" ({})", listed(views))
@@ -93,10 +93,16 @@ fn heading(sides: &[Side]) -> String {
     }
 }
 
+/// Returns the statistics of the variants in each plane, those of the shown one first.
+fn spreads(side: &Side) -> impl Iterator<Item = &Spread> {
+    let other = side.other.iter().filter_map(|other| other.spread.as_ref());
+    side.summary.ensemble.iter().chain(other)
+}
+
 /// Returns the statistics of the plane with the larger share of collapse; `None` for a single run.
 fn share(side: &Side) -> Option<&Spread> {
-    let all = side.summary.ensemble.iter().chain(&side.other);
-    all.filter(|spread| spread.share.is_some())
+    spreads(side)
+        .filter(|spread| spread.share.is_some())
         .reduce(|worst, one| if one.share > worst.share { one } else { worst })
 }
 
@@ -194,23 +200,21 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
         let sentence = move |pair: &Paired| {
             // Rounded, and a zero without its sign.
             let points = |share: f64| (100.0 * share).round() + 0.0;
-            let [low, high] = pair.interval.map(points);
-            let change = match points(pair.reduction) {
-                0.0 => format!(
-                    "the share of {second} is the same to a point (95 % interval of its reduction {low} to {high}"
-                ),
-                less if less > 0.0 => format!(
-                    "the share of {second} is {less} points lower (95 % interval {low} to {high}"
-                ),
-                more => format!(
-                    "the share of {second} is {} points higher (95 % interval {} to {}",
-                    -more,
-                    0.0 - high,
-                    0.0 - low
-                ),
+            let ([low, high], word) = match pair.reduction {
+                more if more < 0.0 => ([-pair.interval[1], -pair.interval[0]], "higher"),
+                _ => (pair.interval, "lower"),
             };
-            let same = first.run.stated.motion == other.run.stated.motion;
-            let motions = if same { " under the same motions" } else { ", by their numbers," };
+            let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
+            let difference = if change < 1.0 {
+                "the shares are equal to a point".to_owned()
+            } else {
+                format!("the share of {second} is {change} points {word}")
+            };
+            let motions = if one_motion([first, other]) {
+                " under the same motions"
+            } else {
+                ", by their numbers,"
+            };
             let lost = match pair.without_verdict {
                 0 => String::new(),
                 some => format!(" Of {some} more variants one of the two has no verdict."),
@@ -218,7 +222,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             let clear = if pair.is_clear() { "" } else { ", so they do not prove a difference" };
             format!(
                 "Of the same {} variants{motions}{} {} collapse in both, {} with A only and {} with \
-                 {second} only: {change}{clear}).{lost}",
+                 {second} only: {difference} (95 % interval {low} to {high}{clear}).{lost}",
                 pair.pairs(),
                 place(first, pair),
                 pair.both,
@@ -273,11 +277,22 @@ fn headline(sides: &[Side]) -> String {
     }
 }
 
+/// States that runs ended before their motion did, where a stack stood until then; empty otherwise.
+fn cut_short(sides: &[Side]) -> String {
+    let cut = |side: &Side| match share(side) {
+        Some(spread) => spread.standing_until.is_some(),
+        None => side.run.outcome == Outcome::Stable && side.run.cut().is_some(),
+    };
+    if !sides.iter().any(cut) {
+        return String::new();
+    }
+    " Runs end before their motion does: what stands until then may fall later.".to_owned()
+}
+
 /// Describes the runs whose variants fall under their own weight, before they are shaken.
 fn by_themselves(sides: &[Side]) -> String {
     let fallen = |side: &Side| {
-        let spreads = side.summary.ensemble.iter().chain(&side.other);
-        let worst = spreads.max_by_key(|spread| spread.cannot_stand)?;
+        let worst = spreads(side).max_by_key(|spread| spread.cannot_stand)?;
         let (some, all) = (worst.cannot_stand, worst.run());
         (some > 0).then(|| format!("{some} of {all} variants with {}", side.name))
     };
@@ -293,7 +308,8 @@ fn describe(at: usize, side: &Side) -> String {
     let name = format!("{}, {}", letter(at), side.name);
     let Some(spread) = share(side) else { return format!("{name}: {}.", fate(side)) };
     let shown = side.summary.ensemble.as_ref() == Some(spread);
-    let view = if shown { side.run.assembly.view } else { side.elsewhere.as_ref().map(|e| e.view) };
+    let view =
+        if shown { side.run.assembly.view } else { side.other.as_ref().map(|other| other.view) };
     let place = view.filter(|_| side.other.is_some()).map(|view| format!(" {}", view.words()));
     let place = place.unwrap_or_default();
     let [low, high] = spread.interval.map(words::percent);
@@ -359,7 +375,7 @@ fn verdict(sides: &[Side], differing: &[Difference]) -> Verdict {
          difference by many runs."
             .into()
     });
-    Verdict { headline: headline(sides), sentences, fine, ..Verdict::default() }
+    Verdict { headline: headline(sides) + &cut_short(sides), sentences, fine, ..Verdict::default() }
 }
 
 fn players(sides: &[Side]) -> Players {
@@ -389,12 +405,11 @@ fn players(sides: &[Side]) -> Players {
 }
 
 /// `true` if one motion shakes all; the length scale of a run stretches its time.
-fn one_motion(sides: &[Side]) -> bool {
-    let motion = |side: &Side| {
-        let scenario = &side.run.scenario;
-        (scenario.motion.clone(), scenario.run.similitude)
-    };
-    sides.iter().all(|side| motion(side) == motion(&sides[0]))
+fn one_motion<'a>(sides: impl IntoIterator<Item = &'a Side>) -> bool {
+    let motion = |side: &'a Side| (&side.run.scenario.motion, side.run.scenario.run.similitude);
+    let mut motions = sides.into_iter().map(motion);
+    let first = motions.next();
+    motions.all(|motion| Some(motion) == first)
 }
 
 /// Returns the motion under the stages: that of the longest run where all share it, else one of each.

@@ -38,7 +38,7 @@ pub(super) fn inputs(sides: &[Side], differing: &[Difference]) -> Table {
 /// Tabulates the inputs that are the same in all runs.
 pub(super) fn common(sides: &[Side], differing: &[Difference]) -> Table {
     let mut settings: Vec<_> =
-        sides.iter().take(1).flat_map(|one| one.run.stated.stated_settings()).collect();
+        sides.iter().take(1).flat_map(|one| one.run.stated.settings()).collect();
     settings.retain(|setting| differing.iter().all(|one| one.path != setting.path));
     report::settings_table("Inputs that all runs share.", &settings)
 }
@@ -71,14 +71,16 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
             0 => Cell::text("as stated"),
             number => Cell::text(format!("variant {number}")),
         });
-    }
-    if sides.iter().any(|side| side.other.is_some()) {
-        row("variants that collapse in the other plane", &|side| collapse(side.other.as_ref()));
+        if sides.iter().any(|side| side.other.is_some()) {
+            row("variants that collapse in the other plane", &|side| {
+                collapse(side.other.as_ref().and_then(|other| other.spread.as_ref()))
+            });
+        }
     }
     row("outcome", &|side| Cell::text(side.summary.outcome.kind));
-    if sides.iter().any(|side| side.elsewhere.is_some()) {
+    if sides.iter().any(|side| side.other.is_some()) {
         row("outcome in the other plane", &|side| {
-            Cell::maybe(side.elsewhere.as_ref().map(|elsewhere| elsewhere.kind))
+            Cell::maybe(side.other.as_ref().map(|other| other.outcome.kind()))
         });
     }
     row("mode", &|side| Cell::maybe(side.summary.outcome.mode));
@@ -97,7 +99,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Until the first loss of seat of each stack; its own report has those of the whole run beside them.",
+        "Until the first loss of seat of each stack; `barrelstack run` of one states those of the whole run beside them.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],
