@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail};
 
-use crate::steps::{build_program, program, target};
+use crate::steps::{build_program, cargo, program, target};
 
 /// What the tests need beside the package.
 const TESTS: [&str; 15] = [
@@ -29,7 +29,7 @@ const TESTS: [&str; 15] = [
 /// What some of them need that takes long to install.
 const HEAVY: [&str; 3] = ["obspy", "dask-jobqueue", "pyright"];
 
-/// Pelicun, and what `OpenQuake` needs; with all that it asks for, it has to build GDAL.
+/// Pelicun, and the packages that `OpenQuake` imports; its full list would have pip build GDAL.
 const OTHERS: [&str; 14] = [
     "alpha_shapes",
     "decorator",
@@ -95,22 +95,20 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     if what == Some("heavy") { run_others(root) } else { Ok(()) }
 }
 
-/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own: Pelicun asks for older pandas.
+/// Runs `OpenQuake` and Pelicun on exported files, from an environment of their own: Pelicun needs an older pandas.
 fn run_others(root: &Path) -> anyhow::Result<()> {
-    let python = made(&target(root).join("python-others"))?;
+    let python = environment_at(&target(root).join("python-others"))?;
     for words in [&OTHERS[..], &["--no-deps", "openquake-engine"]] {
-        let mut pip = inside(&python);
-        pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
-        checked(&mut pip, "the installation of OpenQuake and Pelicun")?;
+        checked(pip(&python).args(words), "the installation of OpenQuake and Pelicun")?;
     }
-    let mut tests = Command::new("cargo");
+    let mut tests = Command::new(cargo());
     tests.args(["test", "-p", "barrelstack-campaign", "--test", "all", "exports::"]);
     tests.args(["--", "--ignored", "--nocapture"]).current_dir(root);
     checked(tests.env("BARRELSTACK_PYTHON", python), "OpenQuake and Pelicun on exported files")
 }
 
 /// The Python of the environment in a folder, which is made if it is not there.
-fn made(folder: &Path) -> anyhow::Result<PathBuf> {
+fn environment_at(folder: &Path) -> anyhow::Result<PathBuf> {
     let bin = if cfg!(windows) { "Scripts" } else { "bin" };
     let python = folder.join(bin).join(format!("python{}", std::env::consts::EXE_SUFFIX));
     if !python.is_file() {
@@ -122,15 +120,14 @@ fn made(folder: &Path) -> anyhow::Result<PathBuf> {
 
 /// The environment with the package as it is now, kept from run to run; none without the net.
 fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
-    let python = made(&target(root).join("python"))?;
+    let python = environment_at(&target(root).join("python"))?;
     let mut needed = TESTS.to_vec();
     if heavy {
         needed.extend(HEAVY);
     }
-    let pip = |words: &[&str]| {
-        let mut pip = inside(&python);
-        pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]).args(words);
-        pip.current_dir(root).status().is_ok_and(|status| status.success())
+    let install = |words: &[&str]| {
+        let status = pip(&python).args(words).current_dir(root).status();
+        status.is_ok_and(|status| status.success())
     };
     // The net is not asked for what is there.
     let there = |name: &&&str| {
@@ -140,7 +137,7 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         run.is_ok_and(|status| status.success())
     };
     for name in needed.iter().filter(|name| !there(name)) {
-        if !pip(&[*name]) {
+        if !install(&[*name]) {
             // Tests say by themselves what they lack.
             println!("pip cannot install {name}; is there a net?");
         }
@@ -149,10 +146,17 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         return Ok(None);
     }
     // With the environment's own maturin, so that no net is asked for what is there.
-    if !pip(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
+    if !install(&["--no-build-isolation", "--no-deps", "--force-reinstall", "."]) {
         bail!("`pip install .` failed: see above");
     }
     Ok(Some(python))
+}
+
+/// The installation command of an environment.
+fn pip(python: &Path) -> Command {
+    let mut pip = inside(python);
+    pip.args(["-m", "pip", "--disable-pip-version-check", "install", "--quiet"]);
+    pip
 }
 
 /// A Python of an environment, whose programs it finds before those of others.
