@@ -1,5 +1,5 @@
 //! Guides, rods and yielding ties against closed forms, and their energy balance.
-#![allow(clippy::print_stdout, reason = "a test fails by unwrap and tells by print")]
+#![allow(clippy::print_stdout, reason = "errors are printed beside their tolerance")]
 
 use crate::common;
 

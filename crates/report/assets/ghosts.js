@@ -4,7 +4,7 @@ const MOST_INK = 0.85; // opacity where all runs have a body
 const AROUND = 60; // reach of the picture of ends beyond the stage, which moves with the ground (px)
 
 // The lines of all runs, against the ground.
-function drawWays({ context, toX, toY, paint }, { ways: [xs, zs] }, [gx, gz]) {
+function drawPaths({ context, toX, toY, paint }, { paths: [xs, zs] }, [gx, gz]) {
   context.beginPath();
   let pen = false;
   for (let k = 0; k < xs.length; k++) {

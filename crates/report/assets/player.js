@@ -5,7 +5,7 @@ function readPane(raw, dashes) {
     ["x", "z", "fx", "fz"].map((name) => [name, unpack(raw.forces[name])]));
   const times = unpack(raw.times)[0];
   const tint = raw.tint && { ...raw.tint, values: unpack(raw.tint.v) };
-  const ghosts = raw.ghosts && { ...raw.ghosts, ways: unpack(raw.ghosts.ways), ends: unpack(raw.ghosts.ends) };
+  const ghosts = raw.ghosts && { ...raw.ghosts, paths: unpack(raw.ghosts.paths), ends: unpack(raw.ghosts.ends) };
   const depth = raw.depth && { ...raw.depth, poses: raw.depth.poses && unpack(raw.depth.poses) };
   return { ...raw, dashes, depth, forces, tint, ghosts, times, count: times.length, poses: unpack(raw.poses) };
 }

@@ -116,7 +116,7 @@ function makeStage(data, canvas) {
     const tinted = stage.tint && data.tint;
     for (let body = 0; body < shapes.length; body++) drawBody(context, body, frame, view, toX, toY, tinted);
     drawTies(context, frame, time, toX, toY);
-    if (stage.ghosts && data.ghosts) drawWays(pen, data.ghosts, at);
+    if (stage.ghosts && data.ghosts) drawPaths(pen, data.ghosts, at);
     if (stage.ghosts && data.overlay) drawOverlay(pen, data.overlay);
     if (stage.traces) drawTraces(context, frame, toX, toY);
     // Names stand over arrows, and values where no name is.

@@ -205,7 +205,7 @@ fn ghosts(ghosts: &Ghosts, bodies: usize) -> Value {
     json!({
         "label": ghosts.label,
         "count": ghosts.count,
-        "ways": pack::channels(&channels, line.len(), GHOST_QUANTUM),
+        "paths": pack::channels(&channels, line.len(), GHOST_QUANTUM),
         "ends": pack::channels(&poses, ends.len(), GHOST_QUANTUM),
         "bodies": ends.iter().map(|(body, _)| body).collect::<Vec<_>>(),
     })

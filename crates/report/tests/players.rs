@@ -149,7 +149,7 @@ fn ghosts_come_back_from_the_page_within_a_centimeter() {
     let data = payload(&html(&document(vec![Block::Players(both)])));
     let ghosts = &data["players"][0]["panes"][0]["ghosts"];
     // The straight path keeps its two ends, the other its corner; each is followed by a gap.
-    assert_eq!(ghosts["ways"]["n"], 7, "{ghosts}");
+    assert_eq!(ghosts["paths"]["n"], 7, "{ghosts}");
     assert_eq!(ghosts["bodies"], serde_json::json!([1]), "a body that is not there has no end");
     assert!(data["players"][0]["panes"][1]["ghosts"].is_null());
 }

@@ -180,7 +180,7 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are those against what a body stands on, while the stack stood; ways are those at the end.",
+        "Slips are those against what a body stands on, while the stack stood; displacements are those at the end.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::text(&part.name)),

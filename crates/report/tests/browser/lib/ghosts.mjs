@@ -23,7 +23,7 @@ export async function variants(page) {
   const changed = await switched(page);
   demand(changed.every(Boolean), `the switch changes the panes ${changed}`);
   const found = await page.evaluate(() => window.barrelstack.player.panes.map(({ data }) => {
-    const { count, ways: [xs], ends, bodies } = data.ghosts;
+    const { count, paths: [xs], ends, bodies } = data.ghosts;
     const ground = data.bodies.findIndex((body) => body.role === "ground");
     const barrels = data.bodies.filter((body) => body.role === "barrel").length;
     const along = (series, at) => {
