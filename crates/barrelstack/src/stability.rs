@@ -110,7 +110,7 @@ impl StabilityTable {
     pub fn lines(&self) -> Vec<String> {
         let wide = self.rows.iter().map(|row| row.rack.len()).max().unwrap_or(0).max(4);
         let mut lines = vec![
-            self.title.clone(),
+            format!("Racks and levels in place of those of: {}", self.title),
             format!("{:wide$}  plane   levels  sinks (mm)  period (s)  falls at tilt", "rack"),
         ];
         lines.extend(self.rows.iter().map(|row| {

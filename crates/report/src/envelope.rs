@@ -155,7 +155,7 @@ impl Envelope {
     /// Draws the key of the shapes and the scale of stress: side by side on a page, one below the other on a phone.
     fn legend(&self, drawing: &mut Drawing, peak: f64, per_stress: f64, room: Room) {
         drawing.rect("dynamic", [SIDE, 8.5], [26.0, 10.0]);
-        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest during shaking");
+        drawing.text("label", [SIDE + 33.0, 18.0], Anchor::Start, "largest until a seat is lost");
         drawing.rect("static", [SIDE, 28.5], [26.0, 10.0]);
         drawing.text("label", [SIDE + 33.0, 38.0], Anchor::Start, "at rest");
         let (edge, top, anchor) = match room {

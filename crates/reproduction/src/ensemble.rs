@@ -119,7 +119,9 @@ fn table(caption: &str, members: &[(&str, &Summary)]) -> Table {
             ("drift", "%", &|(_, m)| {
                 Cell::number(m.demands.top_drift_ratio.map(|drift| 100.0 * drift), 3)
             }),
-            ("stress", "× at rest", &|(_, m)| Cell::number(m.demands.stress_amplification, 3)),
+            ("largest stress", "× at rest", &|(_, m)| {
+                Cell::number(m.demands.stress_amplification, 3)
+            }),
         ],
     )
 }

@@ -77,7 +77,7 @@ fn reasons(study: Option<&Study>, published: f64) -> String {
             strongest.join(" and ")
         )
     } else {
-        format!(" Single changes that reach it: {}.{range}", reached.join(", "))
+        format!(" Single changes that reach or pass it: {}.{range}", reached.join(", "))
     }
 }
 
@@ -381,7 +381,10 @@ fn parameters(results: &Results) -> Vec<Comparison> {
     let racks = if robust.is_empty() {
         String::new()
     } else {
-        format!(" Other racks that give the paper's numbers as well: {}.", robust.join("; "))
+        format!(
+            " With other racks this many keep the mode of the case as stated: {}.",
+            robust.join("; ")
+        )
     };
     let all = &results.ensemble;
     if !all.is_empty() {

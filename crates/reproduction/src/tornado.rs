@@ -101,7 +101,7 @@ fn table(study: &Study) -> Table {
             ("first", "", &|(.., m)| Cell::maybe(m.outcome.first.as_ref())),
             ("time", "s", &|(.., m)| Cell::number(time(m), 3)),
             ("drift", "%", &|(.., m)| Cell::number(drift(m).map(|d| 100.0 * d), 3)),
-            ("stress", "× at rest", &|(.., m)| Cell::number(stress(m), 3)),
+            ("largest stress", "× at rest", &|(.., m)| Cell::number(stress(m), 3)),
         ],
     )
 }

@@ -63,7 +63,10 @@ pub fn document(answer: &Answer) -> Document {
         )));
     }
     blocks.push(heading("In numbers"));
-    let mut numbers = Table::new("The run that is shown.", &[("", ""), ("", "")]);
+    let mut numbers = Table::new(
+        "The run that is shown; demands are those until the first loss of seat.",
+        &[("", ""), ("", "")],
+    );
     numbers
         .rows
         .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
@@ -114,8 +117,11 @@ pub fn document(answer: &Answer) -> Document {
 fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
-        "Ranges are those of 5 to 95 % of the variants. Directions are those of the first body that leaves its seat, \
-         and of the barrels that fell, from where they stood to where they lie.",
+        &format!(
+            "Ranges are those of 5 to 95 % of the variants. Directions are those of the first body that leaves its seat, \
+             and of the barrels that fell{}, from where they stood to where they were then.",
+            spread.counted("the first loss")
+        ),
         &[("", ""), ("in space", "")],
     );
     let mut row = |name: &str, value: String| {

@@ -1,10 +1,10 @@
 //! Sentences about a stack in space: those of a plane, and directions.
 
 use barrelstack::demand::DEMANDS;
-use barrelstack::outcome::Outcome;
+use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::report::{device_sentence, stopped};
 use barrelstack::scenario::View;
-use barrelstack::variants::words::{headline as of_variants, percent, tone as of_spread};
+use barrelstack::variants::words::{headline_in_space, percent, tone as of_spread};
 use barrelstack::watch::Loss;
 use barrelstack_report::{Tone, capital};
 
@@ -15,8 +15,7 @@ use crate::summary::Summary;
 /// Returns the answer in one sentence.
 pub fn headline(run: &Run, summary: &Summary) -> String {
     if let Some(spread) = &summary.ensemble {
-        // With a single spread the sentence does not name the plane.
-        return of_variants(&[(View::Transverse, spread)]);
+        return headline_in_space(spread);
     }
     let barrels = summary.outcome.barrels;
     match &run.outcome {
@@ -27,6 +26,9 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
             ),
             None => "This stack stands.".to_owned(),
         },
+        Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
+            "This stack falls under its own weight, before it is shaken.".to_owned()
+        }
         Outcome::Collapse { time, .. } => format!(
             "This stack falls: it gives way after {time:.1} s, and {} of {barrels} barrels fall.",
             run.fallen().count()
@@ -66,7 +68,7 @@ pub fn toward(heading: Heading) -> &'static str {
 pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     match loss {
         Loss::Displaced => format!("{name} leaves its cradle"),
-        Loss::Slid => format!("{name} slides off the barrels below"),
+        Loss::Slid => format!("{name} leaves the barrels below"),
         Loss::Tilted => format!("{name} tilts off its seat"),
         Loss::Dropped => format!("{name} loses its support"),
     }
@@ -87,7 +89,11 @@ pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall {} come to lie across from where they stood, {} along.",
+                "Of the barrels that fall{} by then {} lie across from where they stood, {} along.",
+                summary
+                    .ensemble
+                    .as_ref()
+                    .map_or_else(String::new, |all| all.counted("the first loss of a seat")),
                 percent(across / (across + along)),
                 percent(along / (across + along))
             ));

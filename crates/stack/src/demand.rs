@@ -37,6 +37,11 @@ pub struct Demand {
 }
 
 impl Demand {
+    /// Returns `true` if its value belongs to the end of the run, whichever span it is taken over.
+    pub fn is_of_the_end(&self) -> bool {
+        self.name == "base_slip_residual"
+    }
+
     /// Returns the value in print; `None` where it does not apply.
     pub fn shown(&self, demands: &Demands) -> Option<f64> {
         (self.get)(demands).map(|value| value * self.factor)

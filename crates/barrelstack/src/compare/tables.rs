@@ -99,7 +99,7 @@ pub(super) fn outcomes(sides: &[Side]) -> Table {
 /// Tabulates the demands on each stack until its first loss of seat.
 pub(super) fn demands(sides: &[Side]) -> Table {
     let mut table = table(
-        "Until the first loss of seat of each stack; a run of one stack by itself states those of the whole run beside them.",
+        "Until the first loss of seat of each stack, but for the slip at the end of the run; a run of one stack by itself states those of the whole run beside them.",
         &[("demand", ""), ("unit", "")],
         sides,
         &[],

@@ -251,7 +251,7 @@ fn events(run: &Run) -> Vec<Event> {
         if let Some((time, loss)) = fate.left_seat.filter(|(time, _)| !falls_with_it(*time)) {
             let text = match loss {
                 Loss::Displaced => format!("{} leaves its cradle", part.name),
-                Loss::Slid => format!("{} has slid off the barrels below", part.name),
+                Loss::Slid => format!("{} leaves the barrels below", part.name),
                 Loss::Tilted => format!("{} has tilted off its seat", part.name),
                 Loss::Dropped => format!("{} loses its support", part.name),
             };

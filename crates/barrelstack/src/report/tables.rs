@@ -19,7 +19,9 @@ pub fn demand_table(until_loss: &Demands, whole_run: &Demands) -> Table {
         }),
         &[
             ("demand", "", &|(demand, ..)| Cell::text(demand.label)),
-            ("until the loss", "", &|(demand, value, _)| Cell::Measured(*value, demand.decimals)),
+            ("until the loss", "", &|(demand, value, _)| {
+                Cell::measured((!demand.is_of_the_end()).then_some(*value), demand.decimals)
+            }),
             ("whole run", "", &|(demand, _, value)| Cell::measured(*value, demand.decimals)),
             ("unit", "", &|(demand, ..)| Cell::text(demand.shown_unit)),
         ],

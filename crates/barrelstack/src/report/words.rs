@@ -7,32 +7,41 @@ use crate::assemble::PartKind;
 use crate::ground::MotionSummary;
 use crate::outcome::{CollapseMode, Outcome};
 use crate::run::Run;
+use crate::scenario::View;
 use crate::summary::{Device, EnergyBalance, RunSummary, Summary, Unfinished};
 use crate::variants;
 use crate::verify::Verification;
 
-/// Returns the answer in one sentence: of all variants, where they were run.
+/// Returns the answer: of all variants where they were run, else of the single run, with its plane.
 pub(crate) fn headline(run: &Run, summary: &Summary) -> String {
     let spreads = summary.spreads();
-    if !spreads.is_empty() {
-        return variants::words::headline(&spreads);
+    if spreads.is_empty() {
+        return single(run, summary, run.assembly.view);
     }
-    alone(run, summary)
+    variants::words::headline(&spreads)
 }
 
-/// Describes the result of the shown run in one sentence.
+/// Describes the result of the shown run in one sentence, without its plane.
 pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
+    single(run, summary, None)
+}
+
+fn single(run: &Run, summary: &Summary, plane: Option<View>) -> String {
+    let shaken = |result: &str| match plane {
+        Some(plane) => format!("Shaken {}, {result}", plane.words()),
+        None => capital(result),
+    };
     match &run.outcome {
         Outcome::Stable => {
-            let stands = run.cut().map_or_else(
-                || "The stack stands".to_owned(),
+            let stands = shaken(&run.cut().map_or_else(
+                || "the stack stands".to_owned(),
                 |left| {
                     format!(
-                        "The stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does",
+                        "the stack stands until {:.1} s, where the run ends, {left:.1} s before the motion does",
                         run.end_time
                     )
                 },
-            );
+            ));
             match crushed(summary) {
                 Some(load) => format!(
                     "{stands}, but staves are crushed: they bear up to {load} of what they are stated to bear."
@@ -43,19 +52,25 @@ pub(crate) fn alone(run: &Run, summary: &Summary) -> String {
         Outcome::NotJudged => "The scene ran to its end.".into(),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::Invalid { .. } => "The run broke down and says nothing about the stack.".into(),
+        Outcome::Collapse { mode: CollapseMode::Gravity, .. } => {
+            let plane = plane.map_or_else(String::new, |plane| format!("{}, ", plane.words()));
+            capital(&format!("{plane}the stack falls under its own weight, before it is shaken."))
+        }
         Outcome::Collapse { time, .. } => {
             let (fallen, barrels) =
                 (summary.outcome.barrels_fallen.unwrap_or(0), summary.outcome.barrels);
             if fallen == 0 {
-                return format!("The stack comes apart after {time:.1} s, but no barrel falls.");
+                let result =
+                    format!("the stack comes apart after {time:.1} s, but no barrel falls.");
+                return shaken(&result);
             }
             let who = match fallen {
-                1 if barrels == 1 => "The barrel falls".to_owned(),
-                1 => format!("One of {barrels} barrels falls"),
-                _ if fallen == barrels => format!("All {barrels} barrels fall"),
+                1 if barrels == 1 => "the barrel falls".to_owned(),
+                1 => format!("one of {barrels} barrels falls"),
+                _ if fallen == barrels => format!("all {barrels} barrels fall"),
                 _ => format!("{fallen} of {barrels} barrels fall"),
             };
-            format!("{who}: the stack gives way after {time:.1} s.")
+            shaken(&format!("{who}: the stack gives way after {time:.1} s."))
         }
     }
 }

@@ -104,7 +104,7 @@ pub(super) fn singles(scenario: &Scenario) -> Vec<Protection> {
             source: "about US$100 for a rack of two barrels in 2009; that racks on posts cost twice as much is an \
                      assumption"
                 .to_owned(),
-            ..none(Kind::Rack, &format!("rack-{}", rack.base), &format!("racks `{}`", rack.base))
+            ..none(Kind::Rack, &format!("rack-{}", rack.base), &format!("{} racks", rack.base))
         });
     }
     let present = stack.devices.present();

@@ -126,7 +126,7 @@ fn stack(all: &Ranking) -> String {
     let stack = all.request.scenario.stack();
     stack.map_or_else(
         || "the stack".to_owned(),
-        |stack| format!("a stack of {} levels on `{}` racks", stack.levels, stack.rack.base),
+        |stack| format!("a stack of {} levels on {} racks", stack.levels, stack.rack.base),
     )
 }
 

@@ -45,7 +45,7 @@ fn scored(sheet: &Sheet) -> String {
     let Some(stack) = sheet.scenario.stack() else { return sheet.scenario.title.clone() };
     let devices: Vec<&str> = stack.devices.present().iter().map(|words| words.many).collect();
     let with = if devices.is_empty() { "" } else { " with " };
-    format!("`{}` racks{with}{}", stack.rack.base, devices.join(" and "))
+    format!("{} racks{with}{}", stack.rack.base, devices.join(" and "))
 }
 
 /// Formats a velocity (m/s) in whole cm/s.

@@ -168,12 +168,9 @@ impl Recording {
         } else {
             self.forces.start(state.time, scratch);
         }
-        if standing {
-            // Bodies that have met in this step, with zeros for the samples before.
-            let met = self.forces.joints.iter().skip(self.joints.len());
-            self.joints
-                .extend(met.map(|joint| JointForces::new(assembly, joint, self.times.len())));
-        }
+        // Bodies that have met in this step, with zeros for the samples before.
+        let met = self.forces.joints.iter().skip(self.joints.len());
+        self.joints.extend(met.map(|joint| JointForces::new(assembly, joint, self.times.len())));
         self.started = true;
         // Tolerance of rounding in the time of a step.
         let due = |taken: usize, rate: f64| state.time * rate >= taken as f64 - 1e-6;
