@@ -227,9 +227,9 @@ pub(crate) fn fine(summary: &Summary, imperfections: Option<&Imperfections>) -> 
     sentences
 }
 
-/// `true` if a stack is said to stand.
+/// Returns `true` if no more variants fall than a stack that is said to stand may have, however few were tried.
 pub(crate) fn stands(spread: &Spread) -> bool {
-    Judgment::of(spread) == Judgment::Stands
+    judged_share(spread).is_some_and(|share| share <= STANDS)
 }
 
 /// Describes the result of a stack: "falls in 97 % of variants".
