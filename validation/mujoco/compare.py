@@ -317,7 +317,7 @@ def run_file(task):
     path, settings = task
     with open(path) as file:
         case = json.load(file)
-    with open(path.parent / "motion.json") as file:
+    with open(path.parent / case["motion"]) as file:
         motion = json.load(file)
     return run(case, motion, settings)
 

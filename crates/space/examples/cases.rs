@@ -6,10 +6,13 @@
 //!
 //! The first argument is the number of cases, the second the output folder, the third a change of `demo-napa`;
 //! several are joined by `+`. The cases are the first variants of those of `evidence`, so shares can be compared.
-//! `motion.json` has the velocity of the ground; `0001.json` and so on have one case each: bodies at rest with their
-//! masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the outcome: as
-//! stated (`outcome`), and with MuJoCo-like seats (`alike`), whose friction holds without an elastic stick and whose
-//! damper acts both ways.
+//! With `grid` for the number, one variant each of stacks of two to five levels with three coefficients of friction
+//! between barrels and racks, under three factors on the motion is written: 36 cases, which differ in places and masses
+//! alone from what is stated.
+//! `motion-1.json` and the like have the velocity of the ground; `0001.json` and so on have one case each: bodies at rest
+//! with their masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the
+//! outcome: as stated (`outcome`), and with MuJoCo-like seats (`alike`), whose friction holds without an elastic stick
+//! and whose damper acts both ways, with the same restitution.
 //! All values are in SI units; rotations are quaternions `w`, `x`, `y`, `z` from the body to space.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
@@ -38,12 +41,9 @@ const COMMON: [&str; 3] =
 /// Interfaces of seats.
 const SEATS: [&str; 2] = ["barrel-rack", "rack-ground"];
 
-/// MuJoCo-like seats: a stick that yields by a hundredth of the normal spring, and half the damping of the demo in
-/// both directions, which dissipates as much per cycle as all of it on approach alone.
-const ALIKE: [&str; 5] = [
+/// MuJoCo-like seats: a stick that yields by a hundredth of the normal spring, and a damper that acts both ways.
+const ALIKE: [&str; 3] = [
     "law='kelvin-voigt'",
-    "stiffness='9.8 kN/cm'",
-    "damping='11 N s/cm'",
     "friction.tangential_stiffness_ratio=100",
     "friction.tangential_damping_ratio=20",
 ];
@@ -58,22 +58,50 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
     let mut changes: Vec<String> = COMMON.iter().map(|&change| change.to_owned()).collect();
-    changes.push(format!("imperfections.variants={count}"));
     for own in arguments {
         changes.extend(own.split('+').map(str::to_owned));
     }
-    let plane = planes(&Scenario::builtin("demo-napa", &changes)?)?.swap_remove(0);
-    for seat in SEATS {
-        changes.extend(ALIKE.iter().map(|change| format!("interface.{seat}.{change}")));
+    if count != "grid" {
+        changes.push(format!("imperfections.variants={count}"));
+        return write(folder, 1, &changes);
     }
-    let alike = planes(&Scenario::builtin("demo-napa", &changes)?)?.swap_remove(0);
+    changes.extend(["imperfections.variants=1", "imperfections.kind='hair'"].map(str::to_owned));
+    let mut number = 1;
+    for levels in 2..=5 {
+        for friction in [0.22, 0.35, 0.5] {
+            for factor in [0.8, 1.0, 1.3] {
+                let own = [
+                    format!("stack.levels={levels}"),
+                    format!("interface.barrel-rack.friction.coefficient={friction}"),
+                    format!("motion.scale.factor={factor}"),
+                ];
+                write(folder, number, &[&changes[..], &own].concat())?;
+                number += 1;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes the variants of the demo with changes as cases, numbered from the first.
+fn write(folder: &Path, first: u32, changes: &[String]) -> Result<(), Box<dyn Error>> {
+    let of = |changes: &[String]| -> Result<_, Box<dyn Error>> {
+        Ok(planes(&Scenario::builtin("demo-napa", changes)?)?.swap_remove(0))
+    };
+    let plane = of(changes)?;
+    let seats = SEATS.iter().flat_map(|seat| ALIKE.map(|own| format!("interface.{seat}.{own}")));
+    let alike = of(&changes.iter().cloned().chain(seats).collect::<Vec<_>>())?;
     let ground = Ground::of(&plane.scenario)?;
-    std::fs::write(folder.join("motion.json"), motion(&ground).to_string())?;
-    for number in plane.numbers().into_iter().filter(|number| *number > 0) {
-        let variant = plane.variant(number);
-        let mut case = case(number, &variant, &stand(&variant)?);
-        case["outcome"] = outcome(&variant, &ground)?;
-        case["alike"] = outcome(&alike.variant(number), &ground)?;
+    let name = format!("motion-{first}.json");
+    std::fs::write(folder.join(&name), motion(&ground).to_string())?;
+    for variant in plane.numbers().into_iter().filter(|number| *number > 0) {
+        let number = first + variant - 1;
+        let scenario = plane.variant(variant);
+        let mut case = case(number, &scenario, &stand(&scenario)?);
+        case["motion"] = json!(name);
+        case["changes"] = json!(changes);
+        case["outcome"] = outcome(&scenario, &ground)?;
+        case["alike"] = outcome(&alike.variant(variant), &ground)?;
         println!("{number}: {}; alike {}", case["outcome"], case["alike"]);
         std::fs::write(folder.join(format!("{number:04}.json")), format!("{case:#}"))?;
     }
