@@ -176,7 +176,7 @@ impl Table {
 
 impl Table {
     fn column(&self, name: &str) -> PyResult<&Column> {
-        let missing = || PyKeyError::new_err(name.to_owned());
+        let missing = || PyKeyError::new_err(format!("there is no column {name:?}"));
         self.columns.iter().find(|column| column.spec.name == name).ok_or_else(missing)
     }
 

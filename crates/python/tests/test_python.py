@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import pickle
 import re
 import subprocess
@@ -133,6 +134,79 @@ def test_what_the_package_refuses_is_of_one_family(work: Callable[[], object], a
         work()
     assert isinstance(caught.value, also)
     assert str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("work", "also"),
+    [
+        (lambda run: run.histories["none"], KeyError),
+        (lambda run: run.demands["none"], KeyError),
+        (lambda run: run.variants["none"], KeyError),
+        (lambda run: run.variants[3], TypeError),
+        (lambda run: run.variants.numbers("none"), KeyError),
+        (lambda run: run.variants.numbers("outcome"), TypeError),
+        (lambda run: run.contact_forces(10**9), IndexError),
+        (lambda run: run.contact_forces(-1), OverflowError),
+        (lambda run: run.contact_forces("a"), TypeError),
+        (lambda run: run.plot(only="none"), TypeError),
+        (lambda run: run.write(3), TypeError),
+        (lambda run: run.other.none, AttributeError),
+        (lambda run: Record.bundled()["none"], ValueError),
+        (lambda run: Record.bundled()["#9"], ValueError),
+        (lambda run: Record.bundled()[0], TypeError),
+        (lambda run: Record.bundled().velocity("none"), ValueError),
+        (lambda run: STATED.nothing, AttributeError),
+        (lambda run: STATED.run.nothing, AttributeError),
+        (lambda run: STATED.fields["nothing"], KeyError),
+        (lambda run: STATED.set("nothing", 3), ValueError),
+        (lambda run: STATED.help("nothing"), ValueError),
+    ],
+)
+def test_what_is_not_there_is_refused_in_the_same_family(
+    run: Run, work: Callable[[Run], object], also: type[Exception]
+) -> None:
+    with pytest.raises(barrelstack.Error) as caught:
+        work(run)
+    assert isinstance(caught.value, also)
+    assert not str(caught.value).startswith("'")
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), str(again)) == (type(caught.value), str(caught.value))
+
+
+def test_what_is_not_there_is_absent_as_in_any_mapping(run: Run) -> None:
+    assert run.histories.get("none") is None
+    assert "none" not in run.histories
+    assert "none" not in run.demands
+    assert not hasattr(STATED, "nothing")
+    assert getattr(STATED.run, "nothing", 3) == 3
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        ("report.html", lambda run, path: run.report(path)),
+        ("report.pdf", lambda run, path: run.report(path)),
+        ("table.csv", lambda run, path: run.variants.to_csv(path)),
+        ("table.parquet", lambda run, path: run.variants.to_parquet(path)),
+        ("record.txt", lambda run, path: Record.bundled().write(path)),
+        ("record.npz", lambda run, path: Record.bundled().write(path)),
+        ("summary.json", lambda run, path: run.write(path.parent, overwrite=True)),
+    ],
+)
+def test_no_writer_follows_a_link(
+    run: Run, tmp_path: Path, name: str, write: Callable[[Run, Path], object]
+) -> None:
+    kept = tmp_path / "kept"
+    kept.write_text("kept")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / name).symlink_to(kept)
+    write(run, folder / name)
+    assert kept.read_text() == "kept"
+    assert not (folder / name).is_symlink()
+    assert (folder / name).stat().st_size > 100
+    assert not list(folder.glob("*.part"))
 
 
 def test_what_a_callback_raises_is_passed_on() -> None:

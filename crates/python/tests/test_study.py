@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 from pathlib import Path
 from xml.etree import ElementTree
@@ -70,6 +71,21 @@ def test_an_incremental_analysis_has_a_curve_a_motion(folder: Path) -> None:
     for levels, demands, capacity in zip(hunts.levels, hunts.demands, hunts.capacities, strict=True):
         assert (np.diff(levels) > 0).all()
         assert np.isfinite(demands[levels < capacity]).all() or np.isnan(capacity)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
+def test_an_export_follows_no_link(folder: Path, tmp_path: Path) -> None:
+    kept = tmp_path / "kept"
+    kept.write_text("kept")
+    Study.export(folder, tmp_path / "first")
+    names = [path.name for path in (tmp_path / "first").iterdir()]
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in names:
+        (out / name).symlink_to(kept)
+    Study.export(folder, out)
+    assert kept.read_text() == "kept"
+    assert all((out / name).read_bytes() == (tmp_path / "first" / name).read_bytes() for name in names)
 
 
 def test_an_export_is_what_openquake_documents(folder: Path, tmp_path: Path) -> None:

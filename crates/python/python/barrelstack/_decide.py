@@ -194,7 +194,7 @@ class Protections(Page):
 
         Raises
         ------
-        KeyError
+        NoItemError
             When none of that name was tried.
         """
         for one in self.document["protections"]:

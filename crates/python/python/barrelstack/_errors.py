@@ -8,10 +8,13 @@
     ├── RunError        a stack that does not stand, a step that is too long
     ├── StudyError      a folder, a shard, a study without a verdict
     ├── ArgumentError   an argument of the wrong type or out of range; also a ValueError, TypeError and OverflowError
-    └── FileError       a file or folder that cannot be opened or written; also an OSError
+    ├── FileError       a file or folder that cannot be opened or written; also an OSError
+    └── NoItemError     a name or number of which a table, histories or a record hold nothing; also a KeyError and
+        │               IndexError
+        └── NoFieldError    a field that a scenario does not have; also an AttributeError
 
-Mappings raise KeyError, sequences IndexError and sections AttributeError for what they do not hold, and what a callback
-of the caller raises is passed on.
+What a callback of the caller raises is passed on, and dicts, lists and arrays that the package returns raise what they
+always raise.
 """
 
 from __future__ import annotations
@@ -29,11 +32,16 @@ __all__ = [
     "BarrelstackWarning",
     "Error",
     "FileError",
+    "NoFieldError",
+    "NoItemError",
     "RecordError",
     "RunError",
     "ScenarioError",
     "StudyError",
 ]
+
+#: Methods whose names begin with an underscore and that users call by a notation.
+GUARDED = ("__init__", "__getitem__", "__getattr__")
 
 #: The folder of the package.
 HERE = str(Path(__file__).resolve().parent) + os.sep
@@ -102,6 +110,17 @@ class MissingFileError(FileError, FileNotFoundError):
     """A file or a folder does not exist."""
 
 
+class NoItemError(Error, KeyError, IndexError):
+    """What is asked for by a name or a number is not there."""
+
+    # A KeyError shows its message as a quoted text.
+    __str__ = Exception.__str__
+
+
+class NoFieldError(NoItemError, AttributeError):
+    """A scenario has no such field."""
+
+
 class BarrelstackWarning(UserWarning):
     """A caveat for the reader of a result."""
 
@@ -120,6 +139,10 @@ def _converted(error: Exception) -> Error:
         path = None if error.filename is None else os.fsdecode(error.filename)
         kind = MissingFileError if isinstance(error, FileNotFoundError) else FileError
         return kind(f"{path}: {error.strerror}" if path is not None else str(error), path=path)
+    if isinstance(error, LookupError):
+        return NoItemError(str(error.args[0]) if error.args else "there is no such item")
+    if isinstance(error, AttributeError):
+        return NoFieldError(str(error))
     return ArgumentError(str(error))
 
 
@@ -132,7 +155,7 @@ def _guard(function: Callable[..., Any]) -> Callable[..., Any]:
             return function(*args, **kwargs)
         except Error:
             raise
-        except (TypeError, ValueError, OverflowError, OSError) as error:
+        except (TypeError, ValueError, OverflowError, OSError, LookupError, AttributeError) as error:
             if not _of_package(error):
                 raise
             raise _converted(error) from error
@@ -155,12 +178,14 @@ def guard(module: dict[str, Any], names: list[str]) -> None:
         if inspect.isfunction(thing):
             module[name] = _guard(thing)
             setattr(sys.modules[thing.__module__], name, module[name])
-        elif inspect.isclass(thing) and thing.__module__.startswith("barrelstack.") and not issubclass(thing, tuple):
+        elif inspect.isclass(thing) and thing.__module__.startswith("barrelstack."):
             for member, value in list(vars(thing).items()):
-                if member.startswith("_") and member != "__init__" or isinstance(value, type):
+                if member.startswith("_") and member not in GUARDED or isinstance(value, type):
                     continue
                 if isinstance(value, (classmethod, staticmethod)):
                     setattr(thing, member, type(value)(_guard(value.__func__)))
+                elif isinstance(value, property) and value.fget is not None:
+                    setattr(thing, member, property(_guard(value.fget), value.fset, value.fdel, value.__doc__))
                 elif inspect.isfunction(value) and not issubclass(thing, Exception):
                     setattr(thing, member, _guard(value))
 

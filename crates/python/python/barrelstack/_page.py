@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from . import _native
+from ._store import store
 from ._table import Table
 
 __all__ = ["Page", "frame", "table_of"]
@@ -90,11 +91,8 @@ class Page:
         paper
             ``"a4"`` or ``"letter"``.
         """
-        name = os.fspath(path)
-        pdf = name.lower().endswith(".pdf")
-        data = self._native.pdf(paper) if pdf else self.html().encode()
-        with open(name, "wb") as file:
-            file.write(data)
+        pdf = os.fspath(path).lower().endswith(".pdf")
+        store(path, self._native.pdf(paper) if pdf else self.html().encode())
 
     def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes the page as HTML and as Markdown with its figures and their numbers.

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._errors import RecordError
 from ._quantity import literal
+from ._store import store
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -659,10 +660,8 @@ class Record:
         OSError
             When the file cannot be written.
         """
-        name = os.fspath(path)
-        data = self._native.written(os.path.splitext(name)[1].lstrip(".").lower())
-        with open(name, "wb") as file:
-            file.write(data)
+        ending = os.path.splitext(os.fspath(path))[1].lstrip(".").lower()
+        store(path, self._native.written(ending))
 
     def __copy__(self) -> Record:
         return self

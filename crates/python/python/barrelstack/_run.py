@@ -17,6 +17,7 @@ from . import _native
 from ._errors import BarrelstackWarning, outside
 from ._kept import Kept
 from ._page import frame
+from ._store import store
 from ._table import Columns, Table
 
 if TYPE_CHECKING:
@@ -326,11 +327,8 @@ class Run:
         paper
             ``"a4"`` or ``"letter"``.
         """
-        name = os.fspath(path)
-        pdf = name.lower().endswith(".pdf")
-        data = self._native.pdf(paper) if pdf else self.html().encode()
-        with open(name, "wb") as file:
-            file.write(data)
+        pdf = os.fspath(path).lower().endswith(".pdf")
+        store(path, self._native.pdf(paper) if pdf else self.html().encode())
 
     def write(self, folder: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Writes the files of ``barrelstack run --out``: report, summary, histories, forces, envelopes, frames.

@@ -16,6 +16,7 @@ from ._page import Page
 from ._progress import Progress, reporting
 from ._quantity import literal
 from ._record import Record
+from ._store import store
 from ._table import Table
 
 __all__ = ["Chunk", "Curve", "Fragility", "Hunts", "Study"]
@@ -513,7 +514,7 @@ class Study:
         files, notes = _native.export(os.fspath(folder), asset)
         os.makedirs(out, exist_ok=True)
         for name, text in files:
-            (Path(out) / name).write_text(text, encoding="utf-8")
+            store(Path(out) / name, text.encode())
         return notes
 
     def __repr__(self) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._store import store
 
 __all__ = ["Column", "Table"]
 
@@ -110,8 +111,7 @@ class Table(Columns):
         """
         text = self._native.to_csv()
         if path is not None:
-            with open(path, "w", encoding="utf-8", newline="") as file:
-                file.write(text)
+            store(path, text.encode())
         return text
 
     def to_parquet(self, path: str | os.PathLike[str]) -> None:
@@ -122,8 +122,7 @@ class Table(Columns):
         path
             The file.
         """
-        with open(path, "wb") as file:
-            file.write(self._native.to_parquet())
+        store(path, self._native.to_parquet())
 
     def __copy__(self) -> Table:
         return self
