@@ -23,6 +23,7 @@ use crate::protect::{changed, shaken, slug};
 use crate::run::RunFailure;
 use crate::scenario::{MotionSource, Scenario, ScenarioError, Until, View};
 use crate::study::{Progress, RunOptions, Study, StudyError};
+use crate::system;
 
 pub use json::ScoreDocument;
 pub use protocol::{Protocol, State};
@@ -242,7 +243,10 @@ pub fn score(
     let all: u64 = studies.iter().map(|(.., study)| study.cases()).sum();
     let (mut before, mut rows) = (0, Vec::new());
     for (state, view, study) in studies {
-        let place = folder.join(slug(&state.name)).join(view.name());
+        let below = Path::new(&slug(&state.name)).join(view.name());
+        let place = folder.join(&below);
+        system::folder_below(folder, &below)
+            .map_err(StudyError::system("make the folder", &place))?;
         let overall = |progress: &Progress| report(before + progress.tally.cases, all);
         let cases = Cases::read(&study.run(&place, options, &overall)?)?;
         before += study.cases();

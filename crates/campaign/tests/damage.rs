@@ -1,6 +1,7 @@
 //! Damaged folders: damage in any file of a study is reported or repaired, and links lead nothing out of the folder.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -60,6 +61,25 @@ fn read_all(folder: &Path) -> [Result<String, String>; 3] {
     [status, rows, decided]
 }
 
+/// Returns the bytes with one digit changed, or with one bit, by turns.
+fn changed(bytes: &[u8], time: u32, random: &mut Random) -> Vec<u8> {
+    let mut pick = |below: usize| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below")]
+        let at = (random.uniform() * below as f64) as usize;
+        at.min(below - 1)
+    };
+    let mut changed = bytes.to_vec();
+    let digits: Vec<usize> = (0..bytes.len()).filter(|at| bytes[*at].is_ascii_digit()).collect();
+    if time % 2 == 0 && !digits.is_empty() {
+        let at = digits[pick(digits.len())];
+        changed[at] = b'0' + (bytes[at] - b'0' + 1 + u8::try_from(pick(9)).unwrap()) % 10;
+    } else {
+        let at = pick(bytes.len());
+        changed[at] ^= 1 << pick(8);
+    }
+    changed
+}
+
 /// Changes every file of a finished folder a number of times, by a digit or a bit. None is accepted silently: reading
 /// refuses it or is unaffected, and another run restores the folder or refuses it.
 fn damage(times: u32) -> [u32; 3] {
@@ -70,24 +90,10 @@ fn damage(times: u32) -> [u32; 3] {
     let (whole, said) = (files(&folder), read_all(&folder));
     assert!(said.iter().all(Result::is_ok), "{said:?}");
     let mut random = Random::new(1);
-    let mut pick = |below: usize| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below")]
-        let at = (random.uniform() * below as f64) as usize;
-        at.min(below - 1)
-    };
     let (mut refused, mut healed, mut unread) = (0, 0, 0);
     for (path, bytes) in &whole {
         for time in 0..times {
-            let mut changed = bytes.clone();
-            let digits: Vec<usize> =
-                (0..bytes.len()).filter(|at| bytes[*at].is_ascii_digit()).collect();
-            if time % 2 == 0 && !digits.is_empty() {
-                let at = digits[pick(digits.len())];
-                changed[at] = b'0' + (bytes[at] - b'0' + 1 + u8::try_from(pick(9)).unwrap()) % 10;
-            } else {
-                let at = pick(bytes.len());
-                changed[at] ^= 1 << pick(8);
-            }
+            let changed = changed(bytes, time, &mut random);
             fs::write(path, &changed).unwrap();
             let name = path.strip_prefix(&folder).unwrap().display().to_string();
             let now = read_all(&folder);
@@ -135,6 +141,68 @@ fn no_digit_and_no_bit_of_a_folder_changes_in_silence() {
 fn no_digit_and_no_bit_of_a_folder_changes_in_silence_in_a_thousand_tries() {
     let [refused, _, unread] = damage(1000);
     assert_eq!((refused, unread), (5000, 4000));
+}
+
+/// Changes what else a study depends on: the record of a motion, by a digit or a bit, and the claim that a killed
+/// process left. A changed record is refused, or its fingerprint in the manifest is another; a claim changes nothing.
+fn damage_beside(times: u32) -> [u32; 2] {
+    let place = tempfile::tempdir().unwrap();
+    let (folder, record) = (place.path().join("study"), place.path().join("record.csv"));
+    let (file, shards) = (place.path().join("study.toml"), folder.join("shards"));
+    let mut text = "time (s),acceleration (g)\n".to_owned();
+    for k in 0..200 {
+        let time = f64::from(k) * 0.01;
+        writeln!(text, "{time:.2},{:.4}", 0.8 * (7.0 * time).sin()).unwrap();
+    }
+    fs::write(&record, &text).unwrap();
+    let stated = format!(
+        "{HEAD}duration = \"0.1 s\"\n[[motion]]\nname = \"record\"\nrecords = [\"record.csv\"]\n\
+         [[factor]]\nname = \"friction\"\nfield = \"interface.rack-ground.friction.coefficient\"\n\
+         values = [0.2, 0.4]\n[design]\nkind = \"full-factorial\"\nchunk = 1\n"
+    );
+    fs::write(&file, stated).unwrap();
+    let study = Study::load(&file).unwrap();
+    run(&study, &folder).unwrap();
+    let whole = files(&folder);
+    let manifest = folder.join("study.json");
+    let shard = whole.keys().find(|path| path.starts_with(&shards)).unwrap();
+    let mut random = Random::new(2);
+    let (mut refused, mut named) = (0, 0);
+    for time in 0..times {
+        let other = changed(text.as_bytes(), time, &mut random);
+        fs::write(&record, &other).unwrap();
+        match Study::load(&file).and_then(|study| run(&study, &folder)) {
+            Err(_) => refused += 1,
+            Ok(_) => {
+                let silent = fs::read(&manifest).unwrap() == whole[&manifest];
+                assert!(!silent, "accepted: {}", String::from_utf8_lossy(&other));
+                named += 1;
+            }
+        }
+        fs::write(&record, &text).unwrap();
+        fs::remove_dir_all(&folder).unwrap();
+        fs::create_dir_all(&shards).unwrap();
+        for (path, bytes) in whole.iter().filter(|(path, _)| *path != shard) {
+            fs::write(path, bytes).unwrap();
+        }
+        let claim = changed(b"process 4711 on node-3", time, &mut random);
+        fs::write(shards.join("000000.claim"), claim).unwrap();
+        run(&study, &folder).unwrap();
+        assert!(files(&folder) == whole, "a claim changed what is found");
+    }
+    [refused, named]
+}
+
+#[test]
+fn no_digit_and_no_bit_of_a_record_or_a_claim_changes_in_silence() {
+    damage_beside(12);
+}
+
+#[test]
+#[ignore = "takes minutes: the same with a thousand changes"]
+fn no_digit_and_no_bit_of_a_record_or_a_claim_changes_in_silence_in_a_thousand_tries() {
+    let [refused, named] = damage_beside(1000);
+    println!("a changed record: {refused} refused, {named} by another fingerprint");
 }
 
 #[test]

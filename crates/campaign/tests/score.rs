@@ -66,6 +66,21 @@ fn what_no_shaking_of_a_protocol_brings_down_has_its_strongest_as_score_at_least
     assert!(sheet.document.verdict.headline.contains("RockScore 5 at least"));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_folder_of_somebody_else_leads_no_state_out_of_it() {
+    let (place, protocol) = (tempfile::tempdir().unwrap(), brief(&[0.02]));
+    let (outside, folder) = (place.path().join("outside"), place.path().join("score"));
+    for folder in [&outside, &folder] {
+        std::fs::create_dir(folder).unwrap();
+    }
+    std::os::unix::fs::symlink(&outside, folder.join("as-good-as-new")).unwrap();
+    let said = scored(&demo(&[]), &protocol, &folder).unwrap_err();
+    let said = std::error::Error::source(&said).map_or(said.to_string(), ToString::to_string);
+    assert!(said.contains("is a link, not a folder"), "{said}");
+    assert_eq!(std::fs::read_dir(&outside).unwrap().count(), 0);
+}
+
 #[test]
 fn a_scene_without_racks_has_no_score() {
     let folder = tempfile::tempdir().unwrap();
