@@ -28,7 +28,7 @@ fn of_boundary(run: &Run, above: bool) -> Option<f64> {
 /// A definition: its name, its value in a run, and what it is.
 type Definition = (&'static str, fn(&Run) -> Option<f64>, &'static str);
 
-/// All of them, of barrel 1.
+/// Definitions of the stress amplification of barrel 1.
 const DEFINITIONS: [Definition; 7] = [
     (
         "largest stress over largest at rest",

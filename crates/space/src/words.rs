@@ -162,7 +162,7 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     if let Some(energy) = &summary.energy {
         row(
             "energy balance",
-            format!("{:.0e} of what went through is missing", energy.residual_ratio),
+            format!("closes to {:.0e} of the energy that went through", energy.residual_ratio),
         );
     }
     let Summary { run: done, .. } = summary;

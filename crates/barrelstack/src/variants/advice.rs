@@ -95,8 +95,8 @@ impl Remedy {
             if in_planes { [" in every plane", ", in every plane"] } else { [""; 2] };
         let caption = format!(
             "Changes that were tried, in the variants by their numbers; one suffices when at least {:.0} % of all \
-             stand{stand}. One that more fail than may is dropped after the block of variants by which they have, so \
-             its share is not known. Intervals hold together, with 95 %, for all {} changes that may be tried{tried}. \
+             stand{stand}. A change is given up at the end of a block of variants once too many have failed, so its share \
+             is not known. Intervals hold together, with 95 %, for all {} changes that may be tried{tried}. \
              Straps do not slip on what they tie.",
             100.0 * self.required_share,
             self.candidates

@@ -31,7 +31,7 @@ section! {
     variants: u32 = Kind::Integer(0, 4096), Default::Value("64");
     /// Criterion that ends a variant where `run.until` is "rest": "verdict" 2 s after its first loss of a seat, or when it has come to rest on ground that stays below 0.02 g; "rest" when every barrel has come to its end.
     until: Until = Kind::Choice(names::<Until>), Default::Value("\"verdict\"");
-    /// Seed of the sequence that they are drawn by.
+    /// Seed of the random sequence that draws the variants.
     seed: u32 = Kind::Integer(0, u32::MAX as i64), Default::Value("1");
     /// Source of their differences: "hair", places and masses, which no cellar has twice; "ignorance", friction and contact constants, which nobody has measured on this stack; or both.
     kind: Imperfection = Kind::Choice(names::<Imperfection>), Default::Value("\"both\"");
