@@ -113,8 +113,9 @@ class MissingFileError(FileError, FileNotFoundError):
 class NoItemError(Error, KeyError, IndexError):
     """What is asked for by a name or a number is not there."""
 
-    # A KeyError shows its message as a quoted text.
-    __str__ = Exception.__str__
+    def __str__(self) -> str:
+        """Returns the message; a KeyError shows it in quotation marks."""
+        return Exception.__str__(self)
 
 
 class NoFieldError(NoItemError, AttributeError):
