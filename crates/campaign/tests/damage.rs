@@ -225,6 +225,21 @@ fn a_manifest_that_states_fewer_chunks_is_refused_by_name_and_written_anew() {
 
 #[cfg(unix)]
 #[test]
+fn what_is_not_the_folder_of_a_study_is_named_as_what_it_is() {
+    use std::os::unix::fs::symlink;
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("study");
+    let said = |folder: &Path| Collected::read(folder).unwrap_err().to_string();
+    assert!(said(&folder).contains("is not there; name a folder"));
+    fs::create_dir(&folder).unwrap();
+    assert!(said(&folder).contains("it has no study.json; name a folder"));
+    symlink("/dev/zero", folder.join("study.json")).unwrap();
+    assert!(said(&folder).contains("its study.json is not a file"));
+    assert!(said(&folder.join("study.json")).contains("is not a folder"));
+}
+
+#[cfg(unix)]
+#[test]
 fn a_folder_of_somebody_else_leads_nothing_that_is_written_out_of_it() {
     use std::os::unix::fs::symlink;
     let (study, place) = (study(), tempfile::tempdir().unwrap());

@@ -153,7 +153,8 @@ fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
 /// Creates a folder and folders below it, and refuses a link in place of one of the latter: a results folder made by
 /// someone else must not redirect output to another place.
 ///
-/// The root may be a link, which the user chose.
+/// The root may be a link, which the user chose. The folder is checked, and later used by its name: a process that may
+/// write in the root, and that puts a link there in between, is not held off. It could change every result there anyway.
 ///
 /// # Errors
 /// If the system refuses, and for a link.

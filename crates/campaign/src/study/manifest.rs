@@ -53,11 +53,14 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     let refuse = |reason: String| StudyError::Folder { folder: folder.to_owned(), reason };
     let path = folder.join(MANIFEST);
     if !path.is_file() {
-        return Err(refuse(if folder.is_dir() {
-            format!("is no folder of a study: it has no {MANIFEST}; name one that a study wrote")
-        } else {
-            "is not there; name a folder that a study wrote".to_owned()
-        }));
+        let there = |path: &Path| path.symlink_metadata().is_ok();
+        let what = match (folder.is_dir(), there(&path), there(folder)) {
+            (true, true, _) => format!("is no folder of a study: its {MANIFEST} is not a file"),
+            (true, false, _) => format!("is no folder of a study: it has no {MANIFEST}"),
+            (false, _, true) => "is not a folder".to_owned(),
+            (false, _, false) => "is not there".to_owned(),
+        };
+        return Err(refuse(format!("{what}; name a folder that a study wrote")));
     }
     let bytes = read_file(&path)?;
     let known = serde_json::from_slice::<serde_json::Value>(&bytes).ok();
