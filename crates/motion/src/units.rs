@@ -114,10 +114,10 @@ impl MotionUnit {
             .collect();
         let acceleration = |factor| Some(Self { quantity: Quantity::Acceleration, factor });
         match plain.as_str() {
-            "g" | "gs" | "gravity" => return acceleration(STANDARD_GRAVITY),
-            "%g" => return acceleration(0.01 * STANDARD_GRAVITY),
+            "g" | "gs" | "gn" | "gravity" | "g-force" | "gforce" => return acceleration(STANDARD_GRAVITY),
+            "%g" | "pctg" | "percentg" | "percentofg" => return acceleration(0.01 * STANDARD_GRAVITY),
             "g/10" => return acceleration(0.1 * STANDARD_GRAVITY),
-            "mg" | "mgs" => return acceleration(1e-3 * STANDARD_GRAVITY),
+            "mg" | "mgs" | "milli-g" | "millig" => return acceleration(1e-3 * STANDARD_GRAVITY),
             "ug" | "\u{b5}g" | "microg" => return acceleration(1e-6 * STANDARD_GRAVITY),
             "gal" | "gals" => return acceleration(1e-2),
             "mgal" => return acceleration(1e-5),

@@ -25,6 +25,7 @@ mod matching;
 mod matching_pair;
 mod matching_shared;
 mod near_formats;
+mod odd_tables;
 mod packed;
 mod pulse_class;
 mod recorded;

@@ -217,6 +217,10 @@ fn counts_in_an_archive_find_the_sensitivity_beside_them() {
     let open = read(&counts, "a.mseed", &known).unwrap();
     let record = given(&archive, "a.tar");
     assert_eq!(record.channels[0].acceleration, open.channels[0].acceleration);
+    // What is wrong with one that cannot be used is said.
+    let cut = tarred(&[("a.mseed", counts.as_slice()), ("a.xml", &xml[..300])]);
+    let error = read(&cut, "a.tar", &ReadOptions::default()).unwrap_err();
+    assert!(matches!(error.refusal, Refusal::Missing(_)) && error.found.contains("a.xml ("), "{error}");
     // Without it the refusal is the same as for the file alone.
     let bare = read(&tarred(&[("a.mseed", counts.as_slice())]), "a.tar", &ReadOptions::default());
     assert!(matches!(bare.unwrap_err().refusal, Refusal::Missing(_)));

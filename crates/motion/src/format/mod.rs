@@ -43,7 +43,7 @@ use crate::units::AccelerationUnit;
 use hints::Hints;
 pub(crate) use packed::LARGEST as LARGEST_UNPACKED;
 use source::{LARGEST_ACCELERATION, Place, parse_number};
-pub(crate) use source::{Printed, Source, quoted, shorten};
+pub(crate) use source::{Printed, Source, quoted, shorten, utf8};
 
 /// Information that a file may lack.
 ///
@@ -223,6 +223,15 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
                  values alone below a line with the step",
             ));
         }
+        if let Some(line) = refused::marked_rows(source) {
+            return Err(source.error(
+                line,
+                Refusal::Unrecognized,
+                "numbers between blanks, commas, semicolons or tabs",
+                format!("other marks beside them, {}", quoted(&utf8(source.raw(line)))),
+                "write the numbers alone, with hyphens for minus signs, and times in seconds",
+            ));
+        }
         let first_line = || format!("\"{}\" as first line", shorten(&source.text(0)));
         return Err(source.error(
             (),
@@ -329,6 +338,18 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
                 "the file is cut; get it again from its source",
             ));
         }
+        if let Some(sample) = missing_value(&channel.acceleration) {
+            return Err(source.damaged(
+                (),
+                format!("accelerations in channel {label}"),
+                format!(
+                    "{:.6} m/s2 at sample {}, by its digits and its neighbors the mark of a missing value",
+                    channel.acceleration[sample],
+                    sample + 1
+                ),
+                "get the record without gaps, or cut the file before the gap",
+            ));
+        }
         let pga = channel.pga();
         if !(pga <= LARGEST_ACCELERATION) {
             return Err(source.damaged(
@@ -374,6 +395,33 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
             error.to_string(),
             "split the file by time",
         )
+    })
+}
+
+/// Returns a sample that is a mark of a missing value, such as -9999, in one of the units of files: it stands out from
+/// its neighbors three times as far as any other sample does.
+fn missing_value(values: &[f64]) -> Option<usize> {
+    let jump = |row: usize| (values[row] - values[row - 1]).abs();
+    let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;
+    [largest, largest - 1].into_iter().find(|&row| {
+        let value = values[row];
+        let rest = (1..values.len())
+            .filter(|&k| values[k] != value && values[k - 1] != value)
+            .map(jump)
+            .fold(0.0, f64::max);
+        jump(largest) > 3.0 * rest && is_mark(value)
+    })
+}
+
+/// `true` for a value whose number in a unit of files has nines alone, at least three, or is another mark in use.
+fn is_mark(value: f64) -> bool {
+    AccelerationUnit::ALL.iter().any(|unit| {
+        let number = (value / unit.factor()).abs();
+        let text = format!("{number:.6}");
+        let text = text.trim_end_matches('0').trim_end_matches('.');
+        let nines = text.chars().all(|c| c == '9' || c == '.') && text.len() >= 3 && number > 99.0;
+        let power = number >= 1e6 && crate::math::log10(number).fract().abs() < 1e-9;
+        nines || power || ["999.25", "32767", "32768"].contains(&text)
     })
 }
 

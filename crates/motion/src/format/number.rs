@@ -95,5 +95,7 @@ pub(super) fn is_no_number(text: &str) -> bool {
     let lower = text.trim_matches(['+', '-', '"']).to_ascii_lowercase();
     let printed =
         ["nan", "inf", "infinity", "null", "none", "na", "n/a", "1.#inf", "1.#ind", "1.#qnan"];
-    printed.contains(&lower.as_str()) || lower.starts_with('#')
+    // Spreadsheets write "#DIV/0!" and "#N/A", also in other languages.
+    printed.contains(&lower.as_str())
+        || lower.starts_with('#') && lower.ends_with(['!', '?', 'a', 'v'])
 }

@@ -67,7 +67,7 @@ fn from_archive(
     let groups = group_files(&names);
     let mut found: Vec<(String, Record)> = Vec::new();
     let mut left_out: Vec<(String, ReadError)> = Vec::new();
-    let mut metadata = Metadata { names: &names, options: None };
+    let mut metadata = Metadata { names: &names, options: None, damaged: None };
     for group in &groups {
         let mut parts = Vec::new();
         for file in &group.files {
@@ -135,6 +135,8 @@ fn belongs(one: &Record, other: &Record) -> bool {
 struct Metadata<'a> {
     names: &'a [String],
     options: Option<ReadOptions>,
+    /// What is wrong with the first that cannot be used.
+    damaged: Option<String>,
 }
 
 impl Metadata<'_> {
@@ -165,17 +167,28 @@ impl Metadata<'_> {
             let mut more = options.clone();
             let xml = |name: &&String| name.to_ascii_lowercase().ends_with(".xml");
             for name in self.names.iter().filter(xml) {
-                let found = archive.file(name).ok();
-                let text = found.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-                more.instruments
-                    .extend(text.and_then(|t| station_xml(&t).ok()).unwrap_or_default());
+                let found = archive
+                    .file(name)
+                    .map_err(|error| error.to_string())
+                    .and_then(|bytes| station_xml(&String::from_utf8_lossy(&bytes)).map_err(|e| e.to_string()));
+                match found {
+                    Ok(found) => more.instruments.extend(found),
+                    Err(why) => self.damaged = self.damaged.take().or(Some(format!("{name} ({why})"))),
+                }
             }
             more
         });
-        if more.instruments.len() == options.instruments.len() {
-            return first;
+        let read = if more.instruments.len() == options.instruments.len() { first } else { read(more) };
+        match (&self.damaged, read) {
+            (Some(why), Err(error)) if counts.contains(&error.refusal) => Err(Source::new(&name, &[]).error(
+                (),
+                error.refusal,
+                error.expected.clone(),
+                format!("{}, and {why} in the archive cannot be used", error.found),
+                error.remedy.clone(),
+            )),
+            (_, read) => read,
         }
-        read(more)
     }
 }
 

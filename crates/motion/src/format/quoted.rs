@@ -5,6 +5,11 @@ pub(crate) fn latin1(bytes: &[u8]) -> String {
     bytes.iter().map(|&byte| char::from(byte)).collect()
 }
 
+/// Converts bytes to text as UTF-8, for messages.
+pub(crate) fn utf8(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
+}
+
 /// Shortens a text to at most 40 characters, for messages.
 pub(crate) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 {

@@ -116,6 +116,21 @@ pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| dated(line) && dated(line + 1))
 }
 
+/// Returns the first of two rows in succession that are numbers but for marks around them, such as quotation marks.
+pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
+    let marks = ["\"", "'", "|", "&", "\\", "[", "]", "{", "}", "(", ")", "$", ":", "\u{e2}\u{88}\u{92}"];
+    let marked = |line: usize| {
+        let text = source.text(line);
+        let plain = marks.iter().fold(text.clone(), |plain, mark| plain.replace(mark, " "));
+        let numbers: Vec<&str> =
+            plain.split([',', ';', '\t', ' ']).filter(|field| !field.is_empty()).collect();
+        plain != text
+            && !numbers.is_empty()
+            && numbers.iter().all(|field| parse_number(field.as_bytes()).is_some())
+    };
+    (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
+}
+
 /// Declares a format that is recognized by its first bytes and refused by its name.
 macro_rules! refused_by_name {
     ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {

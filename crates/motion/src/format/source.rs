@@ -5,7 +5,7 @@ pub(crate) use super::number::{
     Printed, leading_number, leading_printed, leading_text, parse_number, resolution,
 };
 pub(crate) use super::place::{Columns, Place};
-pub(crate) use super::quoted::{latin1, quoted, shorten};
+pub(crate) use super::quoted::{latin1, quoted, shorten, utf8};
 use crate::error::{ReadError, ReadFailure, Refusal};
 use crate::record::Record;
 use crate::units::AccelerationUnit;
@@ -235,8 +235,25 @@ impl<'a> Source<'a> {
     /// Returns the error for a damaged field.
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
-        let (found, remedy) = if text.is_empty() {
+        let begins = self.raw(line)[..column.min(self.raw(line).len())].trim_ascii().is_empty();
+        let words = text.starts_with(|c: char| c.is_alphabetic() || "#%!/$\u{c}\"".contains(c));
+        let (found, remedy) = if self.raw(line).trim_ascii().is_empty() {
+            (
+                "a blank line among the rows".to_owned(),
+                "leave it out if no row is lost there; otherwise get the file again from its source",
+            )
+        } else if text.is_empty() {
             ("blanks".to_owned(), "the file is damaged; get it again from its source")
+        } else if text.contains("\u{e2}\u{88}\u{92}") || text.contains("\u{e2}\u{80}\u{93}") {
+            (
+                format!("a dash for the minus sign in {}", quoted(&utf8(self.raw(line)))),
+                "write a hyphen for each minus sign, as programs do",
+            )
+        } else if text.matches('.').count() > 1 && !text.contains(|c: char| c.is_alphabetic()) {
+            (
+                format!("{}, a number with several points", quoted(&text)),
+                "leave out the points that mark thousands",
+            )
         } else if text.contains('*') {
             (
                 quoted(&text),
@@ -247,6 +264,12 @@ impl<'a> Source<'a> {
             (
                 quoted(&text),
                 "the program that wrote the file had no number there; get the file again from its source",
+            )
+        } else if begins && words {
+            (
+                format!("words among the rows, {}", quoted(&self.text(line))),
+                "leave this line out if it is a remark, a repeated header or a footer, and others like it; \
+                 otherwise get the file again from its source",
             )
         } else {
             (

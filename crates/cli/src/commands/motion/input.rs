@@ -355,7 +355,9 @@ fn with_option(error: anyhow::Error) -> anyhow::Error {
     let Some(cause) = error.downcast_ref::<ReadError>() else { return error };
     let option = match cause.refusal {
         Refusal::OtherInstrument => "add --as velocity, with the sensitivity in counts to one m/s",
-        Refusal::Missing(Given::Unit) => "add --unit g, or the unit it is",
+        Refusal::Missing(Given::Unit) => {
+            "add --unit g, or the unit it is; values in a unit that --unit does not know must be converted first"
+        }
         Refusal::Missing(Given::Step) => {
             "add --time-step with the time between two samples, as the publisher of the file states it"
         }

@@ -266,7 +266,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
     });
     let alone = || rate(plain.strip_suffix("hz")?.trim().parse().ok()?);
     let beside = || {
-        BESIDE_STEPS.iter().find(|word| text.contains(**word))?;
+        let counted = text.contains("points") && count(text).is_some();
+        (counted || BESIDE_STEPS.iter().any(|word| text.contains(*word))).then_some(())?;
         let words: Vec<&str> =
             text.split([' ', '\t', ',', ';', '(', ')']).filter(|w| !w.is_empty()).collect();
         let mut steps = words

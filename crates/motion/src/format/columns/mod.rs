@@ -29,6 +29,10 @@ pub(crate) const FORMAT: Format =
 
 /// Largest time step (s) of a time column whose unit is not stated.
 const LARGEST_BARE_STEP: f64 = 0.5;
+/// Smallest step (s) of a time column whose unit is not stated; times in minutes, hours and days have smaller numbers.
+const SMALLEST_BARE_STEP: f64 = 4e-4;
+/// Smallest step (s) of a time column in seconds: no recorder has it, days of spreadsheets do.
+const SMALLEST_STEP: f64 = 1e-5;
 /// Tolerance of a stated duration relative to that of the samples.
 const DURATION_TOLERANCE: f64 = 0.02;
 
@@ -86,6 +90,10 @@ fn read_table(
             name.holds = acceleration;
         }
     }
+    let behind = named.as_ref().and_then(|(_, names)| names::time_behind(names));
+    if behind.is_some_and(|at| !shape::is_time(&table[at])) {
+        named = None;
+    }
     let names_line = named.as_ref().map(|(line, _)| *line);
     rows::require_no_lost_row(source, header, names_line, width)?;
     let prose = (0..header).filter(|line| Some(*line) != names_line && (!own || *line == 0));
@@ -94,9 +102,16 @@ fn read_table(
         facts.count = Some(Stated { line, value: count });
         facts.step = Some(Stated { line, value: step });
     }
-    let (names, table) =
+    let (mut names, mut table) =
         without_index(&mut record, named.map(|(_, names)| names), table, names_line, first);
-    let index_columns = width - table.len();
+    let mut time_column = width - table.len();
+    if let Some(names) = names.as_mut()
+        && let Some(at) = names::time_behind(names)
+    {
+        time_column += at;
+        names[..=at].rotate_right(1);
+        table[..=at].rotate_right(1);
+    }
     let width = table.len();
     let line = names_line.unwrap_or(first);
     let speaks = |name: &Name| name.holds == Holds::Motion(Quantity::Acceleration);
@@ -117,7 +132,7 @@ fn read_table(
     let (time_step, names, columns) = if let Some(factor) = time {
         let (names, mut table) = (without_first(names), table);
         let time = scaled(&table.remove(0), factor);
-        let resolution = factor * shape::time_resolution(source, first, end, index_columns);
+        let resolution = factor * shape::time_resolution(source, first, end, time_column);
         if let Some(row) = shape::repeated_time(&time, resolution) {
             return Err(source.damaged(
                 first + row,
@@ -255,21 +270,33 @@ fn time_of(
     };
     let steps = (table[0].len() - 1) as f64;
     let step = (table[0].last().unwrap_or(&0.0) - table[0][0]) / steps;
-    if let Some(factor) = unit {
-        return Ok(Some(factor));
-    }
-    if !stated && (!rises || shape::is_index(&table[0])) {
+    if unit.is_none() && !stated && (!rises || shape::is_index(&table[0])) {
         return Ok(None);
     }
-    if step > LARGEST_BARE_STEP {
+    let (smallest, largest) = match unit {
+        Some(_) => (SMALLEST_STEP, f64::INFINITY),
+        None => (SMALLEST_BARE_STEP, LARGEST_BARE_STEP),
+    };
+    let seconds = step * unit.unwrap_or(1.0);
+    // Times that do not rise are refused as such.
+    if seconds > largest || seconds > 0.0 && seconds < smallest {
+        let (found, remedy) = if unit.is_some() {
+            (format!("steps of {seconds:.3e} s"), "write seconds since the first sample; days times 86400 are seconds")
+        } else {
+            (
+                format!("steps of {step} without a unit"),
+                "name the columns in a line above them, such as \"time (ms), acceleration (g)\"; days and hours \
+                 must be written in seconds",
+            )
+        };
         return Err(source.damaged(
             first,
             "a time column whose unit is stated where its steps are no strong motion's in seconds",
-            format!("steps of {step} without a unit"),
-            "name the columns in a line above them, such as \"time (ms), acceleration (g)\"",
+            found,
+            remedy,
         ));
     }
-    Ok(Some(1.0))
+    Ok(Some(unit.unwrap_or(1.0)))
 }
 
 /// Returns the columns of accelerations, with their names; named columns of velocities, displacements and others are
@@ -313,7 +340,13 @@ fn accelerations(
             ));
         }
     }
+    let lengths = shape::lengths(&table);
     let Some(names) = names.filter(|names| names.len() == table.len()) else {
+        let mut table = table;
+        if let Some(at) = lengths.iter().position(|length| *length) {
+            table.remove(at);
+            record.warn(line + 1, "a column holds the length of the vector of the others and was left out");
+        }
         return Ok((Vec::new(), table));
     };
     let held: Vec<Holds> = names.iter().map(|name| name.holds).collect();
@@ -332,10 +365,14 @@ fn accelerations(
     let length = |name: &Name, values: &[f64]| {
         several && name.says_length() && values.iter().all(|value| *value >= 0.0)
     };
-    let (kept, left): (Vec<_>, Vec<_>) = names
-        .into_iter()
-        .zip(table)
-        .partition(|(name, values)| taken(name) && !length(name, values));
+    let (kept, left): (Vec<_>, Vec<_>) =
+        names.into_iter().zip(table).zip(lengths).partition(|((name, values), is_length)| {
+            taken(name) && !length(name, values) && !is_length
+        });
+    let without = |pairs: Vec<((Name, Vec<f64>), bool)>| -> Vec<(Name, Vec<f64>)> {
+        pairs.into_iter().map(|(pair, _)| pair).collect()
+    };
+    let (kept, left) = (without(kept), without(left));
     if kept.is_empty() {
         return Err(source.not_acceleration(
             line,
@@ -346,7 +383,7 @@ fn accelerations(
     }
     if !left.is_empty() {
         let left: Vec<String> = left.iter().map(|(name, _)| name.shown()).collect();
-        let text = format!("left out, as their names say no acceleration: {}", left.join(", "));
+        let text = format!("left out, as no components of acceleration: {}", left.join(", "));
         record.warn(line + 1, text);
     }
     Ok(kept.into_iter().unzip())
@@ -486,6 +523,14 @@ fn units(
         let expected = "a unit of acceleration";
         Err(source.not_acceleration(line, expected, quoted(&word), "give the acceleration history"))
     };
+    let instrument = |word: &str| {
+        source.not_acceleration(
+            names_line,
+            "a unit of acceleration",
+            format!("{}, a unit of what the instrument records", quoted(word)),
+            "multiply the values by the sensitivity of the sensor, and write the unit that they then have",
+        )
+    };
     let missing = |found: String| {
         source.error(
             first,
@@ -504,6 +549,10 @@ fn units(
                 return acceleration(unit, names_line, name.shown());
             }
             let unknown = name.and_then(|name| name.unit.clone());
+            let word = unknown.clone().or_else(|| Some(facts.unknown_unit.as_ref()?.value.clone()));
+            if let Some(word) = word.as_deref().filter(|word| words::is_of_instrument(word)) {
+                return Err(instrument(word));
+            }
             let in_header = facts.unit.filter(|_| unknown.is_none());
             // Units after the names of some columns do not apply to the others.
             let some = names.iter().any(|name| name.motion_unit().is_some());
@@ -513,7 +562,6 @@ fn units(
             if let Some(unit) = hints.unit() {
                 return Ok(unit.factor());
             }
-            let word = unknown.or_else(|| Some(facts.unknown_unit.as_ref()?.value.clone()));
             if let Some(word) = word {
                 return Err(missing(format!("the unit {}", quoted(&word))));
             }

@@ -77,7 +77,7 @@ pub(super) fn find(
             return Err(source.damaged(
                 last,
                 format!("{width} units, one for each column"),
-                format!("{}, which is no unit", quoted(&damaged)),
+                format!("{}, which is no unit known here", quoted(&damaged)),
                 "correct it, or write names and units in one line, such as \"time (s), acceleration (g)\"",
             ));
         }
@@ -97,6 +97,11 @@ pub(super) fn find(
         name.holds = holds(&name.label, name.unit.as_deref());
     }
     Ok(Some((line, by_company(names))))
+}
+
+/// Returns the column of times, if it is not the first.
+pub(super) fn time_behind(names: &[Name]) -> Option<usize> {
+    names.iter().position(|name| name.holds == Holds::Time).filter(|at| *at > 0)
 }
 
 /// `true` if a line is empty or a drawn rule.
@@ -133,7 +138,7 @@ fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     let bare = |part: &str| part.trim_matches(BRACKETS).to_owned();
     splits(plain(text)).into_iter().find_map(|(_, parts)| {
         let units: Vec<String> = parts.iter().map(|part| bare(part)).collect();
-        let each = units.iter().all(|unit| is_unit(unit) || unit == "-" || unit == "#");
+        let each = units.iter().all(|unit| is_any_unit(unit));
         let any = units.iter().any(|unit| is_unit(unit));
         // A row of names may be "N E" or "S"; no units except "g" and "m" resemble a direction.
         let direction = units.iter().all(|unit| Direction::parse(unit) != Direction::default());
@@ -153,7 +158,7 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
         let others: Vec<String> = parts
             .iter()
             .map(bare)
-            .filter(|part| !is_unit(part) && !["-", "#"].contains(&part.as_str()))
+            .filter(|part| !is_any_unit(part))
             .collect();
         let names = others.iter().all(|part| name(part).holds != Holds::Unknown);
         // In prose, "Unit: g" states the unit of all columns.
@@ -164,6 +169,18 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
         };
         others.into_iter().next().filter(|_| enough)
     })
+}
+
+/// Units of other quantities in rows of units, in lower case; letters that are directions as well are left out.
+const OTHER_UNITS: &[&str] = &[
+    "kn", "mn", "kip", "kips", "lbf", "kg", "kpa", "mpa", "psi", "knm", "kn-m", "kn.m", "mv", "volt",
+    "volts", "counts", "lsb", "rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "degc", "mm/m",
+    "strain", "microstrain", "hz", "%",
+];
+
+/// `true` for a unit of motion, time or another quantity, or a mark for none.
+fn is_any_unit(text: &str) -> bool {
+    is_unit(text) || ["-", "#"].contains(&text) || OTHER_UNITS.contains(&text.to_lowercase().as_str())
 }
 
 fn is_unit(text: &str) -> bool {
@@ -206,11 +223,14 @@ fn merged(parts: Vec<String>) -> Vec<String> {
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);
-    // Time comes first, or the line is a sentence that mentions it.
-    let time_within = names.iter().skip(1).any(|name| name.holds == Holds::Time);
+    // Time comes first; elsewhere only among quantities alone, as a sentence may mention it.
+    let times = names.iter().filter(|name| name.holds == Holds::Time).count();
     let time_after_index = names[0].holds == Holds::Index
         && names.get(1).is_some_and(|name| name.holds == Holds::Time);
-    if time_within && !time_after_index {
+    if names.iter().all(says) && (times == 0 || separated && times == 1) {
+        return true;
+    }
+    if times > usize::from(names[0].holds == Holds::Time) && !time_after_index {
         return false;
     }
     if names.iter().all(says) {

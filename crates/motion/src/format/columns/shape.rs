@@ -135,6 +135,27 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
+/// Returns which columns are the length of the vector of all the others or of three of them, within 1 %.
+pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
+    let is_length = |at: usize| {
+        let of = &columns[at];
+        let others: Vec<usize> = (0..columns.len()).filter(|k| *k != at).collect();
+        let fits = |set: &[usize]| {
+            let peak = math::peak(of);
+            (0..of.len()).all(|row| {
+                let sum: f64 = set.iter().map(|k| columns[*k][row] * columns[*k][row]).sum();
+                (of[row] - sum.sqrt()).abs() <= 1e-2 * of[row].abs() + 1e-3 * peak
+            })
+        };
+        others.len() > 1
+            && of.len() > 4
+            && of.iter().all(|value| *value >= 0.0)
+            && math::peak(of) > 0.0
+            && (fits(&others) || others.windows(3).any(fits) || others.windows(2).any(fits))
+    };
+    (0..columns.len()).map(is_length).collect()
+}
+
 /// `true` if no value is negative and the first one is not small, as in spectra.
 pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     columns.iter().all(|column| {

@@ -36,6 +36,16 @@ pub(super) const STEP_KEYS: &[&str] = &[
     "passo temporale",
     "time between samples",
     "interval of sampling",
+    // LabVIEW.
+    "delta_x",
+    "wf_increment",
+    "interval cuplik",
+    "interval sampling",
+    "krok czasowy",
+    "korak uzorkovanja",
+    "шаг дискретизации",
+    "采样间隔",
+    "サンプリング間隔",
 ];
 
 /// Names of the number of samples in a second.
@@ -63,6 +73,19 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "samples/second",
     "samples/sec",
     "f_s",
+    "laju cuplik",
+    "laju sampling",
+    "frekuensi cuplik",
+    "frekuensi sampling",
+    "rata de esantionare",
+    "frecventa de esantionare",
+    "czestotliwosc probkowania",
+    "vzorkovaci frekvence",
+    "frekvencija uzorkovanja",
+    "частота дискретизации",
+    "采样率",
+    "采样频率",
+    "サンプリング周波数",
 ];
 
 /// Words of a sampling interval or rate, of which the unit or the size of the number says which.
@@ -123,6 +146,12 @@ pub(super) const COUNT_KEYS: &[&str] = &[
     "anzahl werte",
     "veri sayisi",
     "muestras",
+    "jumlah data",
+    "numar de puncte",
+    "liczba probek",
+    "broj tocaka",
+    "数据点数",
+    "データ数",
 ];
 
 /// Names of the length of a record.
@@ -182,3 +211,12 @@ pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
 pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
+
+/// `true` for units of a digitizer, whatever the unit given for the values.
+pub(super) fn is_of_instrument(unit: &str) -> bool {
+    const UNITS: &[&str] = &[
+        "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit", "digits",
+        "bit", "bits", "ticks",
+    ];
+    UNITS.contains(&unit.trim().to_lowercase().as_str())
+}

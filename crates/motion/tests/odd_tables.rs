@@ -1,0 +1,164 @@
+//! Tables that other programs write: orders of columns, units of instruments, marks of missing values, remarks among
+//! the rows. Each gives the wave, or a refusal whose reason is true and whose advice works.
+
+#![allow(clippy::format_collect, reason = "small tables are built as text")]
+
+use crate::columns::{given, wave};
+use barrelstack_motion::{AccelerationUnit, ReadOptions, Refusal, read};
+
+const ROWS: usize = 3200;
+
+/// Returns rows of a time and the wave (m/s²) in the layout of a format.
+fn rows(row: impl Fn(usize, f64, f64) -> String) -> String {
+    (0..ROWS).map(|k| row(k, 0.005 * k as f64, wave(k))).collect()
+}
+
+fn plain(k: usize, t: f64, a: f64) -> String {
+    let _ = k;
+    format!("{t:.3},{a:.6}\n")
+}
+
+fn refusal(text: &str) -> (Refusal, String) {
+    let error = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap_err();
+    (error.refusal, error.to_string())
+}
+
+/// Checks that a table is the wave alone.
+fn is_the_wave(text: &str, channels: usize) {
+    let record = given(text, &ReadOptions::default());
+    assert_eq!(record.channels.len(), channels);
+    let first = &record.channels[0];
+    assert_eq!((first.acceleration.len(), first.time_step), (ROWS, 0.005));
+    assert!((first.pga() - 1.5).abs() < 1e-3, "{}", first.pga());
+}
+
+#[test]
+fn times_behind_the_accelerations_are_times() {
+    is_the_wave(&format!("Acceleration (m/s2),Time (s)\n{}", rows(|_, t, a| format!("{a:.6},{t:.3}\n"))), 1);
+    let three = rows(|k, t, a| format!("{k},{a:.6},{:.6},{t:.3},{:.6}\n", 0.5 * a, 0.2 * a));
+    is_the_wave(&format!("No,EW (m/s2),NS (m/s2),Time (s),UD (m/s2)\n{three}"), 3);
+    let lost = format!(
+        "Acceleration (m/s2),Time (s)\n{}",
+        rows(|k, t, a| if (900..960).contains(&k) { String::new() } else { format!("{a:.6},{t:.3}\n") })
+    );
+    assert!(refusal(&lost).1.contains("a gap of 0.3050 s"));
+}
+
+#[test]
+fn the_length_of_a_vector_is_no_channel_under_any_name() {
+    let table = rows(|_, t, a| {
+        let (b, c) = (0.6 * a, 0.3 * a);
+        format!("{t:.3},{a:.6},{b:.6},{c:.6},{:.6}\n", (a * a + b * b + c * c).sqrt())
+    });
+    is_the_wave(&format!("time (s),ax (m/s2),ay (m/s2),az (m/s2),aT (m/s2)\n{table}"), 3);
+    is_the_wave(&format!("time (s),X (m/s2),Y (m/s2),Z (m/s2),all (m/s2)\n{table}"), 3);
+}
+
+#[test]
+fn times_in_days_hours_and_minutes_are_not_read_as_seconds() {
+    for (unit, digits) in [(86_400.0, 10), (3600.0, 9), (60.0, 8)] {
+        for name in ["Time", "t"] {
+            let table = rows(|_, t, a| format!("{:.digits$},{a:.6}\n", 43_831.0 + t / unit));
+            let (_, said) = refusal(&format!("{name},Acceleration (m/s2)\n{table}"));
+            assert!(said.contains("without a unit"), "{said}");
+        }
+    }
+    let days = rows(|_, t, a| format!("{:.10},{a:.6}\n", t / 86_400.0));
+    let (_, said) = refusal(&format!("Time (s),Acceleration (m/s2)\n{days}"));
+    assert!(said.contains("days times 86400"), "{said}");
+}
+
+#[test]
+fn a_mark_of_a_missing_value_is_no_acceleration() {
+    for (unit, factor) in [("m/s2", 1.0), ("cm/s2", 100.0), ("mm/s2", 1000.0), ("g", 1.0 / 9.806_65)] {
+        for mark in ["-9999", "-999", "9999", "-99999", "1e9", "-999.25"] {
+            let table = rows(|k, t, a| {
+                let value = if k == 700 { mark.to_owned() } else { format!("{:.6}", factor * a) };
+                format!("{t:.3},{value}\n")
+            });
+            let (refusal, said) = refusal(&format!("Time (s),Acceleration ({unit})\n{table}"));
+            assert_eq!(refusal, Refusal::Damaged, "{unit} {mark}: {said}");
+            assert!(said.contains("missing value"), "{unit} {mark}: {said}");
+        }
+    }
+    // A wave that passes through such a number is one.
+    let off = |k: &usize| (wave(*k) - 0.999).abs();
+    let near = (0..ROWS).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+    let smooth = rows(|k, t, a| format!("{t:.3},{:.3}\n", if k == near { 999.0 } else { 1000.0 * a }));
+    given(&format!("Time (s),Acceleration (mm/s2)\n{smooth}"), &ReadOptions::default());
+}
+
+#[test]
+fn units_of_instruments_are_refused_whatever_the_unit_given() {
+    for unit in ["mV", "LSB", "V", "counts"] {
+        for text in [
+            format!("Time (s),Acceleration ({unit})\n{}", rows(plain)),
+            format!("dt = 0.005 s\nunits: {unit}\n{}", rows(|_, _, a| format!("{a:.6}\n"))),
+        ] {
+            for unit in [None, Some(AccelerationUnit::G)] {
+                let options = ReadOptions { unit, ..ReadOptions::default() };
+                let error = read(text.as_bytes(), "a.txt", &options).unwrap_err();
+                assert_eq!(error.refusal, Refusal::NotAcceleration, "{error}");
+            }
+        }
+    }
+    for (unit, factor) in [("milli-g", 1000.0), ("percent g", 100.0), ("g-force", 1.0)] {
+        let table = rows(|_, t, a| format!("{t:.3},{:.6}\n", factor * a / 9.806_65));
+        is_the_wave(&format!("Time (s),Acceleration ({unit})\n{table}"), 1);
+    }
+}
+
+#[test]
+fn steps_of_other_programs_and_languages_precede_the_one_given() {
+    for stated in [
+        "Delta_X\t0.005",
+        "wf_increment=0.005",
+        "3200 points, 0.005 sec, scaled in m/s2",
+        "Laju cuplik (Hz) : 200",
+        "частота дискретизации: 200",
+        "采样频率: 200 Hz",
+    ] {
+        let text = format!("{stated}\nunits: m/s2\n{}", rows(|_, _, a| format!("{a:.6}\n")));
+        let given = ReadOptions { time_step: Some(0.01), ..ReadOptions::default() };
+        let record = read(text.as_bytes(), "a.txt", &given);
+        let record = record.unwrap_or_else(|error| panic!("{stated}: {error}"));
+        assert!((record.channels[0].time_step - 0.005).abs() < 1e-12, "{stated}");
+    }
+}
+
+#[test]
+fn units_of_other_quantities_in_a_row_of_units_are_units() {
+    let table = rows(|_, t, a| format!("{t:.3},{a:.6},{:.4},{:.3}\n", 0.1 * a, 3.0 * a));
+    is_the_wave(&format!("Time,Table Accel,Table Disp,Load Cell\ns,m/s2,mm,kN\n{table}"), 1);
+}
+
+/// What is said of a table, the words that it must hold, and the table as the advice leaves it.
+fn obeyed(wrong: &str, word: &str, mended: &str) {
+    let (_, said) = refusal(wrong);
+    assert!(said.contains(word) && !said.contains("damaged"), "{word}: {said}");
+    is_the_wave(mended, 1);
+}
+
+#[test]
+fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
+    let whole = format!("Time (s),Acceleration (m/s2)\n{}", rows(plain));
+    let with = |line: &str| {
+        let at = whole.match_indices('\n').nth(1000).unwrap().0 + 1;
+        format!("{}{line}\n{}", &whole[..at], &whole[at..])
+    };
+    for line in ["# block 2", "Time (s),Acceleration (m/s2)", "PAGE 2", "! next"] {
+        obeyed(&with(line), "words among the rows", &whole);
+    }
+    for footer in ["END OF DATA", "Max,0.15"] {
+        obeyed(&format!("{whole}{footer}\n"), "words among the rows", &whole);
+    }
+    obeyed(&with(""), "a blank line among the rows", &whole);
+    let minus = whole.replace('-', "\u{2212}");
+    obeyed(&minus, "a dash for the minus sign", &whole);
+    let thousands = whole.replacen("1.4", "1.013.4", 1);
+    obeyed(&thousands, "several points", &whole);
+    let quoted = format!("\"Time (s)\",\"Acceleration (m/s2)\"\n{}", rows(|_, t, a| format!("\"{t:.3}\",\"{a:.6}\"\n")));
+    obeyed(&quoted, "other marks beside them", &whole);
+    let drawn = format!("| Time (s) | Acceleration (m/s2) |\n|---|---|\n{}", rows(|_, t, a| format!("| {t:.3} | {a:.6} |\n")));
+    obeyed(&drawn, "other marks beside them", &whole);
+}
