@@ -1,8 +1,9 @@
 //! Every documented command line, run as it is written, document by document, from an empty folder.
 //!
 //! A document says of which files it supposes that they are there: "… stand for files of your own", with their names
-//! before it, and "Saved as `NAME`" for the block above. Nothing else is there. Lines that run longer than [`AWAIT`] are
-//! stopped with Ctrl-C: by then they have read their arguments and files and have begun the work.
+//! before it, and "Saved as `NAME`" for the block above. Nothing else is there. Lines that run longer than [`AWAIT`], and
+//! than what is left of [`PATIENCE`], are stopped with Ctrl-C and listed as stopped: of them this proves that they read
+//! their arguments and files, begin the work, and end in order when stopped. A failure later in them is not seen here.
 
 #![cfg(unix)]
 #![allow(
@@ -16,12 +17,17 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
 const AWAIT: Duration = Duration::from_secs(2);
+/// Time (ms) beyond [`AWAIT`] that all lines of all documents share, so that a failure later than that is seen in most.
+static PATIENCE: AtomicU64 = AtomicU64::new(20_000);
+/// Largest share (ms) of one line.
+const SHARE: u64 = 4_000;
 /// Time within which a stopped line ends; measured 0.1 to 2 s, on a busy machine more.
 const AT_MOST: Duration = Duration::from_secs(60);
 /// Exit status of a stopped command.
@@ -168,10 +174,20 @@ fn ended(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
     None
 }
 
+/// Waits for the end of a long line in steps of a second, as long as its share and the common patience last.
+fn patient(child: &mut Child) -> Option<ExitStatus> {
+    (0..SHARE / 1000).find_map(|_| {
+        let left = |ms: u64| ms.checked_sub(1000);
+        PATIENCE.fetch_update(Ordering::Relaxed, Ordering::Relaxed, left).ok()?;
+        ended(child, Duration::from_secs(1))
+    })
+}
+
 /// Runs a line to its end, or stops it; returns the failure, if any.
 fn run(line: &str, folder: &Path, program: &Path, said: &Path) -> Option<String> {
     let mut child = start(line, folder, program, said);
-    let status = ended(&mut child, AWAIT).unwrap_or_else(|| {
+    let status = ended(&mut child, AWAIT).or_else(|| patient(&mut child)).unwrap_or_else(|| {
+        println!("stopped: {line}");
         Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
         ended(&mut child, AT_MOST).unwrap_or_else(|| {
             child.kill().unwrap();

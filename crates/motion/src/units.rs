@@ -101,6 +101,11 @@ impl MotionUnit {
     ///
     /// Returns `None` for anything that is not a unit of acceleration, velocity or displacement.
     pub(crate) fn parse(text: &str) -> Option<Self> {
+        // "m/(s^2)" has parentheses behind a sign; "cm/s(s)" is damaged.
+        let letter = |at: usize| text[..at].ends_with(|c: char| c.is_alphanumeric());
+        if text.match_indices('(').any(|(at, _)| letter(at)) {
+            return None;
+        }
         // UTF-8 misread as Latin-1 has U+C2 before a superscript 2, a micro sign and a centered dot.
         let plain: String = text
             .trim()
@@ -219,7 +224,7 @@ mod tests {
             assert_eq!((unit.quantity, unit.factor), (Quantity::Displacement, factor), "{text}");
         }
         for text in
-            ["", "s", "Pa", "V", "rad/s", "counts", "kg", "m/s3", "series", "deg", "m/", "Hz"]
+            ["", "s", "cm/s(s)", "Pa", "V", "rad/s", "counts", "kg", "m/s3", "series", "deg", "m/", "Hz"]
         {
             assert_eq!(MotionUnit::parse(text), None, "{text}");
         }
