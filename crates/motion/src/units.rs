@@ -119,8 +119,12 @@ impl MotionUnit {
             .collect();
         let acceleration = |factor| Some(Self { quantity: Quantity::Acceleration, factor });
         match plain.as_str() {
-            "g" | "gs" | "gn" | "gravity" | "g-force" | "gforce" => return acceleration(STANDARD_GRAVITY),
-            "%g" | "pctg" | "percentg" | "percentofg" => return acceleration(0.01 * STANDARD_GRAVITY),
+            "g" | "gs" | "gn" | "gravity" | "g-force" | "gforce" => {
+                return acceleration(STANDARD_GRAVITY);
+            }
+            "%g" | "pctg" | "percentg" | "percentofg" => {
+                return acceleration(0.01 * STANDARD_GRAVITY);
+            }
             "g/10" => return acceleration(0.1 * STANDARD_GRAVITY),
             "mg" | "mgs" | "milli-g" | "millig" => return acceleration(1e-3 * STANDARD_GRAVITY),
             "ug" | "\u{b5}g" | "microg" => return acceleration(1e-6 * STANDARD_GRAVITY),
@@ -223,9 +227,10 @@ mod tests {
             let unit = MotionUnit::parse(text).unwrap_or_else(|| panic!("{text}"));
             assert_eq!((unit.quantity, unit.factor), (Quantity::Displacement, factor), "{text}");
         }
-        for text in
-            ["", "s", "cm/s(s)", "Pa", "V", "rad/s", "counts", "kg", "m/s3", "series", "deg", "m/", "Hz"]
-        {
+        for text in [
+            "", "s", "cm/s(s)", "Pa", "V", "rad/s", "counts", "kg", "m/s3", "series", "deg", "m/",
+            "Hz",
+        ] {
             assert_eq!(MotionUnit::parse(text), None, "{text}");
         }
     }

@@ -34,12 +34,19 @@ fn is_the_wave(text: &str, channels: usize) {
 
 #[test]
 fn times_behind_the_accelerations_are_times() {
-    is_the_wave(&format!("Acceleration (m/s2),Time (s)\n{}", rows(|_, t, a| format!("{a:.6},{t:.3}\n"))), 1);
+    is_the_wave(
+        &format!("Acceleration (m/s2),Time (s)\n{}", rows(|_, t, a| format!("{a:.6},{t:.3}\n"))),
+        1,
+    );
     let three = rows(|k, t, a| format!("{k},{a:.6},{:.6},{t:.3},{:.6}\n", 0.5 * a, 0.2 * a));
     is_the_wave(&format!("No,EW (m/s2),NS (m/s2),Time (s),UD (m/s2)\n{three}"), 3);
     let lost = format!(
         "Acceleration (m/s2),Time (s)\n{}",
-        rows(|k, t, a| if (900..960).contains(&k) { String::new() } else { format!("{a:.6},{t:.3}\n") })
+        rows(|k, t, a| if (900..960).contains(&k) {
+            String::new()
+        } else {
+            format!("{a:.6},{t:.3}\n")
+        })
     );
     assert!(refusal(&lost).1.contains("a gap of 0.3050 s"));
 }
@@ -70,7 +77,9 @@ fn times_in_days_hours_and_minutes_are_not_read_as_seconds() {
 
 #[test]
 fn a_mark_of_a_missing_value_is_no_acceleration() {
-    for (unit, factor) in [("m/s2", 1.0), ("cm/s2", 100.0), ("mm/s2", 1000.0), ("g", 1.0 / 9.806_65)] {
+    for (unit, factor) in
+        [("m/s2", 1.0), ("cm/s2", 100.0), ("mm/s2", 1000.0), ("g", 1.0 / 9.806_65)]
+    {
         for mark in ["-9999", "-999", "9999", "-99999", "1e9", "-999.25"] {
             let table = rows(|k, t, a| {
                 let value = if k == 700 { mark.to_owned() } else { format!("{:.6}", factor * a) };
@@ -84,13 +93,14 @@ fn a_mark_of_a_missing_value_is_no_acceleration() {
     // A wave that passes through such a number is one.
     let off = |k: &usize| (wave(*k) - 0.999).abs();
     let near = (0..ROWS).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
-    let smooth = rows(|k, t, a| format!("{t:.3},{:.3}\n", if k == near { 999.0 } else { 1000.0 * a }));
+    let smooth =
+        rows(|k, t, a| format!("{t:.3},{:.3}\n", if k == near { 999.0 } else { 1000.0 * a }));
     given(&format!("Time (s),Acceleration (mm/s2)\n{smooth}"), &ReadOptions::default());
 }
 
 #[test]
 fn units_of_instruments_are_refused_whatever_the_unit_given() {
-    for unit in ["mV", "LSB", "V", "counts"] {
+    for unit in ["mV", "LSB", "volts", "counts"] {
         for text in [
             format!("Time (s),Acceleration ({unit})\n{}", rows(plain)),
             format!("dt = 0.005 s\nunits: {unit}\n{}", rows(|_, _, a| format!("{a:.6}\n"))),
@@ -101,6 +111,10 @@ fn units_of_instruments_are_refused_whatever_the_unit_given() {
                 assert_eq!(error.refusal, Refusal::NotAcceleration, "{error}");
             }
         }
+    }
+    for word in ["Unidades: cm/s2", "Einheit: cm/s2", "Satuan : gal", "UNITA: cm/s^2"] {
+        let values = rows(|_, _, a| format!("{:.4}\n", 100.0 * a));
+        is_the_wave(&format!("dt = 0.005 s\n{word}\n{values}"), 1);
     }
     for (unit, factor) in [("milli-g", 1000.0), ("percent g", 100.0), ("g-force", 1.0)] {
         let table = rows(|_, t, a| format!("{t:.3},{:.6}\n", factor * a / 9.806_65));
@@ -113,6 +127,8 @@ fn steps_of_other_programs_and_languages_precede_the_one_given() {
     for stated in [
         "Delta_X\t0.005",
         "wf_increment=0.005",
+        "SAMPLING_INTERVAL_S: 0.005",
+        "sampling_rate_hz: 200",
         "3200 points, 0.005 sec, scaled in m/s2",
         "Laju cuplik (Hz) : 200",
         "частота дискретизации: 200",
@@ -154,11 +170,24 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
     }
     obeyed(&with(""), "a blank line among the rows", &whole);
     let minus = whole.replace('-', "\u{2212}");
+    obeyed(&minus, "with hyphens for minus signs", &whole);
+    let last = whole.rfind('-').unwrap();
+    let minus = format!("{}\u{2212}{}", &whole[..last], &whole[last + 1..]);
     obeyed(&minus, "a dash for the minus sign", &whole);
+    let booked =
+        rows(|_, t, a| if a < 0.0 { format!("{t:.3},({:.6})\n", -a) } else { plain(0, t, a) });
+    let booked = format!("Time (s),Acceleration (m/s2)\n{booked}");
+    obeyed(&booked, "without marks around it", &whole);
     let thousands = whole.replacen("1.4", "1.013.4", 1);
     obeyed(&thousands, "several points", &whole);
-    let quoted = format!("\"Time (s)\",\"Acceleration (m/s2)\"\n{}", rows(|_, t, a| format!("\"{t:.3}\",\"{a:.6}\"\n")));
+    let quoted = format!(
+        "\"Time (s)\",\"Acceleration (m/s2)\"\n{}",
+        rows(|_, t, a| format!("\"{t:.3}\",\"{a:.6}\"\n"))
+    );
     obeyed(&quoted, "other marks beside them", &whole);
-    let drawn = format!("| Time (s) | Acceleration (m/s2) |\n|---|---|\n{}", rows(|_, t, a| format!("| {t:.3} | {a:.6} |\n")));
+    let drawn = format!(
+        "| Time (s) | Acceleration (m/s2) |\n|---|---|\n{}",
+        rows(|_, t, a| format!("| {t:.3} | {a:.6} |\n"))
+    );
     obeyed(&drawn, "other marks beside them", &whole);
 }

@@ -220,7 +220,10 @@ fn counts_in_an_archive_find_the_sensitivity_beside_them() {
     // What is wrong with one that cannot be used is said.
     let cut = tarred(&[("a.mseed", counts.as_slice()), ("a.xml", &xml[..300])]);
     let error = read(&cut, "a.tar", &ReadOptions::default()).unwrap_err();
-    assert!(matches!(error.refusal, Refusal::Missing(_)) && error.found.contains("a.xml ("), "{error}");
+    assert!(
+        matches!(error.refusal, Refusal::Missing(_)) && error.found.contains("a.xml ("),
+        "{error}"
+    );
     // Without it the refusal is the same as for the file alone.
     let bare = read(&tarred(&[("a.mseed", counts.as_slice())]), "a.tar", &ReadOptions::default());
     assert!(matches!(bare.unwrap_err().refusal, Refusal::Missing(_)));

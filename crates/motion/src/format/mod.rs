@@ -165,6 +165,7 @@ const KNOWN_OTHERS: &[Format] = &[
     refused::MINISEED3,
     refused::GSE1,
     refused::SEGY,
+    refused::UNIVERSAL,
     refused::MATLAB,
     refused::TDMS,
     refused::NUMPY,
@@ -341,7 +342,7 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
         if let Some(sample) = missing_value(&channel.acceleration) {
             return Err(source.damaged(
                 (),
-                format!("accelerations in channel {label}"),
+                "accelerations alone",
                 format!(
                     "{:.6} m/s2 at sample {}, by its digits and its neighbors the mark of a missing value",
                     channel.acceleration[sample],

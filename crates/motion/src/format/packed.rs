@@ -167,26 +167,31 @@ impl Metadata<'_> {
             let mut more = options.clone();
             let xml = |name: &&String| name.to_ascii_lowercase().ends_with(".xml");
             for name in self.names.iter().filter(xml) {
-                let found = archive
-                    .file(name)
-                    .map_err(|error| error.to_string())
-                    .and_then(|bytes| station_xml(&String::from_utf8_lossy(&bytes)).map_err(|e| e.to_string()));
+                let found =
+                    archive.file(name).map_err(|error| error.to_string()).and_then(|bytes| {
+                        station_xml(&String::from_utf8_lossy(&bytes)).map_err(|e| e.to_string())
+                    });
                 match found {
                     Ok(found) => more.instruments.extend(found),
-                    Err(why) => self.damaged = self.damaged.take().or(Some(format!("{name} ({why})"))),
+                    Err(why) => {
+                        self.damaged = self.damaged.take().or(Some(format!("{name} ({why})")))
+                    }
                 }
             }
             more
         });
-        let read = if more.instruments.len() == options.instruments.len() { first } else { read(more) };
+        let read =
+            if more.instruments.len() == options.instruments.len() { first } else { read(more) };
         match (&self.damaged, read) {
-            (Some(why), Err(error)) if counts.contains(&error.refusal) => Err(Source::new(&name, &[]).error(
-                (),
-                error.refusal,
-                error.expected.clone(),
-                format!("{}, and {why} in the archive cannot be used", error.found),
-                error.remedy.clone(),
-            )),
+            (Some(why), Err(error)) if counts.contains(&error.refusal) => {
+                Err(Source::new(&name, &[]).error(
+                    (),
+                    error.refusal,
+                    error.expected.clone(),
+                    format!("{}, and {why} in the archive cannot be used", error.found),
+                    error.remedy.clone(),
+                ))
+            }
             (_, read) => read,
         }
     }

@@ -118,7 +118,8 @@ pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
 
 /// Returns the first of two rows in succession that are numbers but for marks around them, such as quotation marks.
 pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
-    let marks = ["\"", "'", "|", "&", "\\", "[", "]", "{", "}", "(", ")", "$", ":", "\u{e2}\u{88}\u{92}"];
+    let marks =
+        ["\"", "'", "|", "&", "\\", "[", "]", "{", "}", "(", ")", "$", ":", "\u{e2}\u{88}\u{92}"];
     let marked = |line: usize| {
         let text = source.text(line);
         let plain = marks.iter().fold(text.clone(), |plain, mark| plain.replace(mark, " "));
@@ -205,6 +206,13 @@ refused_by_name!(
         cards(0xC3) || cards(b'C') || b.starts_with(&[0x55, 0x3A]) || b.starts_with(&[0x3A, 0x55])
     },
     "export the acceleration of the channel to plain columns with its unit and step"
+);
+refused_by_name!(
+    UNIVERSAL,
+    "uff",
+    "universal file (SDRC, data set 58)",
+    |source| source.text(0) == "-1" && source.text(1).starts_with("58"),
+    "export time and acceleration to plain columns with names and units, and give that file"
 );
 refused_by_name!(
     MATLAB,

@@ -13,6 +13,9 @@ use crate::units::AccelerationUnit;
 /// Largest acceleration that a reader accepts (m/s²), about a thousand g.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
 
+/// Marks around numbers of spreadsheets and programs.
+const MARKS: [char; 10] = ['"', '\'', '(', ')', '[', ']', '{', '}', '%', '$'];
+
 /// SI value of the gal (m/s²), the cm/s² of most networks.
 pub(crate) const GAL: f64 = 0.01;
 
@@ -264,6 +267,11 @@ impl<'a> Source<'a> {
             (
                 quoted(&text),
                 "the program that wrote the file had no number there; get the file again from its source",
+            )
+        } else if parse_number(text.trim_matches(MARKS).as_bytes()).is_some() {
+            (
+                quoted(&text),
+                "write the number without marks around it, and a negative one with a hyphen",
             )
         } else if begins && words {
             (

@@ -2,7 +2,8 @@
 
 use super::words::{
     ACCELERATIONS, BARE, BESIDE_STEPS, COMPONENT_KEYS, COUNT_KEYS, DISPLACEMENTS, DURATION_KEYS,
-    OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS, VELOCITIES,
+    OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS, UNIT_WORDS,
+    VELOCITIES,
 };
 use crate::direction::Direction;
 use crate::error::ReadError;
@@ -202,6 +203,7 @@ pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
         "s" | "sec" | "secs" | "second" | "seconds" | "seg" | "sn" | "sek" => 1.0,
         "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => 1e-3,
+        "ns" | "nanoseconds" => 1e-9,
         "us" | "\u{b5}s" | "usec" | "microsecond" | "microseconds" => 1e-6,
         "min" | "minute" | "minutes" => 60.0,
         _ => return None,
@@ -297,7 +299,7 @@ fn count(text: &str) -> Option<usize> {
         let value = value_behind(text, key)?;
         // "3200 samples, 200 sps" has a rate after the word.
         let rate = ["sps", "hz", "samples/s"].iter().any(|unit| value.behind.starts_with(unit));
-        (!rate).then_some(value.printed.value)
+        (!rate && value.printed.value.fract() == 0.0).then_some(value.printed.value)
     });
     let stated = behind.or_else(|| {
         ["points", "samples", "data points", "values", "pts"]
@@ -365,7 +367,7 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     if PEAK_KEYS.iter().any(|key| value_behind(lower, key).is_some()) {
         return None;
     }
-    if let Some((_, behind)) = lower.split_once("unit") {
+    if let Some((_, behind)) = UNIT_WORDS.iter().find_map(|word| lower.split_once(word)) {
         let tokens = behind.split([' ', ',', ';', ':', '=', '(', ')', '[', ']', '\t']);
         let words: Vec<&str> = tokens.filter(|word| !word.is_empty()).collect();
         if let Some(at) = words.iter().position(|word| rate(word).is_some()) {

@@ -91,7 +91,7 @@ fn read_table(
         }
     }
     let behind = named.as_ref().and_then(|(_, names)| names::time_behind(names));
-    if behind.is_some_and(|at| !shape::is_time(&table[at])) {
+    if behind.is_some_and(|at| !shape::rises(&table[at])) {
         named = None;
     }
     let names_line = named.as_ref().map(|(line, _)| *line);
@@ -236,7 +236,7 @@ fn time_of(
                 facts::time_factor(unit).ok_or_else(|| {
                     source.damaged(
                         first,
-                        "a time column in s, ms, us or min",
+                        "a time column in s, ms, us, ns or min",
                         quoted(unit),
                         "correct the unit of time in the header",
                     )
@@ -281,7 +281,10 @@ fn time_of(
     // Times that do not rise are refused as such.
     if seconds > largest || seconds > 0.0 && seconds < smallest {
         let (found, remedy) = if unit.is_some() {
-            (format!("steps of {seconds:.3e} s"), "write seconds since the first sample; days times 86400 are seconds")
+            (
+                format!("steps of {seconds:.3e} s"),
+                "write seconds since the first sample; days times 86400 are seconds",
+            )
         } else {
             (
                 format!("steps of {step} without a unit"),
@@ -345,7 +348,10 @@ fn accelerations(
         let mut table = table;
         if let Some(at) = lengths.iter().position(|length| *length) {
             table.remove(at);
-            record.warn(line + 1, "a column holds the length of the vector of the others and was left out");
+            record.warn(
+                line + 1,
+                "a column holds the length of the vector of the others and was left out",
+            );
         }
         return Ok((Vec::new(), table));
     };

@@ -155,11 +155,8 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
             return None;
         }
         let bare = |part: &String| part.trim_matches(BRACKETS).to_owned();
-        let others: Vec<String> = parts
-            .iter()
-            .map(bare)
-            .filter(|part| !is_any_unit(part))
-            .collect();
+        let others: Vec<String> =
+            parts.iter().map(bare).filter(|part| !is_any_unit(part)).collect();
         let names = others.iter().all(|part| name(part).holds != Holds::Unknown);
         // In prose, "Unit: g" states the unit of all columns.
         let enough = match (parts.len() - others.len()).cmp(&others.len()) {
@@ -173,14 +170,42 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
 
 /// Units of other quantities in rows of units, in lower case; letters that are directions as well are left out.
 const OTHER_UNITS: &[&str] = &[
-    "kn", "mn", "kip", "kips", "lbf", "kg", "kpa", "mpa", "psi", "knm", "kn-m", "kn.m", "mv", "volt",
-    "volts", "counts", "lsb", "rad", "deg", "rad/s", "deg/s", "rad/s2", "deg/s2", "degc", "mm/m",
-    "strain", "microstrain", "hz", "%",
+    "kn",
+    "mn",
+    "kip",
+    "kips",
+    "lbf",
+    "kg",
+    "kpa",
+    "mpa",
+    "psi",
+    "knm",
+    "kn-m",
+    "kn.m",
+    "mv",
+    "volt",
+    "volts",
+    "counts",
+    "lsb",
+    "rad",
+    "deg",
+    "rad/s",
+    "deg/s",
+    "rad/s2",
+    "deg/s2",
+    "degc",
+    "mm/m",
+    "strain",
+    "microstrain",
+    "hz",
+    "%",
 ];
 
 /// `true` for a unit of motion, time or another quantity, or a mark for none.
 fn is_any_unit(text: &str) -> bool {
-    is_unit(text) || ["-", "#"].contains(&text) || OTHER_UNITS.contains(&text.to_lowercase().as_str())
+    is_unit(text)
+        || ["-", "#"].contains(&text)
+        || OTHER_UNITS.contains(&text.to_lowercase().as_str())
 }
 
 fn is_unit(text: &str) -> bool {

@@ -11,8 +11,8 @@ use crate::record::Record;
 const MOST_HEADER_LINES: usize = 60;
 /// Larger numbers are errors whatever the unit.
 const LIMIT: f64 = 1e12;
-/// Largest time: milliseconds and microseconds since 1970 are larger than any acceleration.
-const LARGEST_TIME: f64 = 1e17;
+/// Largest time: times since 1970 are larger than any acceleration, in nanoseconds as well.
+const LARGEST_TIME: f64 = 1e19;
 /// Maximum number of columns taken as components; more are one series in long lines.
 const MOST_COLUMNS: usize = 200;
 /// Minimum number of values in a file of one line.

@@ -18,9 +18,14 @@ pub(super) fn is_time(column: &[f64]) -> bool {
     }
     let steps = column.len() - 1;
     let mean = (column[steps] - column[0]) / steps as f64;
-    let rising = column.windows(2).filter(|pair| pair[1] > pair[0]).count();
     let even = column.windows(2).all(|pair| pair[1] - pair[0] < 10.0 * mean);
-    mean > 0.0 && even && (rising == steps || rising as f64 >= RISING * steps as f64)
+    mean > 0.0 && even && rises(column)
+}
+
+/// `true` if a column rises nearly throughout.
+pub(super) fn rises(column: &[f64]) -> bool {
+    let rising = column.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    rising as f64 >= RISING * (column.len() - 1) as f64
 }
 
 /// Fewest rows of a column that is taken to rise evenly by its values alone.

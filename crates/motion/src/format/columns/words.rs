@@ -36,6 +36,12 @@ pub(super) const STEP_KEYS: &[&str] = &[
     "passo temporale",
     "time between samples",
     "interval of sampling",
+    "sampling_interval",
+    "sampling_interval_s",
+    "sample_interval",
+    "time_step_s",
+    "dt_s",
+    "dt_sec",
     // LabVIEW.
     "delta_x",
     "wf_increment",
@@ -73,6 +79,12 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "samples/second",
     "samples/sec",
     "f_s",
+    "fs_hz",
+    "sample_rate",
+    "sample_rate_hz",
+    "sampling_rate_hz",
+    "sampling_frequency",
+    "sampling_frequency_hz",
     "laju cuplik",
     "laju sampling",
     "frekuensi cuplik",
@@ -215,8 +227,12 @@ pub(super) const DISPLACEMENTS: &[&str] =
 /// `true` for units of a digitizer, whatever the unit given for the values.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
-        "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit", "digits",
-        "bit", "bits", "ticks",
+        "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
+        "digits", "bit", "bits", "ticks",
     ];
     UNITS.contains(&unit.trim().to_lowercase().as_str())
 }
+
+/// Beginnings of the word "unit".
+pub(super) const UNIT_WORDS: &[&str] =
+    &["unit", "unidad", "einheit", "satuan", "birim", "jednostk", "единиц", "单位"];
