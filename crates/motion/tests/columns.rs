@@ -246,7 +246,10 @@ fn times_are_taken_in_their_unit_and_every_fault_has_its_own_reason() {
         assert!((record.channels[0].pga() - 1.5 * 9.80665).abs() < 1e-3, "{header}");
     }
     refused(&format!("time,acc (g)\n{}", pairs(1e3)), "a time column whose unit is stated");
-    refused(&format!("time (days),acc (g)\n{}", pairs(1.0)), "a time column in s, ms, us or min");
+    refused(
+        &format!("time (days),acc (g)\n{}", pairs(1.0)),
+        "a time column in s, ms, us, ns or min",
+    );
     let unknown = format!("time (s),acc (furlong)\n{}", pairs(1.0));
     let error = read(unknown.as_bytes(), "a.txt", &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.contains("found the unit \"furlong\""), "{error}");

@@ -90,22 +90,41 @@ fn others() -> Vec<(&'static str, Vec<u8>)> {
         ("response spectrum without names", table("", &|k| spectrum(k + 5))),
         ("Fourier spectrum", table("Frequency (Hz),Fourier amplitude (cm/s),Phase", &spectrum)),
         ("counts in columns", table("Time (s),Counts", &wave)),
-        ("times behind the values", table("acc (g),time (s)", &|k| {
-            format!("{:.4},{:.2}\n", (f64::from(k) * 0.2).sin(), 0.01 * f64::from(k))
-        })),
-        ("times in days", table("time,acc (g)", &|k| {
-            format!("{:.10},{:.4}\n", 43_831.0 + 0.01 * f64::from(k) / 86_400.0, (f64::from(k) * 0.2).sin())
-        })),
+        (
+            "times behind the values",
+            table("acc (g),time (s)", &|k| {
+                format!("{:.4},{:.2}\n", (f64::from(k) * 0.2).sin(), 0.01 * f64::from(k))
+            }),
+        ),
+        (
+            "times in days",
+            table("time,acc (g)", &|k| {
+                format!(
+                    "{:.10},{:.4}\n",
+                    43_831.0 + 0.01 * f64::from(k) / 86_400.0,
+                    (f64::from(k) * 0.2).sin()
+                )
+            }),
+        ),
         ("volts", table("Time (s),Acceleration (mV)", &wave)),
-        ("a mark of a missing value", table("Time (s),Acceleration (m/s2)", &|k| {
-            if k == 90 { "0.90,-9999\n".to_owned() } else { wave(k) }
-        })),
-        ("cells in quotation marks", table("\"Time (s)\",\"Acceleration (g)\"", &|k| {
-            format!("\"{}\"\n", wave(k).trim().replace(',', "\",\""))
-        })),
-        ("a remark among the rows", table("Time (s),Acceleration (g)", &|k| {
-            if k == 90 { "# block 2\n".to_owned() } else { wave(k) }
-        })),
+        (
+            "a mark of a missing value",
+            table("Time (s),Acceleration (m/s2)", &|k| {
+                if k == 90 { "0.90,-9999\n".to_owned() } else { wave(k) }
+            }),
+        ),
+        (
+            "cells in quotation marks",
+            table("\"Time (s)\",\"Acceleration (g)\"", &|k| {
+                format!("\"{}\"\n", wave(k).trim().replace(',', "\",\""))
+            }),
+        ),
+        (
+            "a remark among the rows",
+            table("Time (s),Acceleration (g)", &|k| {
+                if k == 90 { "# block 2\n".to_owned() } else { wave(k) }
+            }),
+        ),
         ("universal file", b"    -1\n    58\nmade\n".to_vec()),
         ("columns without a unit", table("time,acc", &wave)),
         (

@@ -174,8 +174,9 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
     let last = whole.rfind('-').unwrap();
     let minus = format!("{}\u{2212}{}", &whole[..last], &whole[last + 1..]);
     obeyed(&minus, "a dash for the minus sign", &whole);
-    let booked =
-        rows(|_, t, a| if a < 0.0 { format!("{t:.3},({:.6})\n", -a) } else { plain(0, t, a) });
+    let booked = rows(|k, t, a| {
+        if k > 9 && a < 0.0 { format!("{t:.3},({:.6})\n", -a) } else { plain(k, t, a) }
+    });
     let booked = format!("Time (s),Acceleration (m/s2)\n{booked}");
     obeyed(&booked, "without marks around it", &whole);
     let thousands = whole.replacen("1.4", "1.013.4", 1);

@@ -238,7 +238,7 @@ fn time_of(
                         first,
                         "a time column in s, ms, us, ns or min",
                         quoted(unit),
-                        "correct the unit of time in the header",
+                        "write the times in one of these units, and its name in the header",
                     )
                 })
             });
