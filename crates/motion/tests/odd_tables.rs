@@ -143,6 +143,13 @@ fn steps_of_other_programs_and_languages_precede_the_one_given() {
 }
 
 #[test]
+fn a_factor_above_the_values_is_not_passed_over() {
+    let values = rows(|_, _, a| format!("    {:.4}\n", 1e-3 * a));
+    let text = format!("dt = 0.005 s, units = m/s2\n\nacc =\n\n   1.0e+03 *\n\n{values}");
+    assert!(refusal(&text).1.contains("a factor of all values below"));
+}
+
+#[test]
 fn units_of_other_quantities_in_a_row_of_units_are_units() {
     let table = rows(|_, t, a| format!("{t:.3},{a:.6},{:.4},{:.3}\n", 0.1 * a, 3.0 * a));
     is_the_wave(&format!("Time,Table Accel,Table Disp,Load Cell\ns,m/s2,mm,kN\n{table}"), 1);
@@ -174,9 +181,12 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
     let last = whole.rfind('-').unwrap();
     let minus = format!("{}\u{2212}{}", &whole[..last], &whole[last + 1..]);
     obeyed(&minus, "a dash for the minus sign", &whole);
-    let booked = rows(|k, t, a| {
-        if k > 9 && a < 0.0 { format!("{t:.3},({:.6})\n", -a) } else { plain(k, t, a) }
-    });
+    let booked =
+        rows(
+            |k, t, a| {
+                if k > 9 && a < 0.0 { format!("{t:.3},({:.6})\n", -a) } else { plain(k, t, a) }
+            },
+        );
     let booked = format!("Time (s),Acceleration (m/s2)\n{booked}");
     obeyed(&booked, "without marks around it", &whole);
     let thousands = whole.replacen("1.4", "1.013.4", 1);

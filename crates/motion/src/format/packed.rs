@@ -174,7 +174,7 @@ impl Metadata<'_> {
                 match found {
                     Ok(found) => more.instruments.extend(found),
                     Err(why) => {
-                        self.damaged = self.damaged.take().or(Some(format!("{name} ({why})")))
+                        self.damaged = self.damaged.take().or(Some(format!("{name} ({why})")));
                     }
                 }
             }

@@ -420,6 +420,25 @@ fn component(text: &str) -> Option<String> {
     })
 }
 
+/// Refuses a factor alone on a line above the values, `1.0e+03 *`, as MATLAB shows matrices.
+pub(super) fn refuse_factor(
+    source: &Source<'_>,
+    mut lines: impl Iterator<Item = usize>,
+) -> Result<(), ReadError> {
+    let is_factor = |line: &usize| {
+        let text = source.text(*line);
+        text.strip_suffix('*').is_some_and(|number| number.trim().parse::<f64>().is_ok())
+    };
+    lines.find(is_factor).map_or(Ok(()), |line| {
+        Err(source.damaged(
+            line,
+            "values without a factor",
+            format!("{}, a factor of all values below", quoted(&source.text(line))),
+            "multiply the values by it, and leave the line out",
+        ))
+    })
+}
+
 /// Refuses a header that describes the numbers as other quantities than accelerations.
 pub(super) fn refuse_other_quantities(
     source: &Source<'_>,
