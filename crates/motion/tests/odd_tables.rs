@@ -172,7 +172,7 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
     for line in ["# block 2", "Time (s),Acceleration (m/s2)", "PAGE 2", "! next"] {
         obeyed(&with(line), "words among the rows", &whole);
     }
-    for footer in ["END OF DATA", "Max,0.15"] {
+    for footer in ["END OF DATA", "Max,0.15", "];"] {
         obeyed(&format!("{whole}{footer}\n"), "words among the rows", &whole);
     }
     obeyed(&with(""), "a blank line among the rows", &whole);

@@ -239,7 +239,7 @@ impl<'a> Source<'a> {
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
         let begins = self.raw(line)[..column.min(self.raw(line).len())].trim_ascii().is_empty();
-        let words = text.starts_with(|c: char| c.is_alphabetic() || "#%!/$\u{c}\"".contains(c));
+        let words = text.starts_with(|c: char| c.is_alphabetic() || "#%!/$\u{c}\"])}".contains(c));
         let (found, remedy) = if self.raw(line).trim_ascii().is_empty() {
             (
                 "a blank line among the rows".to_owned(),

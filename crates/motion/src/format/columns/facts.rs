@@ -53,11 +53,12 @@ impl Facts {
     /// Reads header lines, except those with names of columns.
     ///
     /// # Errors
-    /// If two lines contradict each other about the step.
+    /// If two lines contradict each other about the step, or a line is a factor.
     pub(super) fn read(
         source: &Source<'_>,
-        lines: impl Iterator<Item = usize>,
+        lines: impl Iterator<Item = usize> + Clone,
     ) -> Result<Self, ReadError> {
+        refuse_factor(source, lines.clone())?;
         let mut facts = Self::default();
         let mut unnamed: Vec<Stated<f64>> = Vec::new();
         for line in lines {
@@ -421,7 +422,7 @@ fn component(text: &str) -> Option<String> {
 }
 
 /// Refuses a factor alone on a line above the values, `1.0e+03 *`, as MATLAB shows matrices.
-pub(super) fn refuse_factor(
+fn refuse_factor(
     source: &Source<'_>,
     mut lines: impl Iterator<Item = usize>,
 ) -> Result<(), ReadError> {

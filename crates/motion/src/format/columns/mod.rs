@@ -97,7 +97,6 @@ fn read_table(
     let names_line = named.as_ref().map(|(line, _)| *line);
     rows::require_no_lost_row(source, header, names_line, width)?;
     let prose = (0..header).filter(|line| Some(*line) != names_line && (!own || *line == 0));
-    facts::refuse_factor(source, prose.clone())?;
     let mut facts = Facts::read(source, prose)?;
     if let Some((line, count, step)) = first_line {
         facts.count = Some(Stated { line, value: count });
