@@ -117,7 +117,7 @@ pub fn document(answer: &Answer) -> Document {
 fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
-        &format!(
+        format!(
             "Ranges are those of 5 to 95 % of the variants. Directions are those of the first body that leaves its seat, \
              and of the barrels that fell{}, from where they stood to where they were then.",
             spread.counted("the first loss")

@@ -317,12 +317,14 @@ fn tenths(value: f64) -> f64 {
 pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rest = percent.min(100.0 - percent);
+    let mut decimals = 0;
     if 0.0 < rest && rest < 0.5 {
-        let decimals = (-rest.log10().floor()).clamp(1.0, 9.0) as usize;
-        format!("{percent:.decimals$} %")
-    } else {
-        format!("{percent:.0} %")
+        let mut digit = rest;
+        while digit < 0.95 && decimals < 9 {
+            (digit, decimals) = (10.0 * digit, decimals + 1);
+        }
     }
+    format!("{percent:.decimals$} %")
 }
 
 #[cfg(test)]

@@ -69,6 +69,23 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
 }
 
+/// Refuses a table whose first column is a period, a frequency or an ordinate of a spectrum.
+fn refuse_spectrum(
+    source: &Source<'_>,
+    line: usize,
+    names: Option<&[Name]>,
+) -> Result<(), ReadError> {
+    if !names.is_some_and(|names| names.first().is_some_and(|name| name.holds == Holds::Spectrum)) {
+        return Ok(());
+    }
+    Err(source.not_acceleration(
+        line,
+        "an acceleration history, not a spectrum",
+        quoted(&source.text(line)),
+        "give the file of the time history that this spectrum belongs to",
+    ))
+}
+
 fn read_table(
     source: &Source<'_>,
     first: usize,
@@ -118,16 +135,7 @@ fn read_table(
     if !names.as_ref().is_some_and(|names| names.iter().any(speaks)) {
         facts::refuse_other_quantities(source, 0..header)?;
     }
-    if let Some(Name { holds: Holds::Spectrum, .. }) =
-        names.as_ref().and_then(|names| names.first())
-    {
-        return Err(source.not_acceleration(
-            line,
-            "an acceleration history, not a spectrum",
-            quoted(&source.text(line)),
-            "give the file of the time history that this spectrum belongs to",
-        ));
-    }
+    refuse_spectrum(source, line, names.as_deref())?;
     let time = time_of(source, first, &table, names.as_deref())?;
     let (time_step, names, columns) = if let Some(factor) = time {
         let (names, mut table) = (without_first(names), table);
