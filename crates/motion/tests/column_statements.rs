@@ -182,3 +182,34 @@ fn pairs_of_time_and_value_beside_each_other_are_no_channels() {
     let rows: String = (0..200).map(|k| row(k).trim_end_matches(", ").to_owned() + "\n").collect();
     refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time to a row");
 }
+
+#[test]
+fn a_step_given_that_contradicts_a_frequency_under_unknown_words_is_refused() {
+    let read_with = |stated: &str, step: f64| {
+        let text = format!("{stated}\nunits: cm/s2\n{}", waves());
+        let options = ReadOptions { time_step: Some(step), ..ReadOptions::default() };
+        read(text.as_bytes(), "t.txt", &options)
+    };
+    for stated in ["Tasten frekvens (Hz) : 200", "Kadar pensampelan : 200 Hz"] {
+        let error = read_with(stated, 0.01).unwrap_err();
+        assert!(error.found.contains("0.01 s"), "{stated}: {error}");
+        assert!((read_with(stated, 0.005).unwrap().channels[0].time_step - 0.005).abs() < 1e-12);
+    }
+    for other in [
+        "Filter corner: 50 Hz",
+        "Nyquist (Hz): 50",
+        "Natural frequency (Hz): 50",
+        "Low cut: 0.1 Hz",
+    ] {
+        let record = read_with(other, 0.01).unwrap_or_else(|error| panic!("{other}: {error}"));
+        assert!((record.channels[0].time_step - 0.01).abs() < 1e-12, "{other}");
+    }
+}
+
+#[test]
+fn a_count_below_the_values_is_no_sample() {
+    let text = format!("dt = 0.005 s\nunits: mm/s2\n{}60\n", waves());
+    let record = given(&text, &ReadOptions::default());
+    assert_eq!(record.channels[0].acceleration.len(), 60);
+    assert!(record.warnings.iter().any(|warning| warning.message.contains("60 is the number")));
+}

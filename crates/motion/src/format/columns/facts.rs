@@ -2,8 +2,8 @@
 
 use super::words::{
     ACCELERATIONS, BARE, BESIDE_STEPS, COMPONENT_KEYS, COUNT_KEYS, DISPLACEMENTS, DURATION_KEYS,
-    OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS, UNIT_WORDS,
-    VELOCITIES,
+    OTHER_FREQUENCIES, OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS,
+    UNIT_WORDS, VELOCITIES,
 };
 use crate::direction::Direction;
 use crate::error::ReadError;
@@ -32,6 +32,8 @@ pub(super) struct Peak {
 pub(super) struct Facts {
     /// Time between samples (s).
     pub(super) step: Option<Stated<f64>>,
+    /// Frequency (Hz) under other words, which may be the rate of the samples.
+    pub(super) possible_rate: Option<Stated<f64>>,
     /// Number of samples.
     pub(super) count: Option<Stated<usize>>,
     /// Length of the record (s) and one unit of its last printed digit.
@@ -83,6 +85,8 @@ impl Facts {
                     None => facts.step = Some(Stated { line, value: step }),
                 }
             }
+            let stated = possible_rate(&lower).map(|value| Stated { line, value });
+            facts.possible_rate = facts.possible_rate.or(stated);
             let stated = count(&lower).map(|value| Stated { line, value });
             facts.count = facts.count.or(stated);
             let stated = duration(&lower).map(|value| Stated { line, value });
@@ -279,6 +283,17 @@ fn unnamed_step(text: &str) -> Option<f64> {
         steps.next().filter(|_| steps.next().is_none())
     };
     by_key.or_else(alone).or_else(beside)
+}
+
+/// Returns a frequency (Hz) of the size of a sampling rate in a line that names no other frequency, in any language.
+fn possible_rate(text: &str) -> Option<f64> {
+    if OTHER_FREQUENCIES.iter().any(|word| text.contains(word)) {
+        return None;
+    }
+    let (name, rest) = text.split_once([':', '='])?;
+    let (rate, _) = leading_text(rest.as_bytes())?;
+    let hertz = |text: &str| words(text).any(|word| matches!(word, "hz" | "sps"));
+    ((hertz(name) || hertz(rest)) && rate >= SMALLEST_UNNAMED_RATE).then_some(rate)
 }
 
 /// Returns the number right before a word.

@@ -412,6 +412,17 @@ fn step(
     hints: &Hints<'_>,
 ) -> Result<f64, ReadError> {
     let stated = facts.step.map(|step| step.value);
+    if let (None, Some(step), Some(rate)) = (stated, hints.time_step(), facts.possible_rate)
+        && (step * rate.value - 1.0).abs() > 1e-2
+    {
+        return Err(source.error(
+            rate.line,
+            Refusal::Options,
+            format!("samples at {} Hz, as this line seems to state", rate.value),
+            format!("a step of {step} s"),
+            "give the step of this rate, or delete the line if it states another frequency",
+        ));
+    }
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
         let remedy = match facts.step_by_duration() {
             Some(step) => format!(

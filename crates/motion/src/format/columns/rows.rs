@@ -245,5 +245,12 @@ fn without_count(
             .warn(first + 1, format!("{count} is the number of values below it and was left out"));
         return column[1..].to_vec();
     }
+    // The count may stand below the values as well.
+    let (last, above) = column.split_last().unwrap_or((&0.0, &[]));
+    let end = source.lines.len() - 1;
+    if *last >= 10.0 && *last == above.len() as f64 && !source.text(end).contains('.') {
+        record.warn(end + 1, format!("{last} is the number of values above it and was left out"));
+        return above.to_vec();
+    }
     column.to_vec()
 }

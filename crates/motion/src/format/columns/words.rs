@@ -236,3 +236,28 @@ pub(super) fn is_of_instrument(unit: &str) -> bool {
 /// Beginnings of the word "unit".
 pub(super) const UNIT_WORDS: &[&str] =
     &["unit", "unidad", "einheit", "satuan", "birim", "jednostk", "единиц", "单位"];
+
+/// Parts of words in lines about another frequency than that of the samples.
+pub(super) const OTHER_FREQUENCIES: &[&str] = &[
+    "filt",
+    "cut",
+    "corner",
+    "pass",
+    "band",
+    "corte",
+    "esquina",
+    "taglio",
+    "coupure",
+    "grenz",
+    "nyquist",
+    "natural",
+    "natuerlich",
+    "eigen",
+    "propr",
+    "sensor",
+    "instrument",
+    "response",
+    "line",
+    "clock",
+    "usable",
+];
