@@ -216,8 +216,7 @@ fn a_stack_that_stands_and_a_run_cut_short_say_so() {
         "--set=run.duration=1 s",
     ]);
     assert_eq!(output.status.code(), Some(0));
-    let stands =
-        "  The stack stands until 1.0 s, where the run ends, 34.0 s before the motion does.\n";
+    let stands = "  Shaken along the barrels, the stack stands until 1.0 s, where the run ends, 34.0 s before the motion does.\n";
     assert!(stdout(&output).contains(stands), "{}", stdout(&output));
     let warning = stderr(&output);
     assert!(warning.starts_with("warning: the run ends at 1.0 s, the motion at "), "{warning}");
