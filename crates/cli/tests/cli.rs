@@ -376,7 +376,7 @@ fn the_demo_writes_its_report_and_may_be_repeated() {
         let report = Path::new("barrelstack-demo").join("report.html");
         assert!(
             stdout(&output)
-                .starts_with("Not decided, since the runs end before the motion does. Shaken across the barrels none of 4")
+                .starts_with("Not decided, since the runs end at 1.0 s and the motion does not. Shaken across the barrels none of 4")
         );
         let open = format!("\n\nOpen {} in a browser to watch it.\n", report.display());
         assert!(stdout(&output).ends_with(&open), "{}", stdout(&output));

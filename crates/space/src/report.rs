@@ -63,10 +63,12 @@ pub fn document(answer: &Answer) -> Document {
         )));
     }
     blocks.push(heading("In numbers"));
-    let mut numbers = Table::new(
-        "The run that is shown; demands are those until the first loss of seat.",
-        &[("", ""), ("", "")],
-    );
+    let caption = if free {
+        "The run that is shown."
+    } else {
+        "The run that is shown; demands are those until the first loss of seat."
+    };
+    let mut numbers = Table::new(caption, &[("", ""), ("", "")]);
     numbers
         .rows
         .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
