@@ -2,8 +2,8 @@
 //!
 //! A document says of which files it supposes that they are there: "… stand for files of your own", with their names
 //! before it, and "Saved as `NAME`" for the block above. Nothing else is there. Lines that run longer than [`AWAIT`], and
-//! than what is left of [`PATIENCE`], are stopped with Ctrl-C and listed as stopped: of them this proves that they read
-//! their arguments and files, begin the work, and end in order when stopped. A failure later in them is not seen here.
+//! than what is left of [`PATIENCE`], are stopped with Ctrl-C and printed. For these the test shows that arguments and files
+//! are read, that the work begins, and that it ends in order when it is stopped; later failures are not observed.
 
 #![cfg(unix)]
 #![allow(
@@ -24,7 +24,7 @@ use crate::common::{HEAD, barrelstack};
 
 /// Time after which a line is stopped.
 const AWAIT: Duration = Duration::from_secs(2);
-/// Time (ms) beyond [`AWAIT`] that all lines of all documents share, so that a failure later than that is seen in most.
+/// Time (ms) beyond [`AWAIT`] that all lines of all documents share, in which most of them end by themselves.
 static PATIENCE: AtomicU64 = AtomicU64::new(20_000);
 /// Largest share (ms) of one line.
 const SHARE: u64 = 4_000;

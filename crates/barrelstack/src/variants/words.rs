@@ -44,7 +44,11 @@ impl Judgment {
 
     /// Returns the worst of planes; `None` without any.
     fn worst<'a>(spreads: impl IntoIterator<Item = &'a Spread>) -> Option<Self> {
-        let worse = |a: Self, b| if a < b { b } else { a };
+        let worse = |a, b| match (a, b) {
+            (Self::Cut(one), Self::Cut(other)) => Self::Cut(one.min(other)),
+            (a, b) if a < b => b,
+            (a, _) => a,
+        };
         spreads.into_iter().map(Self::of).reduce(worse)
     }
 
@@ -447,12 +451,12 @@ mod tests {
 
     #[test]
     fn a_motion_that_is_cut_has_not_been_stood() {
-        let mut one = spread(64, 0);
-        one.standing_until = Some(1.0);
+        let [mut one, mut later] = [spread(64, 0), spread(64, 0)];
+        (one.standing_until, later.standing_until) = (Some(1.0), Some(2.0));
         let cut = "Not decided, since the runs end at 1.0 s and the motion does not. Shaken ";
         for planes in [
             vec![(View::Transverse, &one)],
-            vec![(View::Transverse, &one), (View::Longitudinal, &one)],
+            vec![(View::Transverse, &one), (View::Longitudinal, &later)],
             // What stands in the other plane, in more variants, does not decide.
             vec![(View::Transverse, &one), (View::Longitudinal, &spread(64, 1))],
         ] {

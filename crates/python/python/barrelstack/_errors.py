@@ -111,7 +111,7 @@ class MissingFileError(FileError, FileNotFoundError):
 
 
 class NoItemError(Error, KeyError, IndexError):
-    """What is asked for by a name or a number is not there."""
+    """There is no item of this name or number."""
 
     def __str__(self) -> str:
         """Returns the message; a KeyError shows it in quotation marks."""

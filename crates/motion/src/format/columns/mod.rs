@@ -379,14 +379,11 @@ fn accelerations(
     let length = |name: &Name, values: &[f64]| {
         several && name.says_length() && values.iter().all(|value| *value >= 0.0)
     };
-    let (kept, left): (Vec<_>, Vec<_>) =
-        names.into_iter().zip(table).zip(lengths).partition(|((name, values), is_length)| {
-            taken(name) && !length(name, values) && !is_length
-        });
-    let without = |pairs: Vec<((Name, Vec<f64>), bool)>| -> Vec<(Name, Vec<f64>)> {
-        pairs.into_iter().map(|(pair, _)| pair).collect()
-    };
-    let (kept, left) = (without(kept), without(left));
+    let (mut kept, mut left) = (Vec::new(), Vec::new());
+    for ((name, values), is_length) in names.into_iter().zip(table).zip(lengths) {
+        let keeps = taken(&name) && !length(&name, &values) && !is_length;
+        if keeps { &mut kept } else { &mut left }.push((name, values));
+    }
     if kept.is_empty() {
         return Err(source.not_acceleration(
             line,
