@@ -8,10 +8,11 @@ use anyhow::{Context as _, bail};
 use crate::steps::{build_program, cargo, program, target};
 
 /// What the tests need beside the package.
-const TESTS: [&str; 15] = [
+const TESTS: [&str; 16] = [
     "maturin>=1.9,<2",
     "numpy",
     "pytest",
+    "pytest-xdist",
     "mypy",
     "typing_extensions",
     "polars",
@@ -87,6 +88,10 @@ pub(crate) fn run(root: &Path, what: Option<&str>) -> anyhow::Result<()> {
     }
     let mut tests = inside(&python);
     tests.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "crates/python/tests"]);
+    // Two files at a time: most tests wait for a single process.
+    if installed(&python, "pytest-xdist") {
+        tests.args(["-n", "2", "--dist", "loadfile"]);
+    }
     tests.env("BARRELSTACK_COMMAND", program(root)).env("MPLBACKEND", "Agg").current_dir(root);
     if what != Some("heavy") {
         tests.args(["-m", "not heavy"]);
@@ -129,20 +134,13 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         let status = pip(&python).args(words).current_dir(root).status();
         status.is_ok_and(|status| status.success())
     };
-    // The net is not asked for what is there.
-    let there = |name: &&&str| {
-        let name = name.split(['<', '>', '=']).next().unwrap_or(name);
-        let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
-        let run = Command::new(&python).args(show).stderr(Stdio::null()).status();
-        run.is_ok_and(|status| status.success())
-    };
-    for name in needed.iter().filter(|name| !there(name)) {
+    for name in needed.iter().filter(|name| !installed(&python, name)) {
         if !install(&[*name]) {
             // Tests say by themselves what they lack.
             println!("pip cannot install {name}; is there a net?");
         }
     }
-    if !there(&&"maturin") {
+    if !installed(&python, "maturin") {
         return Ok(None);
     }
     // With the environment's own maturin, so that no net is asked for what is there.
@@ -150,6 +148,14 @@ fn environment(root: &Path, heavy: bool) -> anyhow::Result<Option<PathBuf>> {
         bail!("`pip install .` failed: see above");
     }
     Ok(Some(python))
+}
+
+/// Returns `true` if an environment has a package, so that the net is not needed for it.
+fn installed(python: &Path, requirement: &str) -> bool {
+    let name = requirement.split(['<', '>', '=']).next().unwrap_or(requirement);
+    let show = ["-m", "pip", "--disable-pip-version-check", "show", "--quiet", name];
+    let run = Command::new(python).args(show).stderr(Stdio::null()).status();
+    run.is_ok_and(|status| status.success())
 }
 
 /// The installation command of an environment.

@@ -1,19 +1,25 @@
 //! The files of a run, in one folder.
 
+mod dictionary;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use barrelstack_report::column::column_name;
+pub use dictionary::dictionary;
+
+use barrelstack_report::column::{
+    Column, ColumnSpec, Role, ValueKind, Values, column_name, csv_heading, csv_rows,
+};
 use barrelstack_report::{
     Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
 };
 use serde_json::{Value, json};
 
+use crate::ensemble;
 use crate::ground::RECORD_LIMIT;
-use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
 use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
@@ -22,7 +28,8 @@ use crate::verify::Verification;
 use barrelstack_input::system;
 
 /// Names of the files that every run writes; those of the run itself may have its plane as a prefix.
-const FILES: [&str; 4] = ["summary.json", "scenario.toml", "variants.csv", "report.html"];
+const FILES: [&str; 5] =
+    ["summary.json", "scenario.toml", "variants.csv", "report.html", "columns.csv"];
 const FILES_OF_PLANE: [&str; 5] =
     ["histories.csv", "histories.npz", "forces.csv", "envelopes.csv", "frames.csv"];
 
@@ -272,8 +279,7 @@ fn first_in(folder: &Path) -> Option<String> {
     names.map(|entry| entry.file_name().to_string_lossy().into_owned()).min()
 }
 
-/// Returns the files of an answer by their names, with the name of their plane as a prefix where there are two, and the
-/// report last.
+/// Returns the files of an answer by their names, with the name of their plane as a prefix where there are two.
 ///
 /// # Errors
 /// When the archive of histories cannot be written.
@@ -306,6 +312,7 @@ pub fn files(
         ]);
     }
     files.push(("report.html".to_owned(), barrelstack_report::html(&document).into_bytes()));
+    files.push(dictionary(&files, &|_| None));
     Ok(files)
 }
 
@@ -373,33 +380,22 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// Writes one row for the nominal case and for every variant, in every plane.
+/// Writes one row for the stack as stated and for every variant, in every plane.
 fn variants_csv(answer: &Answer) -> String {
-    let mut text = String::from(
-        "plane,variant,outcome,mode,first_body,collapse (s),first_fall (s),barrels_fallen,barrels\n",
-    );
-    let planes = std::iter::once(&answer.decides).chain(&answer.other);
-    for Shown { run, variants, stopped, .. } in planes {
-        let view = run.assembly.view.map_or("", View::name);
+    let mut text = String::new();
+    for Shown { run, variants, stopped, .. } in
+        std::iter::once(&answer.decides).chain(&answer.other)
+    {
         let results = variants.as_ref().map(|found| &found.results).or(stopped.as_ref());
-        for (number, result) in results.into_iter().flatten().enumerate() {
-            let (kind, collapse) = match &result.outcome {
-                // Interrupted cases have no row.
-                Ok(Outcome::Interrupted) => continue,
-                Ok(Outcome::Collapse { mode, time, first, .. }) => {
-                    ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))
-                }
-                Ok(outcome) => (outcome.kind(), ",,".to_owned()),
-                Err(_) => ("cannot-stand", ",,".to_owned()),
-            };
-            let first = result.first_fall.map_or_else(String::new, |time| time.to_string());
-            let fallen = result.falls.iter().filter(|(_, at)| at.is_some()).count();
-            let _ = writeln!(
-                text,
-                "{view},{number},{kind},{collapse},{first},{fallen},{}",
-                result.barrels
-            );
+        let mut table = ensemble::variants(results.into_iter().flatten());
+        let plane =
+            vec![run.assembly.view.map(|view| view.name().to_owned()); table[0].values.len()];
+        let spec = ColumnSpec::new("plane", "", Role::Key, ValueKind::Text);
+        table.insert(0, Column { spec, values: Values::Text(plane) });
+        if text.is_empty() {
+            text = csv_heading(&table);
         }
+        text += &csv_rows(&table);
     }
     text
 }

@@ -371,10 +371,12 @@ impl Verification {
         let predictable = match self.predictable_until {
             None if self.repeats.is_empty() => UNKNOWN.to_owned(),
             Some(time) => format!(
-                "until {time:.2} s; then a body is more than {centimeters} cm elsewhere in a repeat"
+                "until {time:.2} s; after that a repeat puts some body more than {centimeters} cm from its place in the run"
             ),
             None => {
-                format!("to the end; no body is more than {centimeters} cm elsewhere in a repeat")
+                format!(
+                    "to the end; no repeat puts a body more than {centimeters} cm from its place in the run"
+                )
             }
         };
         row("predictable", predictable);

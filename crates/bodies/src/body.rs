@@ -8,7 +8,7 @@ use barrelstack_input::{Dimension, InputError, section};
 use crate::solid::{SOLID, Solid};
 
 section! {
-    /// Viscous drag on a body, relative to the ground at rest.
+    /// Viscous drag on a body, by its velocity relative to the ground before it was shaken.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body in space, alike in all directions.

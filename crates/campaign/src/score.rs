@@ -191,7 +191,7 @@ pub enum ScoreError {
     #[error(transparent)]
     Decision(#[from] DecisionError),
     /// No curve describes the runs.
-    #[error("no score of \"{state}\", shaken {direction}")]
+    #[error("no score for the state \"{state}\" when shaken {direction}")]
     Curve {
         /// The state.
         state: String,

@@ -104,8 +104,8 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_reported_everywhe
 fn the_shipped_example_loses_what_it_loses_without_any_stop() {
     // A part of the motions of the shipped study, which has 240 cases: the least and the most at every level.
     let example = barrelstack_campaign::study::builtin("napa-four-levels").unwrap();
-    let example = example.replace("count = 23", "count = 3");
-    let until = "[base.run]\nuntil = \"duration\"\nduration = \"150 s\"\n";
+    let example = example.replace("count = 23", "count = 1");
+    let until = "[base.run]\nuntil = \"duration\"\nduration = \"100 s\"\n";
     let without = example.replace("\n# The coefficient", &format!("{until}\n# The coefficient"));
     assert_ne!(example, without);
     let folder = tempfile::tempdir().unwrap();

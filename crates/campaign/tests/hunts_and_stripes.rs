@@ -20,7 +20,7 @@ extends = \"candia-6-barrels\"
 duration = \"20 s\"
 stop_after_collapse = \"0.01 s\"
 [[motion]]
-synthetic = { kind = \"boore\", count = 16, magnitude = 6.5, distance = \"10 km\" }
+synthetic = { kind = \"boore\", count = 10, magnitude = 6.5, distance = \"10 km\" }
 [intensity]
 measure = \"pgv\"
 ";

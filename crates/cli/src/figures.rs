@@ -34,11 +34,11 @@ impl FigureArgs {
 typed! {
     /// The formats, as typed.
     pub(crate) enum FormatName of Format {
-        /// Lines and words, for pages and for editing.
+        /// Vector graphics, for web pages and for editing.
         Svg = Self::Svg,
         /// Pixels.
         Png = Self::Png,
-        /// Lines and words, for typesetting.
+        /// Vector graphics, for typesetting.
         Pdf = Self::Pdf,
     }
 }

@@ -17,7 +17,8 @@ const SHORT: [&str; 4] = [
 ];
 
 /// All files of a run.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
+    "columns.csv",
     "envelopes.csv",
     "forces.csv",
     "frames.csv",

@@ -77,7 +77,10 @@ fn a_free_scene_in_space_leaves_its_files() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    assert_eq!(names, ["frames.csv", "report.html", "scenario.toml", "summary.json"]);
+    assert_eq!(
+        names,
+        ["columns.csv", "frames.csv", "report.html", "scenario.toml", "summary.json"]
+    );
     let summary: Value =
         serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["schema"], "space/1");

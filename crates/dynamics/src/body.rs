@@ -71,9 +71,9 @@ pub struct Round<S: Space> {
 
 /// A flat piece of boundary that carries nodes, as a plane in the body frame.
 ///
-/// Where nodes and the exact test would both find a contact, the plane decides: against a round body whose center
-/// lies before it the nodes count, against one behind it the exact test. Against a body that is not round, whose
-/// edges may reach beside the face, the direction of a contact decides as well.
+/// Where nodes and the exact test would both find a contact, the plane decides: a round body whose center is in front
+/// of it is handled by the nodes, one whose center is behind it by the exact test. For a body that is not round, whose
+/// edges may extend past the face, the direction of the contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
     /// A point of the face (m), from the center of mass.

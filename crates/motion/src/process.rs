@@ -415,6 +415,6 @@ pub(crate) fn close_ends(
     let pga = math::peak(a);
     let share = if pga > 0.0 { largest / pga } else { 0.0 };
     steps.push(format!(
-        "ends closed by a smooth acceleration of at most {largest:.1e} m/s2 ({share:.1e} of PGA)"
+        "final velocity and displacement brought to zero by a smooth acceleration of at most {largest:.1e} m/s2 ({share:.1e} of PGA)"
     ));
 }

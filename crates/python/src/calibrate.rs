@@ -159,7 +159,7 @@ pub(crate) fn calibrate_collapse(
         };
         let found = others.iter().find(|(name, _)| name == named);
         let (_, found) = found.ok_or_else(|| {
-            PyValueError::new_err(format!("no scenario of the name \"{named}\" was given"))
+            PyValueError::new_err(format!("no scenario named \"{named}\" was given"))
         })?;
         scenarios.push((*found.inner).clone());
     }

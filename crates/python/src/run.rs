@@ -10,7 +10,6 @@ use barrelstack::report;
 use barrelstack::variants::{Answer, Shown};
 use barrelstack::verify::Verification;
 use barrelstack::watch::{Joint, StressEnvelope};
-use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
 use barrelstack_report::{Format, document_pdf, html};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::exceptions::{PyIndexError, PyValueError};
@@ -208,11 +207,7 @@ impl Run {
     /// Returns the nominal case and its variants, a row each; `None` if none were run.
     fn variants(&self) -> Option<Table> {
         let results = &self.shown().variants.as_ref()?.results;
-        let numbers = Values::Integer((0..results.len()).map(|n| i64::try_from(n).ok()).collect());
-        let spec = ColumnSpec::new("variant", "", Role::Key, ValueKind::Integer);
-        let mut columns = vec![Column { spec, values: numbers }];
-        columns.extend(ensemble::table(results));
-        Some(Table { columns })
+        Some(Table { columns: ensemble::variants(results.iter()) })
     }
 
     fn html(&self, py: Python<'_>) -> String {

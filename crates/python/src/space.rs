@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use barrelstack::ensemble;
 use barrelstack::export::Folder;
-use barrelstack_report::column::{Column, ColumnSpec, Role, ValueKind, Values};
 use barrelstack_report::html;
 use barrelstack_space::report::document;
 use barrelstack_space::run::Frames;
@@ -90,13 +88,7 @@ impl SpatialRun {
         if cases.is_empty() {
             return None;
         }
-        let numbers = Values::Integer((0..cases.len()).map(|n| i64::try_from(n).ok()).collect());
-        let spec = ColumnSpec::new("variant", "", Role::Key, ValueKind::Integer);
-        let results: Vec<_> = cases.iter().map(|case| case.result.clone()).collect();
-        let mut all = vec![Column { spec, values: numbers }];
-        all.extend(ensemble::table(&results));
-        all.extend(columns::table(cases));
-        Some(Table { columns: all })
+        Some(Table { columns: columns::variants(cases) })
     }
 
     fn html(&self, py: Python<'_>) -> String {

@@ -403,7 +403,7 @@ impl CaseError {
                  \"transverse\", or to \"longitudinal\" with stack.columns as many as stack.columns_along"
                     .to_owned()
             }
-            Self::Record(name) => format!("no record of the name \"{name}\" was given"),
+            Self::Record(name) => format!("no record named \"{name}\" was given"),
             Self::Ground(error) => error.to_string(),
         }
     }

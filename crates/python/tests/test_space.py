@@ -74,7 +74,7 @@ def test_variants_state_directions(run: SpatialRun) -> None:
 def test_its_files_are_those_of_the_command(run: SpatialRun, tmp_path: Path) -> None:
     run.write(tmp_path / "out")
     names = sorted(path.name for path in (tmp_path / "out").iterdir())
-    assert names == ["frames.csv", "report.html", "scenario.toml", "summary.json", "variants.csv"]
+    assert names == ["columns.csv", "frames.csv", "report.html", "scenario.toml", "summary.json", "variants.csv"]
     assert (tmp_path / "out" / "report.html").read_text() == run.html()
     with pytest.raises(Exception, match="not empty"):
         run.write(tmp_path / "out")

@@ -72,7 +72,7 @@ pub(super) struct Cases {
 }
 
 impl Cases {
-    /// Creates the cases, with the six barrels under `record`.
+    /// Creates the cases; the record shakes the six barrels.
     pub(super) fn new(record: Option<&Path>) -> Result<Self, ReproduceError> {
         let change = match record {
             Some(path) => record_of(path),

@@ -1,5 +1,6 @@
 //! Additional columns of tables of cases in space: directions of falls.
 
+use barrelstack::ensemble;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 
 use crate::fate::Heading;
@@ -50,10 +51,13 @@ pub fn values(
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
 }
 
-/// Returns the columns of cases.
-pub fn table(cases: &[Case]) -> Vec<Column> {
+/// Returns a table of a stack as stated, number 0, and its variants: the columns of a plane, and those of directions.
+/// Cases that were interrupted have no row.
+pub fn variants(cases: &[Case]) -> Vec<Column> {
+    let mut all = ensemble::variants(cases.iter().map(|case| &case.result));
+    let ended = cases.iter().filter(|case| !case.result.is_interrupted());
     let rows: Vec<Vec<Option<Value>>> =
-        cases.iter().map(|case| values(case.headings()).collect()).collect();
+        ended.map(|case| values(case.headings()).collect()).collect();
     let text = |value: &Option<Value>| match value {
         Some(Value::Text(text)) => Some(text.clone()),
         _ => None,
@@ -62,13 +66,13 @@ pub fn table(cases: &[Case]) -> Vec<Column> {
         Some(Value::Integer(count)) => Some(*count),
         _ => None,
     };
-    let column = |(at, spec): (usize, ColumnSpec)| {
+    all.extend(specs().enumerate().map(|(at, spec)| {
         let values = rows.iter().map(|row| &row[at]);
         let values = match spec.kind {
             ValueKind::Text => Values::Text(values.map(text).collect()),
             ValueKind::Integer | ValueKind::Number => Values::Integer(values.map(count).collect()),
         };
         Column { spec, values }
-    };
-    specs().enumerate().map(column).collect()
+    }));
+    all
 }

@@ -34,8 +34,8 @@ pub fn document(answer: &Answer) -> Document {
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "One run, turned by hand, or flat from three sides on one clock and to one scale, where what is nearer \
-             covers what is behind it as they stood at rest.{}",
+            "One run, in a view that can be turned, or flat from three sides at the same time and scale. In the flat \
+             views bodies cover each other as they stood at rest.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
@@ -120,8 +120,8 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges are those of 5 to 95 % of the variants. Directions are those of the first body that leaves its seat, \
-             and of the barrels that fell{}, from where they stood to where they were then.",
+            "Ranges are those of 5 to 95 % of the variants. The first body has the direction in which it left its \
+             seat; barrels that fell{} have that from their places at rest to their places at the end of that time.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],

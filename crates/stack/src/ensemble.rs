@@ -26,7 +26,7 @@ use crate::watch::End;
 
 pub use barrelstack_dynamics::lanes::Width;
 pub use case::{CaseResult, Prepared};
-pub use columns::{CASE_COLUMNS, CaseColumn, Get, table};
+pub use columns::{CASE_COLUMNS, CaseColumn, Get, meaning, table, variants};
 pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
 

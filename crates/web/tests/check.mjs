@@ -5,10 +5,11 @@
 // `cargo xtask test` calls this file; $CHROMIUM names the browser, whose driver is that of the checks of reports.
 // Exit status: 0 when all checks pass, 1 when one fails, 2 when the browser or a file is missing.
 
-import { execFileSync } from "node:child_process";
+import { execFile, execFileSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { promisify } from "node:util";
 import { gzipSync } from "node:zlib";
 import { launch, missing } from "../../report/tests/browser/lib/browser.mjs";
 import { checkPage } from "./page.mjs";
@@ -22,6 +23,9 @@ for (const [name, path] of Object.entries({ BARRELSTACK: program, ENGINE: engine
 }
 
 const native = (...words) => execFileSync(program, words, { encoding: "utf8", maxBuffer: 1 << 28, stdio: ["ignore", "pipe", "ignore"] });
+
+/** The same beside other work. */
+const beside = async (...words) => (await promisify(execFile)(program, words, { encoding: "utf8", maxBuffer: 1 << 28 })).stdout;
 
 /** What is said of a run without the time that it took. */
 const said = (json) => JSON.stringify({ ...json, run: { ...json.run, wall_seconds: null } });
@@ -106,8 +110,11 @@ for (const [name, text] of scenarios) {
       records.push([record, readFileSync(record)]);
     }
     const words = set.flatMap((change) => ["--set", change]);
-    const expected = said(JSON.parse(native("run", name, "--json", "--quiet", "--no-remedy", ...words)));
-    const answer = await ask({ ask: "summary", scenario: text, name: `${name}.toml`, set }, records);
+    const [json, answer] = await Promise.all([
+      beside("run", name, "--json", "--quiet", "--no-remedy", ...words),
+      ask({ ask: "summary", scenario: text, name: `${name}.toml`, set }, records),
+    ]);
+    const expected = said(JSON.parse(json));
     demand(answer.status === 0, answer.trap ?? answer.text);
     demand(said(JSON.parse(answer.text)) === expected, difference(expected, said(JSON.parse(answer.text))));
     demand(answer.told > 0, "nothing was told on the way");

@@ -206,7 +206,7 @@ fn differences_in(sides: &[Side]) -> Vec<String> {
             };
             let (change, [low, high]) = (points(pair.reduction.abs()), [low, high].map(points));
             let difference = if change < 1.0 {
-                "the shares are equal to a point".to_owned()
+                "the shares differ by less than one point".to_owned()
             } else {
                 format!("the share of {second} is {change} points {word}")
             };

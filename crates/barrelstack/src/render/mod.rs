@@ -233,7 +233,7 @@ impl RenderFolder {
         })
     }
 
-    /// Writes a part, whose number of files `write` returns; where a file is refused, those before it are removed.
+    /// Writes a part by calling `write`, which returns the number of files; where a file cannot be written, removes those before it.
     fn whole(
         &self,
         part: Part,

@@ -201,7 +201,7 @@ fn displacements(run: &Run, variants: Option<&Variants>) -> Vec<Block> {
     let band = variants.map(|variants| band(run, variants)).unwrap_or_default();
     let mut caption = "Horizontal displacement relative to the ground.".to_owned();
     if !band.is_empty() {
-        caption += " Between the thin lines are 90 % of all variants, each where it was last once it has ended.";
+        caption += " Between the thin lines lie 90 % of all variants; one that has ended counts with its last value.";
     }
     series.extend(band);
     let axis = Axis { range, ..Axis::new("displacement", "cm") };
@@ -258,9 +258,9 @@ fn stresses(run: &Run) -> Vec<Block> {
             0,
             Block::Paragraph(
                 "Stress is force per meter of boundary in the plane of the model, drawn outward from where \
-                 it acts. A node bears over half of the way to each of its neighbors, a contact without nodes over \
-                 1 cm at full scale, an assumption: stress there is force over that length. Gray: at rest. Behind \
-                 it: the largest until the first loss of seat."
+                 it acts. A node is taken to bear on half of the distance to each of its neighbors, a contact \
+                 without nodes on 1 cm at full scale (an assumption); the stress is the force over that length. Gray: \
+                 at rest. Behind it: the largest until the first loss of seat."
                     .into(),
             ),
         );

@@ -7,9 +7,10 @@ use crate::scenario::{
     StackInterfaces, StackSpec,
 };
 
-/// Quantities that a whole stack shares, in the order of their axes; bodies follow, two axes each, and in space after
-/// all of these their places along the barrels, so that the first row has the same draws as in the plane across the
-/// barrels.
+/// Quantities that a whole stack shares, in the order of their axes.
+///
+/// The bodies follow with two axes each. In space their places along the barrels come after all of these, so that the
+/// first row of the stack draws the same values as in the plane across the barrels.
 #[derive(Clone, Copy)]
 enum Shared {
     FrictionGround,

@@ -157,9 +157,17 @@ fn matching(
     for entry in entries {
         let entry = entry.map_err(|error| set.inconsistent("folder", system::words(&error)))?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        if entry.path().is_file() && !name.starts_with('.') && matches(pattern, &name) {
-            names.push(name);
+        let path = entry.path();
+        if name.starts_with('.') || path.is_dir() || !matches(pattern, &name) {
+            continue;
         }
+        if !path.is_file() {
+            return refuse(format!(
+                "{} is not a file that can be read: remove it from the folder, or give a `pattern` in the study that leaves it out",
+                path.display()
+            ));
+        }
+        names.push(name);
     }
     if names.is_empty() {
         return refuse(format!("no file of the folder {} matches \"{pattern}\"", folder.display()));

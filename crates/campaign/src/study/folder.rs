@@ -174,7 +174,7 @@ impl Folder {
             }
         } else if let Some(foreign) = foreign {
             return refuse(format!(
-                "holds {foreign} and is no folder of a study; name another, new or empty"
+                "holds {foreign} and is not a study folder; name another, new or empty"
             ));
         }
         system::folder_below(path, Path::new(SHARDS))

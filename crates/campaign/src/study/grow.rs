@@ -139,7 +139,7 @@ pub(super) fn difference(known: &Provenance, wanted: &Provenance) -> Option<Stri
         return Some(if same_name {
             format!("the {what} \"{}\" has changed", motion.name)
         } else {
-            format!("it has the motion \"{}\", which this one has not", motion.name)
+            format!("it has the motion \"{}\", which this one does not have", motion.name)
         });
     }
     let changed = known.common.iter().find(|common| !wanted.common.contains(common));

@@ -55,8 +55,8 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     if !path.is_file() {
         let there = |path: &Path| path.symlink_metadata().is_ok();
         let what = match (folder.is_dir(), there(&path), there(folder)) {
-            (true, true, _) => format!("is no folder of a study: its {MANIFEST} is not a file"),
-            (true, false, _) => format!("is no folder of a study: it has no {MANIFEST}"),
+            (true, true, _) => format!("is not a study folder: its {MANIFEST} is not a file"),
+            (true, false, _) => format!("is not a study folder: it has no {MANIFEST}"),
             (false, _, true) => "is not a folder".to_owned(),
             (false, _, false) => "is not there".to_owned(),
         };
@@ -92,7 +92,7 @@ pub(super) fn read(folder: &Path) -> Result<Manifest, StudyError> {
     }
     let known: Provenance = serde_json::from_slice(&bytes).map_err(|error| {
         refuse(format!(
-            "holds a {MANIFEST} that is no manifest of a study: {error}; name another folder"
+            "holds a {MANIFEST} that is not the manifest of a study: {error}; name another folder"
         ))
     })?;
     if known.schema != LAYOUT {

@@ -4,7 +4,7 @@ use super::Study;
 use super::design::Case;
 use super::motions::{MEASURES, Shaken};
 use super::space::{self, FinishedCase};
-use crate::ensemble::{CASE_COLUMNS, CaseColumn};
+use crate::ensemble::{self, CASE_COLUMNS, CaseColumn};
 use barrelstack_report::column::{ColumnSpec, Role, Value, ValueKind};
 use barrelstack_space::columns;
 
@@ -27,8 +27,7 @@ pub(super) fn meaning(spec: &ColumnSpec) -> &'static str {
         (Role::Motion, _) => "factor by which it was scaled",
         (Role::Intensity, _) => "intensity measure of the motion as shaken",
         (Role::Outcome | Role::Demand | Role::Run, name) => {
-            let column = CASE_COLUMNS.iter().find(|column| column.name == name);
-            column.map(|column| column.meaning).or_else(|| columns::meaning(name)).unwrap_or("")
+            ensemble::meaning(name).or_else(|| columns::meaning(name)).unwrap_or("")
         }
     }
 }

@@ -219,7 +219,7 @@ pub(super) fn from_bytes(
     bytes: Vec<u8>,
     key: &str,
 ) -> Result<(StudyTable, Option<String>), ParquetError> {
-    let foreign = || ParquetError::General("it is no table of a study".to_owned());
+    let foreign = || ParquetError::General("it is not the table of a study".to_owned());
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes))?;
     let metadata = reader.metadata().file_metadata();
     let about = |key: &str| {

@@ -140,7 +140,7 @@ pub struct Slopes<S: Space> {
 pub struct Shares<R> {
     /// `a` of [`Spread`].
     pub deepest: R,
-    /// `b`: less than `a` only if bodies are turned out of the patch.
+    /// `b` of [`Spread`]; less than `a` only if the bodies are rotated out of the plane of the patch.
     pub others: R,
     /// Share of the friction that may act beside the center of pressure; zero for a point.
     pub aside: R,

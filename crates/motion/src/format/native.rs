@@ -154,7 +154,9 @@ fn places(
         count if count == 0 || count == channels => Ok(found),
         count => Err(source.damaged(
             last,
-            format!("one line \"# recorded:\" for all, or one to each of {channels} channels"),
+            format!(
+                "one line \"# recorded:\" for all, or one line for each of the {channels} channels"
+            ),
             format!("{count} such lines"),
             "correct the header lines",
         )),

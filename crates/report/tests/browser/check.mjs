@@ -56,7 +56,12 @@ for (const name of ["minute", "heap"]) {
   await suite.check(`${name}: a minute of twelve barrels is small and opens at once`, () =>
     opening((use) => on(name, {}, use), reportOf(pages, name)));
 }
-for (const [name, { several, plain }] of Object.entries(PAGES)) {
+// Two pages at a time: most checks wait for a frame or a file.
+const twoAtATime = async (queue, use) => {
+  const next = async () => { for (let one = queue.shift(); one; one = queue.shift()) await use(one); };
+  await Promise.all([next(), next()]);
+};
+const used = async ([name, { several, plain }]) => {
   const long = ["minute", "heap"].includes(name);
   const moved = name !== "disc";
   const checks = plain ? [["has no finding of axe", accessible]] : [
@@ -87,7 +92,8 @@ for (const [name, { several, plain }] of Object.entries(PAGES)) {
     faults = [error.message];
   }
   await suite.check(`${name}: writes no error and asks for nothing but itself`, () => demand(faults.length === 0, faults.join("\n")));
-}
+};
+await twoAtATime(Object.entries(PAGES), used);
 for (const name of ["demo", "eight", "along", "levels", "space"]) {
   const checks = {
     "shows wood where barrels are, in three dimensions": shows,
@@ -116,16 +122,10 @@ for (const name of ["demo", "eight", "levels"]) {
 }
 await suite.check("demo: an instant has an address", () => links(browser, reportOf(pages, "demo")));
 await suite.check("axe finds what is wrong with a spoiled page", () => on("eight", {}, spoiled));
-// Pictures, two at a time.
-const queue = looks();
-const compareLooks = async () => {
-  for (let one = queue.shift(); one; one = queue.shift()) {
-    const [name, variant] = one;
-    await suite.check(`${name}: looks as kept, ${variant}`, () => goldens.check(name, variant));
-  }
-};
+// Pictures.
 await goldens.tools();
-await Promise.all([compareLooks(), compareLooks()]);
+await twoAtATime(looks(), ([name, variant]) =>
+  suite.check(`${name}: looks as kept, ${variant}`, () => goldens.check(name, variant)));
 await suite.check("every kept picture belongs to a page", async () => goldens.orphans());
 await suite.check("small defects of a page are seen", () => goldens.defects());
 await browser.close();

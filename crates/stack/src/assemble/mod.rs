@@ -144,7 +144,7 @@ pub struct Assembly {
     /// Force (N) between a barrel and a rack that the staves bear; infinite for a free scene.
     pub stave_capacity: f64,
     /// Displacement (m) of a rack on the barrels below beyond which it is no longer supported: across the barrels
-    /// until friction cannot hold its bearing on the round, along them until its rail passes the end.
+    /// until friction can no longer hold it on the curved side of the barrel, along them until its rail passes the end.
     pub rack_reach: f64,
 }
 

@@ -90,6 +90,11 @@ impl CaseResult {
         Self { outcome: Ok(Outcome::Interrupted), ..Self::failed(String::new()) }
     }
 
+    /// Returns `true` for a case that was stopped before its end.
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self.outcome, Ok(Outcome::Interrupted))
+    }
+
     /// Creates the result of a case that ran until a time (s), from its verdict and the fates of its bodies.
     pub(super) fn of(
         assembly: &Assembly,

@@ -46,24 +46,24 @@ impl CaseColumn {
 
     /// Returns the value of a case.
     pub fn of(&self, case: &CaseResult) -> Option<Value> {
-        self.values(std::slice::from_ref(case)).get(0)
+        self.values(&mut std::iter::once(case)).get(0)
     }
 
     /// Returns the values of all cases.
-    fn values(&self, cases: &[CaseResult]) -> Values {
+    fn values(&self, cases: &mut dyn Iterator<Item = &CaseResult>) -> Values {
         match self.get {
             Get::Integer(get) => {
                 let whole = |case| get(case).and_then(|count| i64::try_from(count).ok());
-                Values::Integer(cases.iter().map(whole).collect())
+                Values::Integer(cases.map(whole).collect())
             }
             // A NaN in a table would look like a value.
             Get::Number(get) => {
                 let number = |case| get(case).filter(|value| !value.is_nan());
-                Values::Number(cases.iter().map(number).collect())
+                Values::Number(cases.map(number).collect())
             }
             Get::Text(get) => {
                 let text = |case| get(case).filter(|text| !text.is_empty());
-                Values::Text(cases.iter().map(text).collect())
+                Values::Text(cases.map(text).collect())
             }
         }
     }
@@ -82,8 +82,35 @@ impl CaseColumn {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn table(cases: &[CaseResult]) -> Vec<Column> {
-    let column = |column: &CaseColumn| Column { spec: column.spec(), values: column.values(cases) };
+    columns(&cases.iter())
+}
+
+fn columns<'a>(cases: &(impl Iterator<Item = &'a CaseResult> + Clone)) -> Vec<Column> {
+    let column = |column: &CaseColumn| Column {
+        spec: column.spec(),
+        values: column.values(&mut cases.clone()),
+    };
     CASE_COLUMNS.iter().map(column).collect()
+}
+
+/// Returns a table of a stack as stated, number 0, and its variants: their numbers, then the columns of
+/// [`CASE_COLUMNS`]. Cases that were interrupted have no row.
+pub fn variants<'a>(cases: impl Iterator<Item = &'a CaseResult> + Clone) -> Vec<Column> {
+    let ended = (0..).zip(cases).filter(|(_, case)| !case.is_interrupted());
+    let spec = ColumnSpec::new(VARIANT.0, "", Role::Key, ValueKind::Integer);
+    let numbers = Values::Integer(ended.clone().map(|(number, _)| Some(number)).collect());
+    let mut all = vec![Column { spec, values: numbers }];
+    all.extend(columns(&ended.map(|(_, case)| case)));
+    all
+}
+
+/// Name and description of the first column of [`variants`].
+const VARIANT: (&str, &str) = ("variant", "number of the variant; 0 is the stack as stated");
+
+/// Returns the description of a column of cases; `None` if there is no such column.
+pub fn meaning(name: &str) -> Option<&'static str> {
+    let known = CASE_COLUMNS.iter().map(|column| (column.name, column.meaning));
+    known.chain([VARIANT]).find_map(|(known, meaning)| (known == name).then_some(meaning))
 }
 
 /// Each line: description, name, unit, role, and accessor.

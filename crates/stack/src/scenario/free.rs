@@ -35,7 +35,7 @@ section! {
 }
 
 section! {
-    /// Viscous drag on a body, relative to the ground at rest.
+    /// Viscous drag on a body, by its velocity relative to the ground before it was shaken.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).

@@ -28,7 +28,7 @@ const BLOCK: u32 = 16;
 pub(super) struct Plan {
     /// Number of changes of height, the highest first; the first that suffices ends their search.
     pub(super) heights: usize,
-    /// Number of pretensions, from loose to tight, numbered after the heights.
+    /// Number of pretensions, from loose to tight; their numbers follow those of the heights.
     pub(super) straps: usize,
     /// Number of variants of every change.
     pub(super) variants: u32,

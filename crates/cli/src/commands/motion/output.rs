@@ -61,7 +61,7 @@ impl Output {
             "npz" => Form::Npz,
             "txt" => Form::Txt,
             _ => bail!(
-                "{}: its ending does not say how to write it; use .at2, .csv, .npz or .txt",
+                "{}: the extension of the name does not say the format; use .at2, .csv, .npz or .txt",
                 self.output.display()
             ),
         };

@@ -77,7 +77,7 @@ pub(super) fn find(
             return Err(source.damaged(
                 last,
                 format!("{width} units, one for each column"),
-                format!("{}, which is no unit known here", quoted(&damaged)),
+                format!("{}, which is not a known unit", quoted(&damaged)),
                 "correct it, or write names and units in one line, such as \"time (s), acceleration (g)\"",
             ));
         }
