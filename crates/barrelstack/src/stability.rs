@@ -106,7 +106,7 @@ impl StabilityRow {
 }
 
 impl StabilityTable {
-    /// The rows, a line each, for people.
+    /// The rows, as a line of text each.
     pub fn lines(&self) -> Vec<String> {
         let wide = self.rows.iter().map(|row| row.rack.len()).max().unwrap_or(0).max(4);
         let mut lines = vec![

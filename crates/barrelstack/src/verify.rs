@@ -295,7 +295,7 @@ fn judge(base: &Run, mut repeats: Vec<Repeat>, skipped: Vec<Skipped>) -> Verific
     Verification { apart: APART * scale, predictable_until, robust, repeats, skipped }
 }
 
-/// Formats a short time (s) for people.
+/// Formats a short time (s) for display.
 fn shortly(time: f64) -> String {
     if time < 1.0 { format!("{:.1} ms", 1e3 * time) } else { format!("{time:.1} s") }
 }
@@ -362,7 +362,7 @@ impl Verification {
         sentences
     }
 
-    /// Returns the findings as pairs of name and value for people.
+    /// Returns the findings as pairs of name and value, as text.
     pub fn rows(&self) -> Vec<(String, String)> {
         const UNKNOWN: &str = "not known: no repeat reached its end";
         let centimeters = barrelstack_report::significant(100.0 * self.apart, 2);

@@ -145,7 +145,7 @@ described! {
         pub correlation: Vec<Vec<f64>> as "1" = found.correlation.clone(),
         /// Ratio of the largest to the smallest eigenvalue of the correlation of the sensitivities.
         pub condition: Option<f64> as "1" = found.condition.and_then(bounded),
-        /// Further figures for people, by name.
+        /// Further figures for display, by name.
         pub facts: BTreeMap<String, String> = found.facts.iter().cloned().collect(),
         /// Lines to paste into a scenario.
         pub scenario: String = found.scenario.clone(),

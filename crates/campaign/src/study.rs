@@ -87,7 +87,7 @@ use setting::Setting;
 /// ```
 #[derive(Debug)]
 pub struct Study {
-    /// One line for people.
+    /// Title, in one line.
     pub title: String,
     /// Seed of everything that is drawn.
     pub seed: u64,

@@ -131,7 +131,7 @@ pub(crate) struct RunArgs {
     /// Draw the stack in the summary with the characters of every keyboard.
     #[arg(long, conflicts_with = "json")]
     pub(crate) plain: bool,
-    /// Print one JSON document in place of the summary for people.
+    /// Print one JSON document in place of the summary.
     #[arg(long)]
     pub(crate) json: bool,
     /// Show no progress; warnings are still printed.
@@ -164,7 +164,7 @@ pub(crate) struct CheckArgs {
     /// it sinks, its longest period of sway, and the tilt of the floor at which it falls.
     #[arg(long)]
     pub(crate) table: bool,
-    /// Print one JSON document in place of the lines for people.
+    /// Print one JSON document in place of the lines.
     #[arg(long)]
     pub(crate) json: bool,
 }

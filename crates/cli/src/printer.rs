@@ -191,7 +191,7 @@ pub(crate) fn side_by_side(summary: &Summary) -> Option<String> {
     Some(format!("To see it side by side: {command}"))
 }
 
-/// Prints the answer for people; `changes` are the values changed on the command line.
+/// Prints the answer as text; `changes` are the values changed on the command line.
 pub(crate) fn answer(
     answer: &Answer,
     changes: &[String],

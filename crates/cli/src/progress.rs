@@ -243,7 +243,7 @@ fn thousandths(value: f64) -> u64 {
     (1e3 * value) as u64
 }
 
-/// Formats a time for people.
+/// Formats a time for display.
 fn rounded(time: Duration) -> String {
     match time.as_secs() {
         seconds @ 0..90 => format!("{} s", seconds.max(1)),

@@ -124,7 +124,7 @@ const SHOWN: [&str; 5] = [
     "rack_walk_peak",
 ];
 
-/// Returns the rows of the summary for people: name and value.
+/// Returns the rows of the summary as text: name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));

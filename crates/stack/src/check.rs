@@ -70,7 +70,7 @@ impl AtRest {
 }
 
 impl Checked {
-    /// Returns the findings as lines for people.
+    /// Returns the findings as lines of text.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.title.clone()];
         let counts =

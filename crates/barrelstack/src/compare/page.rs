@@ -310,12 +310,12 @@ fn describe(at: usize, side: &Side) -> String {
     let shown = side.summary.ensemble.as_ref() == Some(spread);
     let view =
         if shown { side.run.assembly.view } else { side.other.as_ref().map(|other| other.view) };
-    let place = view.filter(|_| side.other.is_some()).map(|view| format!(" {}", view.words()));
-    let place = place.unwrap_or_default();
+    let shaken = view.filter(|_| side.other.is_some());
+    let shaken = shaken.map_or_else(String::new, |view| format!("shaken {}, it ", view.words()));
     let [low, high] = spread.interval.map(words::percent);
     let Spread { collapsed, variants, .. } = spread;
     let result = format!(
-        "{name}: falls{place} in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
+        "{name}: {shaken}falls in {collapsed} of {variants} variants ({low} to {high} of all such stacks)"
     );
     let drift = side.summary.demands.top_drift_ratio.filter(|_| stands(side));
     match drift {

@@ -45,7 +45,7 @@ pub(crate) fn shown(path: &str, value: &str) -> String {
     name.map_or_else(|| readable(value), str::to_owned)
 }
 
-/// Formats a value for people: numbers, also before a unit, to six significant digits.
+/// Formats a value for display: numbers, also before a unit, to six significant digits.
 pub(crate) fn readable(value: &str) -> String {
     let (first, rest) = value.split_once(' ').unwrap_or((value, ""));
     match first.parse::<f64>() {

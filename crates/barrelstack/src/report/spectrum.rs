@@ -93,7 +93,7 @@ fn words(rocking: &Rocking) -> String {
     format!(
         "A stack has no period of its own: the farther it rocks, the longer it takes, so the shaking \
          that it answers to changes as it sways. While it stood, its top drifted by up to {reached} \
-         against its foot, and {measured}. A rigid block of the same mass and foot {rigid} (Housner \
+         against its foot, and {measured}. A rigid block of the same mass and width at its foot {rigid} (Housner \
          1963: T = 4/p · arcosh(1/(1 − θ₀/α)) with p = {} 1/s and α = {} rad); a stack of loose parts \
          gives at every level and is slower.",
         significant(block.frequency, 3),

@@ -19,9 +19,9 @@ pub struct Measure {
     pub name: String,
     /// SI unit.
     pub unit: String,
-    /// Name for people.
+    /// Name for display.
     pub label: String,
-    /// Unit for people.
+    /// Unit for display.
     pub shown_unit: &'static str,
     /// Printed units per SI unit.
     pub scale: f64,

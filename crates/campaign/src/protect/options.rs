@@ -39,7 +39,7 @@ pub struct Protection {
     pub kind: Kind,
     /// Name of its folder, of letters, digits and dashes.
     pub key: String,
-    /// Its name for people.
+    /// Its name for display.
     pub name: String,
     /// Overrides of the scenario.
     pub changes: Vec<String>,

@@ -332,7 +332,7 @@ impl Study {
         ["motion".to_owned(), "level".to_owned()].into_iter().chain(factors).collect()
     }
 
-    /// Returns the axes that take more than one value, with their names for people.
+    /// Returns the axes that take more than one value, with their names for display.
     pub(super) fn varied(&self) -> Vec<(usize, String)> {
         let level = self.intensity.as_ref().is_some_and(|intensity| match &intensity.levels {
             Levels::List(levels) => levels.len() > 1,

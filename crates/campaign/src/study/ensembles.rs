@@ -170,7 +170,7 @@ fn matching(
         names.push(name);
     }
     if names.is_empty() {
-        return refuse(format!("no file of the folder {} matches \"{pattern}\"", folder.display()));
+        return refuse(format!("no file in the folder {} matches \"{pattern}\"", folder.display()));
     }
     if names.len() > MOST {
         return refuse(format!(

@@ -206,7 +206,7 @@ table! {
     pub static STUDY = "study";
     /// Version of the language of study files.
     schema = Kind::Integer(1, SCHEMA), Default::Required;
-    /// One line for people.
+    /// Title, in one line.
     title = Kind::Text, Default::Derived("name of the file");
     /// Seed of everything that is drawn.
     seed = Kind::Integer(0, u32::MAX as i64), Default::Value("1");

@@ -114,7 +114,7 @@ impl Shaking {
         }
     }
 
-    /// Describes its source for people; the study has the numbers.
+    /// Describes its source in words; the study has the numbers.
     pub(super) fn source(&self, base: &MotionSpec) -> String {
         let spec: &MotionSpec = match self {
             Self::Base => base,

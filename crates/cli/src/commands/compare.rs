@@ -50,7 +50,7 @@ pub(crate) struct CompareArgs {
     /// Let the folder hold files, and replace those of an earlier comparison.
     #[arg(long)]
     overwrite: bool,
-    /// Print one JSON document in place of the sentences for people.
+    /// Print one JSON document in place of the sentences.
     #[arg(long)]
     json: bool,
     /// Show no progress.

@@ -136,7 +136,7 @@ fn before_and_after(args: &ProtectArgs, found: &mut Ranking) -> anyhow::Result<(
     }
 }
 
-/// Returns the table for people.
+/// Returns the table as text.
 fn lines(found: &Ranking) -> Vec<String> {
     let mut lines = printer::verdict(&found.document.verdict);
     lines.push(String::new());

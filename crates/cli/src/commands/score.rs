@@ -55,7 +55,7 @@ pub(crate) fn run(args: &ScoreArgs) -> anyhow::Result<ExitCode> {
     )
 }
 
-/// Returns the table for people.
+/// Returns the table as text.
 fn lines(sheet: &Sheet) -> Vec<String> {
     let mut lines = printer::verdict(&sheet.document.verdict);
     let velocities = &sheet.protocol.velocities;

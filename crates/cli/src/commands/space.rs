@@ -117,7 +117,7 @@ fn in_a_plane(scenario: &Scenario) -> &'static str {
     if scenario.stack().is_some() { ", or set stack.view to \"both\"" } else { "" }
 }
 
-/// Returns the answer for people.
+/// Returns the answer as text.
 fn lines(answer: &Answer) -> Vec<String> {
     let Answer { run, summary, .. } = answer;
     let mut lines = vec![summary.title.clone(), format!("  {}", words::headline(run, summary))];

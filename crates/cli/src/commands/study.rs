@@ -74,7 +74,7 @@ struct RunArgs {
     threads: Option<NonZero<usize>>,
     #[command(flatten)]
     lanes: LanesArgs,
-    /// Print one JSON document in place of the summary for people.
+    /// Print one JSON document in place of the summary.
     #[arg(long)]
     json: bool,
     /// Show no progress.

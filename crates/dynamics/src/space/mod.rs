@@ -109,7 +109,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Returns the quantity that is conserved without moments, up to a constant factor: the angular momentum in
     /// space, the spin itself in the plane.
     fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
-    /// Returns the spin of a body with a [`Space::momentum`].
+    /// Returns the spin of a body from its angular momentum, [`Space::momentum`].
     fn spin_of(
         inertia: Self::Inertia,
         orientation: Self::Orientation,

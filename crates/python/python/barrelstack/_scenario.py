@@ -237,7 +237,7 @@ class Scenario:
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Title, in one line."""
         return self._shaken.title
 
     @property

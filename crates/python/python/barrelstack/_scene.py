@@ -19,7 +19,7 @@ class Scene:
     Parameters
     ----------
     title
-        One line for people.
+        Title, in one line.
     **tables
         Other tables of a scenario, such as ``run={"duration": "2 s"}`` or ``motion={"bundled": "napa-college-2014"}``.
 

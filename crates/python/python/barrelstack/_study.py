@@ -214,7 +214,7 @@ class Study:
 
     @property
     def title(self) -> str:
-        """One line for people."""
+        """Title, in one line."""
         return self._native.title
 
     @property

@@ -62,7 +62,7 @@ macro_rules! devices {
                 Ok(Self { $($name: $name::read(stack.section(stringify!($name))?, levels)?),* })
             }
 
-            /// Writes their tables.
+            /// Writes the tables of the devices.
             pub(crate) fn write(&self, stack: &mut Writer) {
                 $(stack.table(stringify!($name), self.$name.write());)*
             }

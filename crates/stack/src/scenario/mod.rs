@@ -107,7 +107,7 @@ pub mod error {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Title, one line for people.
+    /// Title, in one line.
     pub title: String,
     /// The bodies.
     pub scene: Scene,

@@ -30,7 +30,7 @@ table! {
     pub static ROOT = "scenario";
     /// Version of the scenario language.
     schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
-    /// One line for people.
+    /// Title, in one line.
     title = Kind::Text, Default::Derived("name of the file");
     /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
     extends = Kind::Text, Default::Nothing;

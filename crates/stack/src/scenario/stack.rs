@@ -138,7 +138,7 @@ impl View {
         }
     }
 
-    /// Returns the words for people.
+    /// Returns the words as text.
     pub fn words(self) -> &'static str {
         match self {
             Self::Transverse => "across the barrels",

@@ -91,7 +91,7 @@ fn collapse(tally: &Tally, provenance: &Provenance) -> Option<String> {
     Some(format!("  {} of {} collapse{share}", tally.collapsed, tally.judged))
 }
 
-/// Returns the summary for people.
+/// Returns the summary as text.
 pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> Vec<String> {
     let tally = answer.tally;
     let mut lines = vec![provenance.title.clone()];
@@ -152,7 +152,7 @@ pub(super) fn lines(answer: &Answer, provenance: &Provenance, folder: &Path) -> 
     lines
 }
 
-/// Describes the progress of a study, for people.
+/// Describes the progress of a study, in words.
 pub(super) fn status(status: &Status) -> Vec<String> {
     let provenance = &status.provenance;
     let mut lines = vec![

@@ -63,7 +63,7 @@ impl Waiting {
     }
 }
 
-/// Formats a time for people: "40 s", "12 min", "3 h".
+/// Formats a time for display: "40 s", "12 min", "3 h".
 fn age_in_words(age: Duration) -> String {
     match age.as_secs() {
         seconds @ ..120 => format!("{seconds} s"),

@@ -105,7 +105,7 @@ impl Set<'_> {
         Ok(text)
     }
 
-    /// Summarizes the set and its fit for people.
+    /// Summarizes the set and its fit in words.
     pub(super) fn summary(&self, target: &SelectionTarget) -> Vec<String> {
         let out = self.args.out.display();
         vec![
