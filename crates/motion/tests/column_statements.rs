@@ -3,7 +3,7 @@
 #![allow(clippy::format_collect, reason = "small tables are built as text")]
 
 use crate::columns::{given, refused, wave};
-use barrelstack_motion::{AccelerationUnit, Given, ReadOptions, Refusal, read};
+use barrelstack_motion::{AccelerationUnit, ReadOptions, Refusal, read};
 
 #[test]
 fn steps_and_counts_are_read_in_the_languages_of_the_agencies() {
@@ -152,8 +152,6 @@ fn a_hole_in_times_behind_row_numbers_is_found() {
 fn a_factor_beside_the_unit_is_not_passed_over() {
     let values: String = (0..400).map(|k| format!("{:.5}\n", 100.0 * wave(k))).collect();
     for unit in [
-        "units: % g",
-        "units: percent g",
         "units: 0.001 g",
         "units: thousandths of g",
         "units: 10^-3 g",
@@ -165,7 +163,13 @@ fn a_factor_beside_the_unit_is_not_passed_over() {
     ] {
         let text = format!("dt = 0.005 s\n{unit}\n{values}");
         let error = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap_err();
-        assert_eq!(error.refusal, Refusal::Missing(Given::Unit), "{unit}: {error}");
+        assert_eq!(error.refusal, Refusal::Damaged, "{unit}: {error}");
+    }
+    for (unit, factor) in [("units: % g", 0.01), ("units: percent g", 0.01), ("unit = 1 g", 1.0)] {
+        let record = given(&format!("dt = 0.005 s\n{unit}\n{values}"), &ReadOptions::default());
+        let plain = given(&format!("dt = 0.005 s\nunit: g\n{values}"), &ReadOptions::default());
+        let right = factor * plain.channels[0].pga();
+        assert!((record.channels[0].pga() / right - 1.0).abs() < 1e-9, "{unit}");
     }
     for unit in ["units: cm/s2", "units = g, npts = 400", "Acceleration in units of gal"] {
         given(&format!("dt = 0.005 s\n{unit}\n{values}"), &ReadOptions::default());

@@ -14,6 +14,7 @@ mod damaged_files;
 mod formats;
 mod fuzz;
 mod fuzz_readers;
+mod gravity;
 mod headers;
 mod intensity;
 mod kinematics;

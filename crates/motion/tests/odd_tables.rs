@@ -202,3 +202,130 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
     );
     obeyed(&drawn, "other marks beside them", &whole);
 }
+
+#[test]
+fn further_columns_of_times_are_left_out_if_they_agree() {
+    let (ms, us) = (1e3, 1e6);
+    for (header, factors) in [
+        ("Time (s),Time (ms),Acceleration (m/s2)", [1.0, ms]),
+        ("Time (ms),Time (s),Acceleration (m/s2)", [ms, 1.0]),
+        ("Timestamp,Time (s),Acceleration (m/s2)", [us, 1.0]),
+        ("Time (s),elapsed,Acceleration (m/s2)", [1.0, ms]),
+    ] {
+        let [one, two] = factors;
+        let table = rows(|_, t, a| format!("{:.3},{:.3},{a:.6}\n", one * t, two * t));
+        is_the_wave(&format!("{header}\n{table}"), 1);
+    }
+    let pairs = rows(|_, t, a| format!("{t:.3},{a:.6},{t:.3},{:.6}\n", 0.5 * a));
+    is_the_wave(&format!("Time (s),Acc1 (m/s2),Time (s),Acc2 (m/s2)\n{pairs}"), 2);
+    let other = rows(|_, t, a| format!("{t:.3},{:.3},{a:.6}\n", 2.0 * t));
+    let (_, said) = refusal(&format!("Time (s),Time (s),Acceleration (m/s2)\n{other}"));
+    assert!(said.contains("several that agree"), "{said}");
+}
+
+#[test]
+fn marks_among_comparable_values_are_found() {
+    for (peak, marks) in [(400.0, 1), (400.0, 3), (580.0, 1), (850.0, 4)] {
+        for mark in ["-999", "999", "-999.0"] {
+            let rough = |k: usize, a: f64| if k % 2 == 0 { a } else { -a } * peak / 1.5;
+            let table = rows(|k, t, a| {
+                let marked = (700..700 + marks).contains(&k);
+                let value = rough(k, a);
+                format!("{t:.3},{}\n", if marked { mark.to_owned() } else { format!("{value:.4}") })
+            });
+            let (_, said) = refusal(&format!("Time (s),Acceleration (cm/s2)\n{table}"));
+            assert!(said.contains("line 702") && said.contains("missing value"), "{said}");
+        }
+    }
+    // A peak among its neighbors is one, and one sample of a rough record that stands out a little.
+    let smooth = rows(|_, t, a| format!("{t:.3},{:.3}\n", (666.0 * a).clamp(-999.0, 999.0)));
+    given(&format!("Time (s),Acceleration (mm/s2)\n{smooth}"), &ReadOptions::default());
+}
+
+#[test]
+fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
+    for stated in [
+        "scale factor: 0.01\nunit: m/s2",
+        "# Scale Factor = 2.0\n# unit: m/s2",
+        "multiplier 100\nunit: m/s2",
+        "scale: 9.81\nunit: m/s2",
+        "unit = 0.01 m/s2",
+        "units: 10^-3 g",
+        "UNITS (1/100 g)",
+        "units of 0.1 cm/s^2",
+        "unit: g x 100",
+        "unit: m/s2 * 0.01",
+        "units: thousandths of g",
+    ] {
+        let text = format!("{stated}\ndt = 0.005 s\n{}", rows(|_, _, a| format!("{a:.6}\n")));
+        for unit in [None, Some(AccelerationUnit::G)] {
+            let options = ReadOptions { unit, ..ReadOptions::default() };
+            let error = read(text.as_bytes(), "a.txt", &options).unwrap_err().to_string();
+            assert!(error.contains("without a factor"), "{stated}: {error}");
+        }
+    }
+    for unit in ["0.01 m/s2", "10^-3 g", "g x 100"] {
+        let text = format!("time (s),acc ({unit})\n{}", rows(plain));
+        let options = ReadOptions { unit: Some(AccelerationUnit::Gal), ..ReadOptions::default() };
+        let error = read(text.as_bytes(), "a.txt", &options).unwrap_err().to_string();
+        assert!(error.contains("without a factor"), "{unit}: {error}");
+    }
+    for stated in ["scale factor: 1.0\nunit: m/s2", "unit = 1 m/s2", "unit: m/s**2", "units: m s-2"]
+    {
+        let values = rows(|_, _, a| format!("{a:.6}\n"));
+        is_the_wave(&format!("{stated}\ndt = 0.005 s\n{values}"), 1);
+    }
+}
+
+#[test]
+fn count_and_step_of_a_peer_header_are_read_in_other_words() {
+    for stated in [
+        "dt(s)=0.005 npts=3200",
+        "NPTS: 3200, DT (sec): 0.005",
+        "npts = 3200  dt [s] = .005",
+        "NPTS=3200, DT(ms)=5",
+    ] {
+        let text = format!(
+            "PEER NGA STRONG MOTION DATABASE RECORD\nMade, Station, 090\n\
+             ACCELERATION TIME SERIES IN UNITS OF M/S2\n{stated}\n{}",
+            rows(|_, _, a| format!("{a:15.7E}\n"))
+        );
+        is_the_wave(&text, 1);
+    }
+    let (_, said) = refusal("PEER\nA, B, 090\nUNITS OF G\nNPTS and DT unknown\n0.1\n0.2\n");
+    assert!(said.contains("write the number of values and the step"), "{said}");
+}
+
+#[test]
+fn exponents_of_fortran_in_headers_are_read() {
+    for step in ["5.0D-03", "0.5d-2", "50.D-4", "0.005D0", "5.0E-03"] {
+        let values = rows(|_, _, a| format!("{}\n", format!("{a:.6E}").replace('E', "D")));
+        is_the_wave(&format!("Acceleration (m/s2)\nDT = {step} SEC  NPTS = 3200\n{values}"), 1);
+    }
+}
+
+#[test]
+fn columns_of_gravity_beside_the_motion_are_no_channels() {
+    let table = rows(|k, t, a| format!("{t:.3},{a:.6},{:.4}\n", 9.8 + 0.001 * (k as f64).sin()));
+    is_the_wave(&format!("Time (s),User x (m/s2),Gravity z (m/s2)\n{table}"), 1);
+}
+
+#[test]
+fn a_scale_in_a_sac_header_is_named_and_a_step_below_zero_is_stated() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/sac/little.sac");
+    let bytes = std::fs::read(file).unwrap();
+    let options =
+        ReadOptions { unit: Some(AccelerationUnit::MetersPerSecondSquared), ..Default::default() };
+    let with = |word: usize, value: f32| {
+        let mut bytes = bytes.clone();
+        bytes[4 * word..4 * word + 4].copy_from_slice(&value.to_le_bytes());
+        read(&bytes, "a.sac", &options)
+    };
+    let named = |record: &barrelstack_motion::Record| {
+        record.warnings.iter().any(|w| w.message.contains("a scale of"))
+    };
+    assert!(named(&with(3, 0.01).unwrap()));
+    assert!(!named(&with(3, 1.0).unwrap()) && !named(&with(3, -12345.0).unwrap()));
+    let error = with(0, -0.005).unwrap_err().to_string();
+    assert!(error.contains("found -0.005 s"), "{error}");
+}

@@ -13,6 +13,7 @@ mod cwa;
 mod esm;
 mod even;
 mod geonet;
+mod gravity;
 mod gse;
 mod hints;
 mod knet;
@@ -320,9 +321,8 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
             channel.site.station.clone_from(&record.station);
         }
     }
-    for index in 0..record.channels.len() {
-        let channel = &mut record.channels[index];
-        let label = channel.name.clone();
+    for channel in &record.channels {
+        let label = &channel.name;
         if !(channel.time_step.is_finite() && channel.time_step > 0.0) {
             return Err(source.damaged(
                 (),
@@ -351,6 +351,11 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
                 "get the record without gaps, or cut the file before the gap",
             ));
         }
+    }
+    gravity::take_out(source, record)?;
+    for index in 0..record.channels.len() {
+        let channel = &mut record.channels[index];
+        let label = channel.name.clone();
         let pga = channel.pga();
         if !(pga <= LARGEST_ACCELERATION) {
             return Err(source.damaged(
@@ -420,10 +425,16 @@ fn is_mark(value: f64) -> bool {
         let number = (value / unit.factor()).abs();
         let text = format!("{number:.6}");
         let text = text.trim_end_matches('0').trim_end_matches('.');
-        let nines = text.chars().all(|c| c == '9' || c == '.') && text.len() >= 3 && number > 99.0;
         let power = number >= 1e6 && crate::math::log10(number).fract().abs() < 1e-9;
-        nines || power || ["999.25", "32767", "32768"].contains(&text)
+        is_nines(number) || power || ["999.25", "32767", "32768"].contains(&text)
     })
+}
+
+/// `true` for a number above 99 that is written with nines alone, at least three.
+fn is_nines(number: f64) -> bool {
+    let text = format!("{number:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    text.chars().all(|c| c == '9' || c == '.') && text.len() >= 3 && number > 99.0
 }
 
 /// Parses a positive integer from a header.

@@ -60,13 +60,13 @@ pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     let mut end = 0;
     while end < rest.len() {
         let byte = rest[end];
-        let sign_ok = end == 0 || matches!(rest[end - 1], b'e' | b'E');
+        let sign_ok = end == 0 || matches!(rest[end - 1], b'e' | b'E' | b'd' | b'D');
         let exponent_ok = end > 0
             && rest.get(end + 1).is_some_and(|b| b.is_ascii_digit() || matches!(b, b'+' | b'-'));
         match byte {
             b'0'..=b'9' | b'.' => {}
             b'+' | b'-' if sign_ok => {}
-            b'e' | b'E' if exponent_ok => {}
+            b'e' | b'E' | b'd' | b'D' if exponent_ok => {}
             _ => break,
         }
         end += 1;
@@ -82,7 +82,7 @@ pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
 
 /// Returns one unit of the last digit of a printed number.
 pub(crate) fn resolution(text: &str) -> f64 {
-    let lower = text.to_ascii_lowercase();
+    let lower = text.to_ascii_lowercase().replace('d', "e");
     let (mantissa, exponent) = lower.split_once('e').unwrap_or((&lower, "0"));
     let decimals = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len());
     let exponent: i32 = exponent.parse().unwrap_or(0);

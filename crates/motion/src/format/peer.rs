@@ -134,11 +134,13 @@ fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
         let rest = source.find(line, &text)? + text.len();
         leading_number(&source.raw(line)[rest..]).map(|step| (count, step))
     });
-    let (count, time_step) = after.or(before).ok_or_else(|| {
-        source.header(
+    let in_words = || facts::count_and_step(&facts::folded(source.raw(line)));
+    let (count, time_step) = after.or(before).or_else(in_words).ok_or_else(|| {
+        source.damaged(
             line,
             "count and step, such as \"NPTS= 2000, DT= .0200 SEC\"",
             quoted(&source.text(line)),
+            "write the number of values and the step in seconds on this line, in these words",
         )
     })?;
     let count = super::whole(source, line, "a number of points", count)?;

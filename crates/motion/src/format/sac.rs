@@ -126,9 +126,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         Some(eight) => Some(f64::from_le_bytes(*eight)),
         None => step(bytes, big),
     };
-    let time_step = time_step
-        .filter(|step| step.is_finite() && *step > 0.0)
-        .ok_or_else(|| damaged("a step above 0", "none".to_owned()))?;
+    let time_step =
+        time_step.ok_or_else(|| damaged("a step above 0", "none".to_owned())).and_then(|step| {
+            let is_step = step.is_finite() && step > 0.0;
+            is_step.then_some(step).ok_or_else(|| damaged("a step above 0", format!("{step} s")))
+        })?;
     let text = |from: usize, length: usize| {
         let raw = bytes.get(from..from + length).unwrap_or(&[]);
         let raw = raw.split(|&b| b == 0).next().unwrap_or(&[]);
@@ -170,6 +172,13 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
+    // Word 4, a factor that programs state and do not apply.
+    if let Some(scale) = real(bytes, 3, big).filter(|scale| *scale != 1.0 && *scale != 0.0) {
+        record.warn(
+            None,
+            format!("the header states a scale of {scale}, which was not applied: is the unit or sensitivity given that of the numbers as stored?"),
+        );
+    }
     let name = codes.channel.clone();
     let values =
         seed::as_acceleration(source, &mut record, hints, &codes, known, time_step, values)?;
@@ -211,7 +220,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
 /// 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
 fn step(bytes: &[u8], big: bool) -> Option<f64> {
     let stored = f32::from_le_bytes(word(bytes, 0, big)?);
-    stored.to_string().parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0)
+    stored.to_string().parse().ok()
 }
 
 /// Returns the start: words 70 to 75, the reference instant, and word 5, the time of the first sample after it.

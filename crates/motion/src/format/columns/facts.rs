@@ -249,6 +249,11 @@ fn step(text: &str) -> Option<f64> {
     by_step.or_else(by_rate)
 }
 
+/// Returns the count and the step (s) of one line that states both.
+pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
+    Some((count(text)? as f64, step(text)?))
+}
+
 /// Returns the step (s) of a line that states it without its name: `Sampling: 200 Hz`, `interval 5 ms`, `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
@@ -384,6 +389,10 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
         return None;
     }
     if let Some((_, behind)) = UNIT_WORDS.iter().find_map(|word| lower.split_once(word)) {
+        let whole = behind.trim_start_matches(['s', ' ', '\t', ':', '=', '(', '[']);
+        if let Some(unit) = rate(whole.trim_end_matches([')', ']', '"', '.'])) {
+            return Some(unit);
+        }
         let tokens = behind.split([' ', ',', ';', ':', '=', '(', ')', '[', ']', '\t']);
         let words: Vec<&str> = tokens.filter(|word| !word.is_empty()).collect();
         if let Some(at) = words.iter().position(|word| rate(word).is_some()) {
@@ -405,7 +414,7 @@ fn is_scaled(words: &[&str], unit: usize) -> bool {
     let before = words[..unit].iter().rev().find(|word| **word != "of").unwrap_or(&"");
     let shares = ["%", "percent", "tenth", "hundredth", "thousandth", "milli", "micro"];
     let behind = words.get(unit + 1).unwrap_or(&"");
-    before.starts_with(|c: char| c.is_ascii_digit() || c == '.')
+    before.starts_with(|c: char| c.is_ascii_digit() || c == '.') && before.parse() != Ok(1.0)
         || shares.iter().any(|share| before.starts_with(share))
         || ["x", "*", "times"].contains(behind)
         || behind.trim_start_matches(['x', '*']).parse::<f64>().is_ok()
@@ -436,23 +445,74 @@ fn component(text: &str) -> Option<String> {
     })
 }
 
-/// Refuses a factor alone on a line above the values, `1.0e+03 *`, as MATLAB shows matrices.
-fn refuse_factor(
-    source: &Source<'_>,
-    mut lines: impl Iterator<Item = usize>,
-) -> Result<(), ReadError> {
-    let is_factor = |line: &usize| {
-        let text = source.text(*line);
-        text.strip_suffix('*').is_some_and(|number| number.trim().parse::<f64>().is_ok())
+/// Names of a number by which the values are to be multiplied.
+const FACTOR_KEYS: &[&str] = &[
+    "scale factor",
+    "scale_factor",
+    "scalefactor",
+    "scaling factor",
+    "scale",
+    "multiplier",
+    "multiply by",
+    "multiplication factor",
+    "conversion factor",
+];
+
+/// Refuses a factor of the values above them: `1.0e+03 *`, as MATLAB shows matrices, `scale factor: 0.01`, or a unit with
+/// a number, `unit = 0.01 m/s2`.
+fn refuse_factor(source: &Source<'_>, lines: impl Iterator<Item = usize>) -> Result<(), ReadError> {
+    for line in lines {
+        let lower = folded(source.raw(line));
+        let matlab =
+            lower.strip_suffix('*').is_some_and(|number| number.trim().parse::<f64>().is_ok());
+        let plain = lower.trim_start_matches(['#', '%', '!', '/', ' ']);
+        let of = |key: &&str| {
+            value_behind(plain, key).filter(|_| *key != "scale" || plain.starts_with(key))
+        };
+        let factor = FACTOR_KEYS.iter().find_map(of).map(|value| value.printed.value);
+        let in_unit = UNIT_WORDS.iter().find_map(|word| lower.split_once(word));
+        if matlab
+            || factor.is_some_and(|factor| factor != 1.0)
+            || in_unit.is_some_and(|(_, behind)| is_scaled_unit(behind))
+        {
+            return Err(source.damaged(
+                line,
+                "values and units without a factor",
+                format!("{}, a factor of all values below", quoted(&source.text(line))),
+                "multiply the values by it if they are not yet, and leave the factor out",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.
+pub(super) fn is_scaled_unit(text: &str) -> bool {
+    let lower = text.to_lowercase();
+    let text = lower.trim_start_matches(['s', ' ', '\t', ':', '=', ',', ';', '(', '[']);
+    let text = text.strip_prefix("of ").unwrap_or(text);
+    let text = text.split([')', ']', ',', ';']).next().unwrap_or("").trim();
+    let times = [' ', '*', 'x', '\u{d7}', '\t'];
+    let is_unit = |text: &str| MotionUnit::parse(text).is_some();
+    !is_unit(text)
+        && text.char_indices().any(|(at, _)| {
+            let (left, right) = (text[..at].trim(), text[at..].trim_matches([' ', '\t', '(']));
+            let before = is_factor(left.trim_end_matches(times)) && is_unit(right);
+            let by = right.starts_with(['*', 'x', '\u{d7}']) && !right.starts_with("**");
+            before || by && is_unit(left) && is_factor(right.trim_start_matches(times))
+        })
+}
+
+/// `true` for a number other than 1, or a share of one.
+fn is_factor(text: &str) -> bool {
+    let text = text.strip_suffix(" of").unwrap_or(text);
+    let number = |text: &str| text.parse::<f64>().ok();
+    let value = match text.split_once(['/', '^']) {
+        Some((base, rest)) => number(base).zip(number(rest)).map(|_| f64::NAN),
+        None => number(text),
     };
-    lines.find(is_factor).map_or(Ok(()), |line| {
-        Err(source.damaged(
-            line,
-            "values without a factor",
-            format!("{}, a factor of all values below", quoted(&source.text(line))),
-            "multiply the values by it, and leave the line out",
-        ))
-    })
+    value.is_some_and(|value| value != 1.0)
+        || ["%", "percent", "tenths", "hundredths", "thousandths"].contains(&text)
 }
 
 /// Refuses a header that describes the numbers as other quantities than accelerations.

@@ -122,6 +122,10 @@ fn read_table(
     let (mut names, mut table) =
         without_index(&mut record, named.map(|(_, names)| names), table, names_line, first);
     let mut time_column = width - table.len();
+    if let Some(names) = names.as_mut() {
+        let line = names_line.unwrap_or(first);
+        time_column += one_time(source, &mut record, line, names, &mut table)?;
+    }
     if let Some(names) = names.as_mut()
         && let Some(at) = names::time_behind(names)
     {
@@ -150,6 +154,7 @@ fn read_table(
             ));
         }
         let (names, table) = accelerations(source, line, &mut record, names, table)?;
+        require_no_mark(source, &table, Some(first))?;
         let timed = Timed { first_line: first, per_line: 1, time, values: table, resolution };
         let (step, columns) = even_steps(source, &mut record, "all", timed)?;
         require_step(source, &facts, step)?;
@@ -157,6 +162,7 @@ fn read_table(
     } else {
         let table = without_time(source, first, end, table, names.as_deref(), &facts, &mut record)?;
         let (names, table) = accelerations(source, line, &mut record, names, table)?;
+        require_no_mark(source, &table, None)?;
         (step(source, first, width, &facts, hints)?, names, table)
     };
     let found = if time.is_some() { rows } else { columns[0].len() };
@@ -216,6 +222,50 @@ fn without_index(
         .warn(names_line.unwrap_or(first) + 1, "the first column counts the rows and was left out");
     table.remove(0);
     (without_first(names), table)
+}
+
+/// Leaves one column of times, the first with a unit, and returns the number of columns removed before it.
+///
+/// # Errors
+/// If the columns of times do not rise alike.
+fn one_time(
+    source: &Source<'_>,
+    record: &mut Record,
+    line: usize,
+    names: &mut Vec<Name>,
+    table: &mut Vec<Vec<f64>>,
+) -> Result<usize, ReadError> {
+    let unit = |name: &Name| name.unit.as_deref().and_then(facts::time_factor);
+    let times: Vec<usize> = (0..names.len()).filter(|at| names[*at].holds == Holds::Time).collect();
+    if times.len() < 2 {
+        return Ok(0);
+    }
+    let kept = *times.iter().find(|at| unit(&names[**at]).is_some()).unwrap_or(&times[0]);
+    let others: Vec<usize> = times.into_iter().filter(|at| *at != kept).collect();
+    for at in &others {
+        let units = unit(&names[*at]).zip(unit(&names[kept]));
+        if !shape::rise_alike(&table[kept], &table[*at], units.map(|(other, own)| own / other)) {
+            return Err(source.damaged(
+                line,
+                "one column of times, or several that agree",
+                format!("{} and {}, which do not", names[kept].shown(), names[*at].shown()),
+                "leave out the one that does not belong to the accelerations",
+            ));
+        }
+        record.warn(
+            line + 1,
+            format!(
+                "{} states the same times as {} and was left out",
+                names[*at].shown(),
+                names[kept].shown()
+            ),
+        );
+    }
+    for at in others.iter().rev() {
+        names.remove(*at);
+        table.remove(*at);
+    }
+    Ok(others.iter().filter(|at| **at < kept).count())
 }
 
 fn without_first(names: Option<Vec<Name>>) -> Option<Vec<Name>> {
@@ -400,6 +450,27 @@ fn accelerations(
     Ok(kept.into_iter().unzip())
 }
 
+/// Refuses marks of missing values among accelerations; `first` is the line of the first row, where rows are lines.
+fn require_no_mark(
+    source: &Source<'_>,
+    table: &[Vec<f64>],
+    first: Option<usize>,
+) -> Result<(), ReadError> {
+    let found = table.iter().find_map(|column| Some((shape::mark(column)?, column)));
+    found.map_or(Ok(()), |(row, column)| {
+        Err(source.damaged(
+            first.map_or(crate::format::Place::from(()), |first| (first + row).into()),
+            "accelerations alone",
+            format!(
+                "{} as sample {}, by its digits and the gap to all other values the mark of a missing value",
+                column[row],
+                row + 1
+            ),
+            "get the record without gaps, or cut the file before the gap",
+        ))
+    })
+}
+
 /// Returns the step (s) of columns without times.
 fn step(
     source: &Source<'_>,
@@ -580,6 +651,14 @@ fn units(
             let some = names.iter().any(|name| name.motion_unit().is_some());
             if let Some(stated) = in_header.filter(|_| !some) {
                 return acceleration(stated.value, stated.line, source.text(stated.line));
+            }
+            if let Some(word) = unknown.as_deref().filter(|word| facts::is_scaled_unit(word)) {
+                return Err(source.damaged(
+                    names_line,
+                    "values and units without a factor",
+                    format!("{}, a unit with a factor", quoted(word)),
+                    "multiply the values by it, and write the unit alone",
+                ));
             }
             if let Some(unit) = hints.unit() {
                 return Ok(unit.factor());

@@ -255,6 +255,10 @@ fn says_quantities(names: &[Name], separated: bool) -> bool {
     if names.iter().all(says) && (times == 0 || separated && times == 1) {
         return true;
     }
+    // A further column of times, in another unit, stands beside the first.
+    if names[0].holds == Holds::Time && times > 1 && (separated || names.iter().all(says)) {
+        return true;
+    }
     if times > usize::from(names[0].holds == Holds::Time) && !time_after_index {
         return false;
     }
@@ -336,8 +340,20 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
         return Holds::Motion(Quantity::Displacement);
     }
     let time_words = [
-        "time", "times", "t", "tiempo", "zaman", "zeit", "temps", "tempo", "sec", "secs",
-        "seconds", "msec",
+        "time",
+        "times",
+        "t",
+        "tiempo",
+        "zaman",
+        "zeit",
+        "temps",
+        "tempo",
+        "sec",
+        "secs",
+        "seconds",
+        "msec",
+        "\u{6642}\u{9593}",
+        "\u{65f6}\u{95f4}",
     ];
     if is(&time_words) || begins(&["timest", "elapsed", "datetime"]) {
         return Holds::Time;
@@ -354,8 +370,8 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
     }
     let others = [
         "force", "load", "strain", "stress", "press", "temp", "count", "volt", "angle", "rot",
-        "tilt", "lat", "lon", "moment", "mass", "energy", "arias", "cav", "husid", "error", "std",
-        "sigma", "phase", "imag",
+        "tilt", "grav", "lat", "lon", "moment", "mass", "energy", "arias", "cav", "husid", "error",
+        "std", "sigma", "phase", "imag",
     ];
     if begins(&others) {
         return Holds::Other;

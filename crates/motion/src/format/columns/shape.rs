@@ -40,6 +40,15 @@ pub(super) fn is_even(column: &[f64]) -> bool {
     column.len() >= EVEN_ROWS && column.iter().enumerate().map(off).all(|off| off < mean.abs())
 }
 
+/// `true` if a further column of times rises as the first does, by a ratio that may be stated, within one step.
+pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bool {
+    let last = first.len() - 1;
+    let ratio = ratio.unwrap_or((other[last] - other[0]) / (first[last] - first[0]));
+    let step = ratio * (first[last] - first[0]) / last.max(1) as f64;
+    let off = |row: usize| (other[row] - other[0] - ratio * (first[row] - first[0])).abs();
+    step > 0.0 && (0..first.len()).all(|row| off(row) < step)
+}
+
 /// `true` if a column counts its rows from 0 or 1.
 pub(super) fn is_index(column: &[f64]) -> bool {
     matches!(column.first(), Some(0.0 | 1.0))
@@ -161,11 +170,35 @@ pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     (0..columns.len()).map(is_length).collect()
 }
 
-/// `true` if no value is negative and the first one is not small, as in spectra.
+/// `true` if no value is negative and the first one is not small, as in spectra; most values of an accelerometer that
+/// rests under gravity are their mean, also at both ends.
 pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
-    columns.iter().all(|column| {
+    let rests = |column: &[f64]| {
+        let mean = math::mean(column);
+        let near = |value: &&f64| (*value / mean - 1.0).abs() < 0.1;
+        let ends = [column[0], column[column.len() - 1]];
+        ends.iter().all(|end| near(&end))
+            && 2 * column.iter().filter(near).count() > column.len()
+            && column.iter().any(|value| *value != column[0])
+    };
+    let one_sided = |column: &Vec<f64>| {
         column.len() > 4
             && column.iter().all(|value| *value >= 0.0)
             && column.first().is_some_and(|first| *first > 1e-3 * math::peak(column))
-    })
+    };
+    columns.iter().all(one_sided) && !columns.iter().any(|column| rests(column))
+}
+
+/// Returns a row that holds a mark of a missing value, such as -999: nines alone, larger than all other values, which
+/// leave a gap below it.
+pub(super) fn mark(column: &[f64]) -> Option<usize> {
+    let peak = math::peak(column);
+    if !crate::format::is_nines(peak) {
+        return None;
+    }
+    let marks = column.iter().filter(|value| value.abs() == peak).count();
+    let below = column.iter().map(|value| value.abs()).filter(|value| *value < peak);
+    let limit = if marks > 1 { 0.9 } else { 0.6 };
+    let stands_out = below.fold(0.0, f64::max) < limit * peak;
+    column.iter().position(|value| value.abs() == peak).filter(|_| stands_out)
 }
