@@ -256,6 +256,14 @@ fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
         "unit: g x 100",
         "unit: m/s2 * 0.01",
         "units: thousandths of g",
+        "units of g/1000",
+        "acc*100 (g)",
+        "Accel (cm/s/s) * 10",
+        "Acc. (1e-3 g)",
+        "Acceleration x 1000 in g",
+        "scaled by 1000, unit g",
+        "acceleration in g, multiplied by 100",
+        "1 unit = 0.01 g",
     ] {
         let text = format!("{stated}\ndt = 0.005 s\n{}", rows(|_, _, a| format!("{a:.6}\n")));
         for unit in [None, Some(AccelerationUnit::G)] {
@@ -328,4 +336,29 @@ fn a_scale_in_a_sac_header_is_named_and_a_step_below_zero_is_stated() {
     assert!(!named(&with(3, 1.0).unwrap()) && !named(&with(3, -12345.0).unwrap()));
     let error = with(0, -0.005).unwrap_err().to_string();
     assert!(error.contains("found -0.005 s"), "{error}");
+}
+
+#[test]
+fn the_unit_that_values_have_now_counts_and_not_that_of_before() {
+    for stated in [
+        "Original unit: cm/s2, unit: m/s2",
+        "unit: cm/s2 converted to m/s2",
+        "converted to m/s2, unit before g",
+        "units: m/s2 (1 g = 9.81 m/s2)",
+    ] {
+        let values = rows(|_, _, a| format!("{a:.6}\n"));
+        is_the_wave(&format!("{stated}\ndt = 0.005 s\n{values}"), 1);
+    }
+}
+
+#[test]
+fn steps_of_no_record_are_no_steps_and_kilohertz_are_thousands() {
+    let values = rows(|_, _, a| format!("{a:.6}\n"));
+    for step in ["DT=5", "dt 20", "time step: 1"] {
+        let (refused, said) = refusal(&format!("{step}\nunit: m/s2\n{values}"));
+        assert_eq!(refused, Refusal::Missing(barrelstack_motion::Given::Step), "{step}: {said}");
+    }
+    for rate in ["Sampling rate 0.2 kHz", "sampling rate (kHz): 0.2"] {
+        is_the_wave(&format!("{rate}\nunit: m/s2\n{values}"), 1);
+    }
 }

@@ -10,6 +10,7 @@ mod columns;
 mod rows;
 mod single;
 mod trail;
+mod work;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,6 +30,7 @@ pub use case::{CaseResult, Prepared};
 pub use columns::{CASE_COLUMNS, CaseColumn, Get, meaning, table, variants};
 pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
+pub use work::Work;
 
 /// Version of the results of an ensemble: raised whenever the same case may give other bits, so that results of two
 /// versions are never combined.

@@ -6,6 +6,7 @@ use barrelstack_dynamics::{Finish, Method, Planar, Scratch, State};
 
 use super::case::Observed;
 use super::trail::Trail;
+use super::work::Share;
 use super::{Audience, CaseResult, Run};
 use crate::ground::Ground;
 use crate::run::{Ended, conclude, thresholds};
@@ -51,6 +52,7 @@ impl Task for InLanes<'_, '_> {
             joints: None,
             end: None,
             trails: vec![Trail::default(); R::LANES],
+            shares: std::iter::repeat_with(|| None).take(R::LANES).collect(),
             due: R::splat(f64::INFINITY),
             rested: R::Mask::default(),
             steps: 0,
@@ -81,6 +83,8 @@ struct Batch<'a, 'b, R: Real> {
     /// Barrel positions of every lane, and the time (s) at which the next sample is due.
     trails: Vec<Trail>,
     due: R,
+    /// Work of every lane; `None` without a case.
+    shares: Vec<Option<Share>>,
     /// The lanes that had come to rest in the last step.
     rested: R::Mask,
     /// Number of steps since the last poll.
@@ -128,6 +132,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         trail.see_state(state);
         self.due.put(lane, &trail.due());
         self.trails[lane] = trail;
+        self.shares[lane] = Some(Share::default());
         self.stresses.begin(lane, stresses);
         self.joints.get_or_insert_with(|| Joints::in_all(&joints)).put(lane, &joints);
         self.fates.get_or_insert_with(|| Fates::in_all(&fates)).put(lane, &fates);
@@ -140,6 +145,11 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         self.steps += 1;
         if self.steps == PATIENCE {
             self.steps = 0;
+            for (lane, part) in self.shares.iter_mut().enumerate() {
+                if let Some(part) = part {
+                    part.reached(state.time.lane(lane) / self.group[self.runs[lane]].end_time);
+                }
+            }
             if (self.audience.stop)() {
                 self.interrupted = true;
                 return !R::Mask::default();
@@ -196,7 +206,10 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
         let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
         let result = CaseResult::of(assembly, ground, observed, verdict, end.time);
-        let index = run.index;
+        let (index, share) = (run.index, end.time / run.end_time);
+        if let Some(part) = self.shares[lane].take() {
+            part.end(share);
+        }
         (self.audience.on_case)(&result);
         self.results.push((index, result));
     }

@@ -8,6 +8,7 @@ use barrelstack_dynamics::{
 
 use super::case::Observed;
 use super::trail::Trail;
+use super::work::Share;
 use super::{Audience, CaseResult, Run};
 use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
@@ -38,6 +39,8 @@ pub(super) fn run(
             end: run.end(standing),
             stop: audience.stop,
             next_ask: 0.0,
+            part: Share::default(),
+            end_time: run.end_time,
             ending: None,
         };
         let ground = &*run.case.ground;
@@ -51,7 +54,8 @@ pub(super) fn run(
         let verdict = conclude(&standing.assembly, ground, &watch.fates, ended, state.time, ending);
         let stresses = watch.stresses.finish(0);
         watch.trail.see_state(&state);
-        let Watch { fates, joints, trail, .. } = watch;
+        let Watch { fates, joints, trail, part, end_time, .. } = watch;
+        part.end(state.time / end_time);
         let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
         let result = CaseResult::of(&standing.assembly, ground, observed, verdict, state.time);
         (audience.on_case)(&result);
@@ -71,6 +75,8 @@ struct Watch<'a> {
     stop: &'a dyn Fn() -> bool,
     /// Next poll (s) whether to stop.
     next_ask: f64,
+    part: Share,
+    end_time: f64,
     ending: Option<Ending>,
 }
 
@@ -96,6 +102,7 @@ impl Observer<Planar> for Watch<'_> {
         }
         if state.time >= self.next_ask {
             self.next_ask = state.time + 0.05;
+            self.part.reached(state.time / self.end_time);
             if (self.stop)() {
                 self.ending = Some(Ending::Interrupted);
                 return ControlFlow::Break(());

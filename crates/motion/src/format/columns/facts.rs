@@ -1,5 +1,6 @@
 //! Data stated in the words of a header: step, count, duration, unit, peak, component.
 
+use super::LARGEST_BARE_STEP;
 use super::words::{
     ACCELERATIONS, BARE, BESIDE_STEPS, COMPONENT_KEYS, COUNT_KEYS, DISPLACEMENTS, DURATION_KEYS,
     OTHER_FREQUENCIES, OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS,
@@ -225,7 +226,9 @@ fn step(text: &str) -> Option<f64> {
             Some((divisor, _)) => value.printed.value / divisor,
             None => value.printed.value,
         };
-        positive(number * unit.unwrap_or(1.0))
+        // "DT=5" without a unit is no step in seconds.
+        let bare = unit.is_none() && number > LARGEST_BARE_STEP;
+        positive(number * unit.unwrap_or(1.0)).filter(|_| !bare)
     });
     let by_rate = || {
         let stated = RATE_KEYS.iter().find_map(|key| {
@@ -235,7 +238,9 @@ fn step(text: &str) -> Option<f64> {
             let divisor = value.behind.strip_prefix('/').and_then(|d| leading_text(d.as_bytes()));
             let number = value.printed.value;
             // Some headers state the step under the name of the rate.
+            let kilo = value.behind.starts_with("khz") || value.in_parentheses == Some("khz");
             match (time, divisor) {
+                _ if kilo => Some(1e-3 / number),
                 (Some(factor), _) => Some(number * factor),
                 (None, Some((divisor, _))) => Some(number / divisor),
                 (None, None) if number < 1.0 => Some(number),
@@ -388,7 +393,17 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     if PEAK_KEYS.iter().any(|key| value_behind(lower, key).is_some()) {
         return None;
     }
-    if let Some((_, behind)) = UNIT_WORDS.iter().find_map(|word| lower.split_once(word)) {
+    if let Some((_, behind)) = lower.split_once("converted to ") {
+        return rate(behind.split([' ', ',', ';', ')']).next().unwrap_or(""));
+    }
+    let is_original = |before: &str| {
+        before.split_whitespace().last().is_some_and(|word| OTHER_MEANING.contains(&word))
+    };
+    let behind_word = |word: &&str| {
+        let own = lower.match_indices(*word).find(|(at, _)| !is_original(&lower[..*at]));
+        own.map(|(at, _)| &lower[at + word.len()..])
+    };
+    if let Some(behind) = UNIT_WORDS.iter().find_map(behind_word) {
         let whole = behind.trim_start_matches(['s', ' ', '\t', ':', '=', '(', '[']);
         if let Some(unit) = rate(whole.trim_end_matches([')', ']', '"', '.'])) {
             return Some(unit);
@@ -474,6 +489,7 @@ fn refuse_factor(source: &Source<'_>, lines: impl Iterator<Item = usize>) -> Res
         if matlab
             || factor.is_some_and(|factor| factor != 1.0)
             || in_unit.is_some_and(|(_, behind)| is_scaled_unit(behind))
+            || is_multiplied(&lower)
         {
             return Err(source.damaged(
                 line,
@@ -484,6 +500,28 @@ fn refuse_factor(source: &Source<'_>, lines: impl Iterator<Item = usize>) -> Res
         }
     }
     Ok(())
+}
+
+/// `true` for a line on acceleration or its unit that states a factor: `acc*100 (g)`, `acceleration x 1000`, `Acc.
+/// (1e-3 g)`, `in g, multiplied by 1000`.
+fn is_multiplied(lower: &str) -> bool {
+    let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
+    let groups = lower.split(['(', '[']).skip(1);
+    let factor = |text: &str| {
+        leading_text(text.trim_start().as_bytes())
+            .is_some_and(|(factor, text)| factor != 1.0 && !text.starts_with(['=', ':']))
+    };
+    let by = |mark: &str| {
+        lower.match_indices(mark).any(|(at, _)| {
+            let before = lower[..at].trim_end();
+            let word = mark.starts_with([' ', '*']) || mark.len() > 2;
+            let own =
+                word && !before.ends_with('*') && !before.ends_with(|c: char| c.is_ascii_digit());
+            own && factor(&lower[at + mark.len()..])
+        })
+    };
+    let any = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
+    speaks && (groups.into_iter().any(is_scaled_unit) || any.into_iter().any(by))
 }
 
 /// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.
@@ -498,8 +536,9 @@ pub(super) fn is_scaled_unit(text: &str) -> bool {
         && text.char_indices().any(|(at, _)| {
             let (left, right) = (text[..at].trim(), text[at..].trim_matches([' ', '\t', '(']));
             let before = is_factor(left.trim_end_matches(times)) && is_unit(right);
-            let by = right.starts_with(['*', 'x', '\u{d7}']) && !right.starts_with("**");
-            before || by && is_unit(left) && is_factor(right.trim_start_matches(times))
+            let by = right.starts_with(['*', 'x', '\u{d7}', '/']) && !right.starts_with("**");
+            let factor = right.trim_start_matches(times).trim_start_matches('/');
+            before || by && is_unit(left) && is_factor(factor)
         })
 }
 
