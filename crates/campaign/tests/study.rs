@@ -399,25 +399,6 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
 }
 
 #[test]
-#[cfg(unix)]
-fn no_entry_of_a_folder_of_records_is_left_out_in_silence() {
-    let folder = tempfile::tempdir().unwrap();
-    let rows: Vec<String> = (0..200)
-        .map(|i| format!("{:.2},{:.6}", 0.01 * f64::from(i), 0.1 * (0.3 * f64::from(i)).sin()))
-        .collect();
-    let text = format!("time (s),acceleration (g)\n{}\n", rows.join("\n"));
-    std::fs::write(folder.path().join("site.csv"), text).unwrap();
-    std::fs::create_dir(folder.path().join("more")).unwrap();
-    let file = folder.path().join("study.toml");
-    let text = format!("{HEAD}{RUN}[[motion]]\nfolder = \".\"\npattern = \"*.csv\"\n{STRIPES}");
-    std::fs::write(&file, text).unwrap();
-    assert!(Study::load(&file).is_ok());
-    std::os::unix::fs::symlink("nowhere", folder.path().join("other.csv")).unwrap();
-    let refused = Study::load(&file).unwrap_err().to_string();
-    assert!(refused.contains("other.csv is not a file that can be read"), "{refused}");
-}
-
-#[test]
 fn a_changed_record_is_another_study() {
     let folder = tempfile::tempdir().unwrap();
     let record = folder.path().join("site.csv");

@@ -314,6 +314,41 @@ fn too_many_cases_are_refused_and_not_counted() {
     }
 }
 
+/// Whatever a folder of records has, nothing of it is left out unsaid: the first that is no record is named.
+#[test]
+fn what_is_no_record_in_a_folder_of_records_is_named() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("records");
+    std::fs::create_dir_all(folder.join("below")).unwrap();
+    let record = "time (s),acceleration (g)\n0.00,0.1\n0.01,0.2\n0.02,-0.1\n0.03,0.0\n";
+    for name in ["good.csv", ".hidden.csv"] {
+        std::fs::write(folder.join(name), record).unwrap();
+    }
+    let (file, motion) = (place.path().join("study.toml"), "[[motion]]\nfolder = \"records\"\n");
+    std::fs::write(&file, whole([HEAD, SCENE, FACTOR, motion, INTENSITY]) + DESIGN).unwrap();
+    let load = || Study::load(&file).map(|study| study.motions()).map_err(|e| e.to_string());
+    assert_eq!(load(), Ok(1), "folders and hidden files are left out, as the reference says");
+    let named = |what: &str| {
+        let said = load().unwrap_err();
+        assert!(said.contains("other.csv") && said.contains(what), "{said}");
+        std::fs::remove_file(folder.join("other.csv")).unwrap();
+    };
+    std::fs::write(folder.join("other.csv"), "").unwrap();
+    named("found an empty file");
+    std::fs::write(folder.join("other.csv"), "To be added.\n").unwrap();
+    named("as first line");
+    #[cfg(unix)]
+    {
+        let link = |to: &str| std::os::unix::fs::symlink(to, folder.join("other.csv")).unwrap();
+        link("gone");
+        named("there is no such file");
+        link("/dev/zero");
+        named("it is a device, not a file");
+        let _open = std::os::unix::net::UnixListener::bind(folder.join("other.csv")).unwrap();
+        named("not a file");
+    }
+}
+
 #[test]
 fn every_truncation_of_a_study_is_read_or_refused() {
     let text = barrelstack_campaign::study::builtin("napa-four-levels").unwrap();

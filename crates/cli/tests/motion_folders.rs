@@ -126,6 +126,60 @@ fn a_folder_becomes_a_table_and_a_stopped_one_goes_on() {
     assert!(motion(&all.each_ref().map(String::as_str)).starts_with("6 records measured, 1 file"));
 }
 
+/// Changes the journal of a folder by a digit or a bit. Each change is refused, and the journal left as it is, or the
+/// records that it concerns are measured again.
+fn damage(times: u32) -> [u32; 2] {
+    let folder = records(1);
+    let (records, out) = (folder.path().join("records"), folder.path().join("out"));
+    let all = ["motion", "info", text(&records), "--out", text(&out)];
+    assert_eq!(barrelstack(all).status.code(), Some(0));
+    let tables = || {
+        ["records.csv", "records.parquet", "refused.csv"]
+            .map(|name| fs::read(out.join(name)).unwrap())
+    };
+    let (journal, whole) = (out.join("rows.jsonl"), tables());
+    let bytes = fs::read(&journal).unwrap();
+    let digits: Vec<usize> = (0..bytes.len()).filter(|at| bytes[*at].is_ascii_digit()).collect();
+    let mut random = Random::new(5);
+    let mut pick = |below: usize| {
+        let at = random.bits() % below as u64;
+        usize::try_from(at).unwrap()
+    };
+    let [mut refused, mut again] = [0, 0];
+    for time in 0..times {
+        let mut changed = bytes.clone();
+        if time.is_multiple_of(2) {
+            let digit = &mut changed[digits[pick(digits.len())]];
+            *digit = b'0' + (*digit - b'0' + 1 + u8::try_from(pick(9)).unwrap()) % 10;
+        } else {
+            changed[pick(bytes.len())] ^= 1 << pick(8);
+        }
+        fs::write(&journal, &changed).unwrap();
+        let output = barrelstack(all);
+        if output.status.code() == Some(0) {
+            assert!(tables() == whole, "{}", String::from_utf8_lossy(&changed));
+            again += 1;
+        } else {
+            assert!(stderr(&output).contains("remove rows.jsonl there"), "{}", stderr(&output));
+            assert_eq!(fs::read(&journal).unwrap(), changed);
+            refused += 1;
+        }
+    }
+    [refused, again]
+}
+
+#[test]
+fn no_digit_and_no_bit_of_a_journal_changes_in_silence() {
+    damage(24);
+}
+
+#[test]
+#[ignore = "takes minutes: the same with a thousand changes"]
+fn no_digit_and_no_bit_of_a_journal_changes_in_silence_in_a_thousand_tries() {
+    let [refused, again] = damage(1000);
+    assert!(refused > 100 && again > 100, "{refused} {again}");
+}
+
 #[test]
 fn a_folder_is_processed_converted_and_drawn() {
     let folder = records(2);
@@ -178,6 +232,7 @@ fn a_set_for_a_target_is_a_study_that_runs() {
     let arguments = select(&out, &["--magnitude", "5.6..", "--distance", "..20"]);
     let printed = motion(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
     assert!(printed.contains("10 of 12 records may be chosen"), "{printed}");
+    assert!(printed.contains("; 1 file could not be read, see refused.csv"), "{printed}");
     assert!(
         printed.contains("1 outside the limit of magnitude, 0 of unknown magnitude"),
         "{printed}"

@@ -2,8 +2,9 @@
 //! no part of a file.
 #![cfg(all(target_os = "linux", any(target_arch = "x86_64", target_arch = "aarch64")))]
 
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::common::{HEAD, STUDY, barrelstack, names, program, stderr, stdout};
@@ -146,6 +147,45 @@ fn of_commands_at_once_in_one_new_folder_one_writes() {
         let refused = both.iter().find(|one| one.status.code() == Some(2)).unwrap();
         assert!(stderr(refused).contains("is not empty"), "{}", stderr(refused));
         fs::remove_dir_all(place.path().join("same")).unwrap();
+    }
+}
+
+/// Nothing is written through a link that lies where a command writes, be it a file or a folder.
+#[test]
+fn no_command_writes_through_a_link() {
+    for command in WRITERS {
+        let place = place();
+        let (whole, outside) = (place.path().join("whole"), place.path().join("outside"));
+        let run =
+            |out: &str| shell(place.path(), "mkdir -p whole bare", command, &format!("{out}/x"));
+        assert!(matches!(run("whole").status.code(), Some(0 | 3)), "{command:?}");
+        let below =
+            |file: &(String, u64)| Path::new(&file.0).strip_prefix(&whole).unwrap().to_owned();
+        let made: Vec<PathBuf> = files(&whole, "").iter().map(below).collect();
+        let folders =
+            made.iter().filter_map(|file| file.parent()).filter(|at| at.iter().count() > 1);
+        let places: Vec<&Path> =
+            made.iter().map(PathBuf::as_path).chain(folders.collect::<BTreeSet<_>>()).collect();
+        assert!(!places.is_empty(), "{command:?}");
+        for at in places.iter().step_by(places.len().div_ceil(6)) {
+            fs::create_dir_all(&outside).unwrap();
+            fs::write(outside.join("kept"), "kept").unwrap();
+            let link = place.path().join("bare").join(at);
+            fs::create_dir_all(link.parent().unwrap()).unwrap();
+            let file = whole.join(at).is_file();
+            let to = if file { outside.join("kept") } else { outside.clone() };
+            std::os::unix::fs::symlink(to, &link).unwrap();
+            run("bare");
+            let found = names(&outside).unwrap();
+            assert_eq!(found, ["kept"], "{command:?} writes through {}", at.display());
+            assert_eq!(
+                fs::read(outside.join("kept")).unwrap(),
+                b"kept",
+                "{command:?} {}",
+                at.display()
+            );
+            fs::remove_dir_all(place.path().join("bare")).unwrap();
+        }
     }
 }
 

@@ -106,7 +106,7 @@ fn a_search_in_which_nothing_helps_rarely_claims_that_something_does() {
         (36, 60, 0.8, 1.0),
         (36, 60, 0.8, 2.0),
     ] {
-        let found = claims(motions, tries, help, alike, 400);
+        let found = claims(motions, tries, help, alike, 2000);
         let kind = if alike < 0.1 { "near-equal" } else { "various" };
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
         println!(

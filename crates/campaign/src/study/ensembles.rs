@@ -134,7 +134,8 @@ fn motion_of(
     template::motion(&opened.sources, &format!("motion.{number}"), &table, origin)
 }
 
-/// Returns the files of a folder whose names match a pattern, sorted, as paths relative to the study.
+/// Returns what a folder has under names that match a pattern, sorted, as paths relative to the study; neither folders
+/// nor names that begin with a period. What is no file is refused where it is read, so that nothing is left out unsaid.
 fn matching(
     set: &Reader<'_>,
     folder: &Path,
@@ -157,17 +158,9 @@ fn matching(
     for entry in entries {
         let entry = entry.map_err(|error| set.inconsistent("folder", system::words(&error)))?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        let path = entry.path();
-        if name.starts_with('.') || path.is_dir() || !matches(pattern, &name) {
-            continue;
+        if !entry.path().is_dir() && !name.starts_with('.') && matches(pattern, &name) {
+            names.push(name);
         }
-        if !path.is_file() {
-            return refuse(format!(
-                "{} is not a file that can be read: remove it from the folder, or give a `pattern` in the study that leaves it out",
-                path.display()
-            ));
-        }
-        names.push(name);
     }
     if names.is_empty() {
         return refuse(format!("no file in the folder {} matches \"{pattern}\"", folder.display()));

@@ -29,7 +29,7 @@ pub(crate) struct ProtectArgs {
     /// Peak ground velocity to which motions are scaled, such as "50 cm/s"; may be repeated.
     #[arg(long, value_name = "VELOCITY")]
     pgv: Vec<String>,
-    /// A folder of recorded motions, in place of the bundled and synthetic ones.
+    /// A folder of recorded motions, all of which are used, in place of the bundled and synthetic ones.
     #[arg(long, value_name = "DIR")]
     motions: Option<PathBuf>,
     /// Most that a protection may cost for a stack (US$).

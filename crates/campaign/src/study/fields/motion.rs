@@ -92,6 +92,8 @@ table! {
     /// Files of recorded motions, relative to the study file.
     records = Kind::Texts, Default::Nothing;
     /// Folder of recorded motions, relative to the study file; its files in the order of their names.
+    /// All that match `pattern` are used: the first that cannot be read is named, and nothing runs.
+    /// Folders in it and names that begin with a period are left out.
     folder = Kind::Text, Default::Nothing;
     /// Which files of the folder, such as `*.AT2`: `*` stands for any letters, `?` for one.
     pattern = Kind::Text, Default::Value("\"*\"");

@@ -119,7 +119,7 @@ impl Worked {
 pub(super) struct Measurements {
     /// One row per record, sorted by name.
     pub(super) table: StudyTable,
-    refused: Vec<(String, String)>,
+    pub(super) refused: Vec<(String, String)>,
     before: usize,
     /// `true` if it was stopped before its end.
     stopped: bool,

@@ -125,6 +125,10 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
     let (rows, candidates) = candidates(args, &found.table, &rows, &periods);
     let mut statement =
         left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
+    if !found.refused.is_empty() {
+        let files = printer::counted(found.refused.len() as u64, "file");
+        statement.push_str(&format!("; {files} could not be read, see refused.csv"));
+    }
     let [least, largest] = args.scale.ends();
     let choosing = Choosing {
         count: args.count.unwrap_or(USUAL_COUNT),
