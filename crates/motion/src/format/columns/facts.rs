@@ -506,22 +506,19 @@ fn refuse_factor(source: &Source<'_>, lines: impl Iterator<Item = usize>) -> Res
 /// (1e-3 g)`, `in g, multiplied by 1000`.
 fn is_multiplied(lower: &str) -> bool {
     let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
-    let groups = lower.split(['(', '[']).skip(1);
     let factor = |text: &str| {
-        leading_text(text.trim_start().as_bytes())
-            .is_some_and(|(factor, text)| factor != 1.0 && !text.starts_with(['=', ':']))
+        leading_text(text.trim_start().as_bytes()).is_some_and(|(factor, _)| factor != 1.0)
     };
     let by = |mark: &str| {
         lower.match_indices(mark).any(|(at, _)| {
             let before = lower[..at].trim_end();
-            let word = mark.starts_with([' ', '*']) || mark.len() > 2;
-            let own =
-                word && !before.ends_with('*') && !before.ends_with(|c: char| c.is_ascii_digit());
-            own && factor(&lower[at + mark.len()..])
+            let of_a_number = before.ends_with(|c: char| c.is_ascii_digit() || c == '*');
+            !of_a_number && factor(&lower[at + mark.len()..])
         })
     };
-    let any = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
-    speaks && (groups.into_iter().any(is_scaled_unit) || any.into_iter().any(by))
+    let marks = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
+    let in_parentheses = || lower.split(['(', '[']).skip(1).any(is_scaled_unit);
+    speaks && (in_parentheses() || marks.into_iter().any(by))
 }
 
 /// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.
