@@ -7,9 +7,9 @@ use crate::record::{Channel, Quantity, Record};
 
 /// Tolerance of a mean, relative to gravity: errors of calibration and the tilt of a single axis.
 const TOLERANCE: f64 = 0.05;
-/// Smallest mean (m/s²) that no ground has over a whole record, whose velocity would grow throughout.
+/// Largest mean (m/s²) of a ground motion over a whole record: a larger one is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
-/// The same for values of one sign alone.
+/// Largest mean (m/s²) of values of one sign alone.
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
 /// Shortest record (s) whose mean is judged; pulses of formulas are shorter.
 const SHORTEST: f64 = 2.0;
