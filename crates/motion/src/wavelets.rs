@@ -308,7 +308,7 @@ fn peak(extrema: &[Extremum]) -> Extremum {
     )
 }
 
-/// Adds the demands of one oscillator and returns its peak.
+/// Adds the demands of one oscillator to the list and returns its peak response.
 fn demand(
     extrema: &[Extremum],
     index: usize,

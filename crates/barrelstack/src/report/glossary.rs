@@ -36,7 +36,7 @@ pub const WORDS: &[Word] = &[
         "residual",
         "what is left over: of energy an error of the computation, of displacement where a body stays",
     ),
-    word("similitude", "a model at another scale that behaves as the large one"),
+    word("similitude", "a model at another scale that behaves like the full-size one"),
 ];
 
 const fn word(word: &'static str, meaning: &'static str) -> Word {

@@ -299,7 +299,7 @@ fn read_intensity(reader: Reader<'_>) -> Result<Intensity, ScenarioError> {
         .map_err(|error| reader.inconsistent("measure", format!("`intensity.measure`: {error}")))?;
     let Some(dimensions) = dimension_of(measure) else {
         let message = format!(
-            "motions cannot be scaled to {measure}; take pga, pgv, pgd, arias, cav or sa(0.5)"
+            "motions cannot be scaled to {measure}; use pga, pgv, pgd, arias, cav or sa(0.5)"
         );
         return Err(reader.inconsistent("measure", message));
     };
