@@ -1,8 +1,10 @@
 //! Accelerometers record gravity at rest: it is taken out of every axis in every unit, and no other mean is taken for a
 //! ground motion.
 
+#![allow(clippy::format_collect, reason = "small tables are built as text")]
+
 use crate::columns::wave;
-use barrelstack_motion::{ReadOptions, Record, STANDARD_GRAVITY, read};
+use barrelstack_motion::{Channel, ReadOptions, Record, STANDARD_GRAVITY, read};
 
 const UNITS: [(&str, f64); 6] = [
     ("g", STANDARD_GRAVITY),
@@ -39,7 +41,7 @@ fn gravity_is_in_no_peak_whatever_the_axis_its_sign_and_the_unit() {
                 let mut parts = [0.0; 3];
                 parts[axis] = part;
                 let record = given(&phone(unit, parts));
-                let peaks: Vec<f64> = record.channels.iter().map(|c| c.pga()).collect();
+                let peaks: Vec<f64> = record.channels.iter().map(Channel::pga).collect();
                 for (peak, right) in std::iter::zip(&peaks, [1.5, 0.75, 0.3]) {
                     assert!((peak / right - 1.0).abs() < 0.02, "{unit:?} {parts:?}: {peaks:?}");
                 }

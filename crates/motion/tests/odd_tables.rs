@@ -227,7 +227,7 @@ fn further_columns_of_times_are_left_out_if_they_agree() {
 fn marks_among_comparable_values_are_found() {
     for (peak, marks) in [(400.0, 1), (400.0, 3), (580.0, 1), (850.0, 4)] {
         for mark in ["-999", "999", "-999.0"] {
-            let rough = |k: usize, a: f64| if k % 2 == 0 { a } else { -a } * peak / 1.5;
+            let rough = |k: usize, a: f64| if k.is_multiple_of(2) { a } else { -a } * peak / 1.5;
             let table = rows(|k, t, a| {
                 let marked = (700..700 + marks).contains(&k);
                 let value = rough(k, a);
