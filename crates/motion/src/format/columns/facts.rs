@@ -1,6 +1,7 @@
 //! Data stated in the words of a header: step, count, duration, unit, peak, component.
 
-use super::LARGEST_BARE_STEP;
+use super::factors;
+use super::times::LARGEST_BARE_STEP;
 use super::words::{
     ACCELERATIONS, BARE, BESIDE_STEPS, COMPONENT_KEYS, COUNT_KEYS, DISPLACEMENTS, DURATION_KEYS,
     OTHER_FREQUENCIES, OTHER_MEANING, PEAK_KEYS, RATE_KEYS, RATE_MARKS, SAMPLING_KEYS, STEP_KEYS,
@@ -61,7 +62,7 @@ impl Facts {
         source: &Source<'_>,
         lines: impl Iterator<Item = usize> + Clone,
     ) -> Result<Self, ReadError> {
-        refuse_factor(source, lines.clone())?;
+        factors::refuse(source, lines.clone())?;
         let mut facts = Self::default();
         let mut unnamed: Vec<Stated<f64>> = Vec::new();
         for line in lines {
@@ -130,13 +131,13 @@ fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
 }
 
 /// The value of a key: a unit in parentheses, a number, and the text after it.
-struct Value<'a> {
+pub(super) struct Value<'a> {
     in_parentheses: Option<&'a str>,
-    printed: crate::format::Printed,
+    pub(super) printed: crate::format::Printed,
     behind: &'a str,
 }
 
-fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
+pub(super) fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     let mut rest = behind(text, key)?.trim_start();
     let mut in_parentheses = None;
     if let Some(inner) = rest.strip_prefix(['(', '[']) {
@@ -458,97 +459,6 @@ fn component(text: &str) -> Option<String> {
         let value = value.trim_matches([' ', ':', '=', ',', '\t', '.']);
         (Direction::parse(value) != Direction::default()).then(|| value.to_owned())
     })
-}
-
-/// Names of a number by which the values are to be multiplied.
-const FACTOR_KEYS: &[&str] = &[
-    "scale factor",
-    "scale_factor",
-    "scalefactor",
-    "scaling factor",
-    "scale",
-    "multiplier",
-    "multiply by",
-    "multiplication factor",
-    "conversion factor",
-];
-
-/// Refuses a factor of the values above them: `1.0e+03 *`, as MATLAB shows matrices, `scale factor: 0.01`, or a unit with
-/// a number, `unit = 0.01 m/s2`.
-fn refuse_factor(source: &Source<'_>, lines: impl Iterator<Item = usize>) -> Result<(), ReadError> {
-    for line in lines {
-        let lower = folded(source.raw(line));
-        let matlab =
-            lower.strip_suffix('*').is_some_and(|number| number.trim().parse::<f64>().is_ok());
-        let plain = lower.trim_start_matches(['#', '%', '!', '/', ' ']);
-        let of = |key: &&str| {
-            value_behind(plain, key).filter(|_| *key != "scale" || plain.starts_with(key))
-        };
-        let factor = FACTOR_KEYS.iter().find_map(of).map(|value| value.printed.value);
-        let in_unit = UNIT_WORDS.iter().find_map(|word| lower.split_once(word));
-        if matlab
-            || factor.is_some_and(|factor| factor != 1.0)
-            || in_unit.is_some_and(|(_, behind)| is_scaled_unit(behind))
-            || is_multiplied(&lower)
-        {
-            return Err(source.damaged(
-                line,
-                "values and units without a factor",
-                format!("{}, a factor of all values below", quoted(&source.text(line))),
-                "multiply the values by it if they are not yet, and leave the factor out",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// `true` for a line on acceleration or its unit that states a factor: `acc*100 (g)`, `acceleration x 1000`, `Acc.
-/// (1e-3 g)`, `in g, multiplied by 1000`.
-fn is_multiplied(lower: &str) -> bool {
-    let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
-    let factor = |text: &str| {
-        leading_text(text.trim_start().as_bytes()).is_some_and(|(factor, _)| factor != 1.0)
-    };
-    let by = |mark: &str| {
-        lower.match_indices(mark).any(|(at, _)| {
-            let before = lower[..at].trim_end();
-            let of_a_number = before.ends_with(|c: char| c.is_ascii_digit() || c == '*');
-            !of_a_number && factor(&lower[at + mark.len()..])
-        })
-    };
-    let marks = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
-    let in_parentheses = || lower.split(['(', '[']).skip(1).any(is_scaled_unit);
-    speaks && (in_parentheses() || marks.into_iter().any(by))
-}
-
-/// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.
-pub(super) fn is_scaled_unit(text: &str) -> bool {
-    let lower = text.to_lowercase();
-    let text = lower.trim_start_matches(['s', ' ', '\t', ':', '=', ',', ';', '(', '[']);
-    let text = text.strip_prefix("of ").unwrap_or(text);
-    let text = text.split([')', ']', ',', ';']).next().unwrap_or("").trim();
-    let times = [' ', '*', 'x', '\u{d7}', '\t'];
-    let is_unit = |text: &str| MotionUnit::parse(text).is_some();
-    !is_unit(text)
-        && text.char_indices().any(|(at, _)| {
-            let (left, right) = (text[..at].trim(), text[at..].trim_matches([' ', '\t', '(']));
-            let before = is_factor(left.trim_end_matches(times)) && is_unit(right);
-            let by = right.starts_with(['*', 'x', '\u{d7}', '/']) && !right.starts_with("**");
-            let factor = right.trim_start_matches(times).trim_start_matches('/');
-            before || by && is_unit(left) && is_factor(factor)
-        })
-}
-
-/// `true` for a number other than 1, or a share of one.
-fn is_factor(text: &str) -> bool {
-    let text = text.strip_suffix(" of").unwrap_or(text);
-    let number = |text: &str| text.parse::<f64>().ok();
-    let value = match text.split_once(['/', '^']) {
-        Some((base, rest)) => number(base).zip(number(rest)).map(|_| f64::NAN),
-        None => number(text),
-    };
-    value.is_some_and(|value| value != 1.0)
-        || ["%", "percent", "tenths", "hundredths", "thousandths"].contains(&text)
 }
 
 /// Refuses a header that describes the numbers as other quantities than accelerations.

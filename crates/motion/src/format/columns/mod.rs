@@ -4,10 +4,12 @@
 //! columns only if the names are quantities, and the stated step, count and duration must agree with the
 //! numbers.
 
+mod factors;
 pub(in crate::format) mod facts;
 mod names;
 mod rows;
 mod shape;
+mod times;
 mod words;
 
 use crate::direction::Direction;
@@ -27,12 +29,6 @@ use shape::Commas;
 pub(crate) const FORMAT: Format =
     Format { name: "columns", title: "plain columns and CSV", sniff, read };
 
-/// Largest time step (s) of a time column whose unit is not stated.
-const LARGEST_BARE_STEP: f64 = 0.5;
-/// Smallest step (s) of a time column whose unit is not stated; times in minutes, hours and days have smaller numbers.
-const SMALLEST_BARE_STEP: f64 = 4e-4;
-/// Smallest step (s) of a time column in seconds: no recorder has it, days of spreadsheets do.
-const SMALLEST_STEP: f64 = 1e-5;
 /// Tolerance of a stated duration relative to that of the samples.
 const DURATION_TOLERANCE: f64 = 0.02;
 
@@ -124,7 +120,7 @@ fn read_table(
     let mut time_column = width - table.len();
     if let Some(names) = names.as_mut() {
         let line = names_line.unwrap_or(first);
-        time_column += one_time(source, &mut record, line, names, &mut table)?;
+        time_column += times::one(source, &mut record, line, names, &mut table)?;
     }
     if let Some(names) = names.as_mut()
         && let Some(at) = names::time_behind(names)
@@ -140,7 +136,7 @@ fn read_table(
         facts::refuse_other_quantities(source, 0..header)?;
     }
     refuse_spectrum(source, line, names.as_deref())?;
-    let time = time_of(source, first, &table, names.as_deref())?;
+    let time = times::unit_of(source, first, &table, names.as_deref())?;
     let (time_step, names, columns) = if let Some(factor) = time {
         let (names, mut table) = (without_first(names), table);
         let time = scaled(&table.remove(0), factor);
@@ -224,140 +220,11 @@ fn without_index(
     (without_first(names), table)
 }
 
-/// Leaves one column of times, the first with a unit, and returns the number of columns removed before it.
-///
-/// # Errors
-/// If the columns of times do not rise alike.
-fn one_time(
-    source: &Source<'_>,
-    record: &mut Record,
-    line: usize,
-    names: &mut Vec<Name>,
-    table: &mut Vec<Vec<f64>>,
-) -> Result<usize, ReadError> {
-    let unit = |name: &Name| name.unit.as_deref().and_then(facts::time_factor);
-    let times: Vec<usize> = (0..names.len()).filter(|at| names[*at].holds == Holds::Time).collect();
-    if times.len() < 2 {
-        return Ok(0);
-    }
-    let kept = *times.iter().find(|at| unit(&names[**at]).is_some()).unwrap_or(&times[0]);
-    let others: Vec<usize> = times.into_iter().filter(|at| *at != kept).collect();
-    for at in &others {
-        let units = unit(&names[*at]).zip(unit(&names[kept]));
-        if !shape::rise_alike(&table[kept], &table[*at], units.map(|(other, own)| own / other)) {
-            return Err(source.damaged(
-                line,
-                "one column of times, or several that agree",
-                format!("{} and {}, which do not", names[kept].shown(), names[*at].shown()),
-                "leave out the one that does not belong to the accelerations",
-            ));
-        }
-        record.warn(
-            line + 1,
-            format!(
-                "{} states the same times as {} and was left out",
-                names[*at].shown(),
-                names[kept].shown()
-            ),
-        );
-    }
-    for at in others.iter().rev() {
-        names.remove(*at);
-        table.remove(*at);
-    }
-    Ok(others.iter().filter(|at| **at < kept).count())
-}
-
 fn without_first(names: Option<Vec<Name>>) -> Option<Vec<Name>> {
     names.map(|mut names| {
         names.remove(0);
         names
     })
-}
-
-/// Returns the unit of the first column in seconds, if it has times.
-fn time_of(
-    source: &Source<'_>,
-    first: usize,
-    table: &[Vec<f64>],
-    names: Option<&[Name]>,
-) -> Result<Option<f64>, ReadError> {
-    if table.len() < 2 {
-        return Ok(None);
-    }
-    let rises = shape::is_time(&table[0]);
-    let (stated, unit) = match names {
-        Some([Name { holds: Holds::Time, unit, label }, ..]) => {
-            let in_label = label.rsplit([' ', '_', ',', '.']).next().and_then(facts::time_factor);
-            let unit = unit.as_deref();
-            let factor = unit.map(|unit| {
-                facts::time_factor(unit).ok_or_else(|| {
-                    source.damaged(
-                        first,
-                        "a time column in s, ms, us, ns or min",
-                        quoted(unit),
-                        "write the times in one of these units, and its name in the header",
-                    )
-                })
-            });
-            (true, factor.transpose()?.or(in_label))
-        }
-        // Times under a name of motion or none, such as what is left of a damaged header; no ground accelerates evenly.
-        Some([Name { holds, label, .. }, ..])
-            if rises
-                && shape::is_even(&table[0])
-                && matches!(
-                    holds,
-                    Holds::Component | Holds::Unknown | Holds::Motion(Quantity::Acceleration)
-                ) =>
-        {
-            return Err(source.damaged(
-                first,
-                "times under a name of time, or accelerations",
-                format!(
-                    "a first column called {} whose values rise by {} from row to row",
-                    quoted(label),
-                    table[0][1] - table[0][0]
-                ),
-                "name the columns in a line above them, such as \"time (s), acceleration (g)\", or leave the first out",
-            ));
-        }
-        // A rising column under another name does not hold times.
-        Some(_) => return Ok(None),
-        None => (false, None),
-    };
-    let steps = (table[0].len() - 1) as f64;
-    let step = (table[0].last().unwrap_or(&0.0) - table[0][0]) / steps;
-    if unit.is_none() && !stated && (!rises || shape::is_index(&table[0])) {
-        return Ok(None);
-    }
-    let (smallest, largest) = match unit {
-        Some(_) => (SMALLEST_STEP, f64::INFINITY),
-        None => (SMALLEST_BARE_STEP, LARGEST_BARE_STEP),
-    };
-    let seconds = step * unit.unwrap_or(1.0);
-    // Times that do not rise are refused as such.
-    if seconds > largest || seconds > 0.0 && seconds < smallest {
-        let (found, remedy) = if unit.is_some() {
-            (
-                format!("steps of {seconds:.3e} s"),
-                "write seconds since the first sample; days times 86400 are seconds",
-            )
-        } else {
-            (
-                format!("steps of {step} without a unit"),
-                "name the columns in a line above them, such as \"time (ms), acceleration (g)\"; days and hours \
-                 must be written in seconds",
-            )
-        };
-        return Err(source.damaged(
-            first,
-            "a time column whose unit is stated where its steps are no strong motion's in seconds",
-            found,
-            remedy,
-        ));
-    }
-    Ok(Some(unit.unwrap_or(1.0)))
 }
 
 /// Returns the columns of accelerations, with their names; named columns of velocities, displacements and others are
@@ -652,7 +519,8 @@ fn units(
             if let Some(stated) = in_header.filter(|_| !some) {
                 return acceleration(stated.value, stated.line, source.text(stated.line));
             }
-            if let Some(word) = unknown.as_deref().filter(|word| facts::is_scaled_unit(word)) {
+            if let Some(word) = unknown.as_deref().filter(|word| factors::is_unit_with_factor(word))
+            {
                 return Err(source.damaged(
                     names_line,
                     "values and units without a factor",
