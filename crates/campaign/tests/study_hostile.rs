@@ -2,7 +2,10 @@
 
 #![allow(clippy::print_stdout, reason = "messages are read with --nocapture")]
 
-use barrelstack_campaign::study::Study;
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+
+use barrelstack_campaign::study::{RunOptions, Study};
 use proptest::prelude::*;
 
 /// A study without a mistake, in parts that a case replaces: head, base, factor, intensity, design.
@@ -320,16 +323,22 @@ fn what_is_no_record_in_a_folder_of_records_is_named() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("records");
     std::fs::create_dir_all(folder.join("below")).unwrap();
-    let record = "time (s),acceleration (g)\n0.00,0.1\n0.01,0.2\n0.02,-0.1\n0.03,0.0\n";
+    let mut record = "time (s),acceleration (g)\n".to_owned();
+    for k in (0..100).map(f64::from) {
+        writeln!(record, "{:.2},{:.3}", 0.01 * k, (0.2 * k).sin()).unwrap();
+    }
     for name in ["good.csv", ".hidden.csv"] {
-        std::fs::write(folder.join(name), record).unwrap();
+        std::fs::write(folder.join(name), &record).unwrap();
     }
     let (file, motion) = (place.path().join("study.toml"), "[[motion]]\nfolder = \"records\"\n");
     std::fs::write(&file, whole([HEAD, SCENE, FACTOR, motion, INTENSITY]) + DESIGN).unwrap();
-    let load = || Study::load(&file).map(|study| study.motions()).map_err(|e| e.to_string());
-    assert_eq!(load(), Ok(1), "folders and hidden files are left out, as the reference says");
+    let load = || Study::load(&file).unwrap();
+    assert_eq!(load().motions(), 1, "folders and hidden files are left out, as the reference says");
+    let run = || {
+        load().run(&place.path().join("out"), &RunOptions::default(), &|_| ControlFlow::Break(()))
+    };
     let named = |what: &str| {
-        let said = load().unwrap_err();
+        let said = run().unwrap_err().to_string();
         assert!(said.contains("other.csv") && said.contains(what), "{said}");
         std::fs::remove_file(folder.join("other.csv")).unwrap();
     };

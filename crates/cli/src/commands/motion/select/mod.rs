@@ -127,7 +127,8 @@ pub(super) fn select(args: &SelectArgs) -> anyhow::Result<ExitCode> {
         left_out.sentence(found.table.rows(), candidates.len(), args.spectrum.name());
     if !found.refused.is_empty() {
         let files = printer::counted(found.refused.len() as u64, "file");
-        statement.push_str(&format!("; {files} could not be read, see refused.csv"));
+        let unread = format!("; {files} could not be read, see refused.csv");
+        statement.push_str(&unread);
     }
     let [least, largest] = args.scale.ends();
     let choosing = Choosing {
