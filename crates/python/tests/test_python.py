@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import barrelstack
-from barrelstack import Record, Run, Scenario, Table
+from barrelstack import Calibration, Record, Run, Scenario, Study, Table
 from conftest import ROOT
 
 
@@ -206,6 +206,33 @@ def test_no_writer_follows_a_link(
     assert not (folder / name).is_symlink()
     assert (folder / name).stat().st_size > 100
     assert not list(folder.glob("*.part"))
+
+
+def test_an_assigned_field_is_refused_where_it_would_change_nothing() -> None:
+    scenario = Scenario.load("demo-napa")
+    for of, name, path in [(scenario.stack, "levels", "stack.levels"), (scenario, "title", "title")]:
+        with pytest.raises(barrelstack.ArgumentError, match=re.escape(f'scenario.set("{path}", value)')):
+            setattr(of, name, 3)
+    assert scenario.set("stack.levels", 3).stack.levels == 3
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+@pytest.mark.parametrize(
+    "read",
+    [
+        Record.read,
+        Scenario.load,
+        Study.load,
+        lambda path: Calibration.friction(path, interface="rack-ground"),
+        lambda path: Scenario.load("demo-napa", motion__record=path).run(variants=0),
+    ],
+)
+def test_no_reader_waits_for_a_pipe_or_reads_a_device(tmp_path: Path, read: Callable[[str], object]) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for path in (str(pipe), "/dev/zero"):
+        with pytest.raises(barrelstack.Error, match=r"not a file; write what it carries into a file"):
+            read(path)
 
 
 def test_what_a_callback_raises_is_passed_on() -> None:

@@ -11,6 +11,7 @@ from ._page import Page
 from ._progress import Progress, reporting
 from ._quantity import plain
 from ._scenario import Scenario
+from ._store import contents
 
 __all__ = ["Calibration", "Estimate"]
 
@@ -36,8 +37,7 @@ def _text(measured: Any) -> tuple[str, str]:
     """Returns the name of a test in errors, and its measurements as CSV."""
     if isinstance(measured, (str, os.PathLike)):
         name = os.fspath(cast("str | os.PathLike[str]", measured))
-        with open(name, encoding="utf-8-sig") as file:
-            return name, file.read()
+        return name, contents(name).decode("utf-8-sig")
     if isinstance(measured, Mapping):
         given = cast("Mapping[object, Iterable[object]]", measured)
         columns = [(str(name), plain(list(values))) for name, values in given.items()]

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native
 from ._errors import RecordError
 from ._quantity import literal
-from ._store import store
+from ._store import contents, store
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,8 +111,7 @@ class Record:
             return saved if saved is not None else cls(_native.Record.read(bytes(source), name, *given))
         if isinstance(source, (str, os.PathLike)):
             path = os.fspath(source)
-            with open(path, "rb") as file:
-                return cls.read(file.read(), unit=unit, time_step=time_step, sensitivity=sensitivity, name=path)
+            return cls.read(contents(path), unit=unit, time_step=time_step, sensitivity=sensitivity, name=path)
         parts = [cls.read(one, unit=unit, time_step=time_step, sensitivity=sensitivity) for one in source]
         return cls(_native.Record.gather([part._native for part in parts]))
 

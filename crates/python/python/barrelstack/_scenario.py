@@ -6,14 +6,18 @@ import functools
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _native
+from ._errors import ArgumentError
 from ._progress import Progress, reporting
 from ._quantity import literal, plain
 from ._record import Record
 from ._run import Glance, Run, warn
 from ._space import SpatialRun
+
+if TYPE_CHECKING:
+    from typing_extensions import Never
 
 __all__ = ["Scenario", "Section"]
 
@@ -45,6 +49,11 @@ def _value(text: str) -> Value:
     return text
 
 
+def _unassigned(path: str) -> ArgumentError:
+    """Returns the error where a field is assigned, which would leave the scenario as it is."""
+    return ArgumentError(f'a scenario stays as it is: scenario.set("{path}", value) returns a new one')
+
+
 class Section:
     """A table of a scenario: its fields are attributes, with their meaning as documentation.
 
@@ -74,6 +83,11 @@ class Section:
         if name.startswith("__"):
             raise AttributeError(name)
         return self[name.replace("_", "-") if name not in self._names() else name]
+
+    def __setattr__(self, name: str, value: Never) -> None:
+        if not name.startswith("_"):
+            raise _unassigned(f"{self._path}.{name}" if self._path else name)
+        object.__setattr__(self, name, value)
 
     def __getitem__(self, name: str) -> Section | Value:
         path = f"{self._path}.{name}" if self._path else name
@@ -255,6 +269,11 @@ class Scenario:
         if name.startswith("_"):
             raise AttributeError(name)
         return self.fields.__getattr__(name)
+
+    def __setattr__(self, name: str, value: Never) -> None:
+        if not name.startswith("_"):
+            raise _unassigned(name)
+        object.__setattr__(self, name, value)
 
     def __dir__(self) -> list[str]:
         fields = [name for name in self.fields if name.isidentifier()]

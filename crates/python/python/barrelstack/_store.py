@@ -1,11 +1,38 @@
-"""Writes files as the commands do."""
+"""Reads and writes files as the commands do."""
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
+import stat
 
-__all__ = ["store"]
+__all__ = ["contents", "store"]
+
+#: What the system offers as a file and the caller opened.
+OPENED = ("/dev/stdin", "/dev/fd/", "/proc/")
+
+
+def contents(path: str | os.PathLike[str]) -> bytes:
+    """Reads a file. A named pipe would keep its reader waiting, and a device has no end: both are refused.
+
+    Parameters
+    ----------
+    path
+        The file, or what the caller opened (``/dev/stdin``).
+
+    Raises
+    ------
+    OSError
+        When it cannot be opened or is no file.
+    """
+    name = os.fspath(path)
+    mode = os.stat(name).st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or name.startswith(OPENED)):
+        message = "it is a named pipe or a device, not a file; write what it carries into a file and name that"
+        raise OSError(errno.EINVAL, message, name)
+    with open(name, "rb") as file:
+        return file.read()
 
 
 def store(path: str | os.PathLike[str], content: bytes) -> None:
