@@ -324,7 +324,7 @@ fn what_is_no_record_in_a_folder_of_records_is_named() {
     let folder = place.path().join("records");
     std::fs::create_dir_all(folder.join("below")).unwrap();
     let mut record = "time (s),acceleration (g)\n".to_owned();
-    for k in (0..100).map(f64::from) {
+    for k in (0..300).map(f64::from) {
         writeln!(record, "{:.2},{:.3}", 0.01 * k, (0.2 * k).sin()).unwrap();
     }
     for name in ["good.csv", ".hidden.csv"] {
