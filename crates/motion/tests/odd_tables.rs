@@ -272,11 +272,12 @@ fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
             assert!(error.contains("without a factor"), "{stated}: {error}");
         }
     }
-    for unit in ["0.01 m/s2", "10^-3 g", "g x 100"] {
-        let text = format!("time (s),acc ({unit})\n{}", rows(plain));
+    for name in ["acc (0.01 m/s2)", "acc (10^-3 g)", "acc (g x 100)", "acc*100 (g)", "acc (g) * 10"]
+    {
+        let text = format!("time (s),{name}\n{}", rows(plain));
         let options = ReadOptions { unit: Some(AccelerationUnit::Gal), ..ReadOptions::default() };
         let error = read(text.as_bytes(), "a.txt", &options).unwrap_err().to_string();
-        assert!(error.contains("without a factor"), "{unit}: {error}");
+        assert!(error.contains("without a factor"), "{name}: {error}");
     }
     for stated in ["scale factor: 1.0\nunit: m/s2", "unit = 1 m/s2", "unit: m/s**2", "units: m s-2"]
     {

@@ -55,19 +55,18 @@ pub(super) fn refuse(
 /// (1e-3 g)`, `in g, multiplied by 1000`.
 fn is_multiplied(lower: &str) -> bool {
     let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
-    let factor = |text: &str| {
-        leading_text(text.trim_start().as_bytes()).is_some_and(|(factor, _)| factor != 1.0)
-    };
-    let by = |mark: &str| {
-        lower.match_indices(mark).any(|(at, _)| {
-            let before = lower[..at].trim_end();
-            let of_a_number = before.ends_with(|c: char| c.is_ascii_digit() || c == '*');
-            !of_a_number && factor(&lower[at + mark.len()..])
-        })
-    };
     let marks = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
     let in_parentheses = || lower.split(['(', '[']).skip(1).any(is_unit_with_factor);
-    speaks && (in_parentheses() || marks.into_iter().any(by))
+    speaks && (in_parentheses() || marks.into_iter().any(|mark| has_factor(lower, mark)))
+}
+
+/// `true` if a number other than 1 follows a mark that does not follow a number itself.
+pub(super) fn has_factor(text: &str, mark: &str) -> bool {
+    text.match_indices(mark).any(|(at, _)| {
+        let of_a_number = text[..at].trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '*');
+        let number = leading_text(text[at + mark.len()..].trim_start().as_bytes());
+        !of_a_number && number.is_some_and(|(factor, _)| factor != 1.0)
+    })
 }
 
 /// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.

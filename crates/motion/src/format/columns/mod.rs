@@ -503,6 +503,14 @@ fn units(
     (0..columns.len())
         .map(|k| {
             let name = names.get(k);
+            if let Some(name) = name.filter(|name| factors::has_factor(&name.label, "*")) {
+                return Err(source.damaged(
+                    names_line,
+                    "values and units without a factor",
+                    format!("{}, a name with a factor", quoted(&name.label)),
+                    "multiply the values by it if they are not yet, and write the name alone",
+                ));
+            }
             if let Some(name) = name
                 && let Some(unit) = name.motion_unit()
             {
