@@ -56,7 +56,7 @@ def test_a_record_shakes_its_case_as_it_shakes_a_run() -> None:
     assert found["record"] == ["record of row 0", "record of row 1", None]
     by_name = ensemble([{"record": "napa", "motion.scale.pgv": "40 cm/s"}], BASE, records={"napa": record})
     assert by_name["top_drift_ratio"][0] == found["top_drift_ratio"][0]
-    with pytest.raises(ValueError, match='row 0: no record of the name "x"'):
+    with pytest.raises(ValueError, match='row 0: no record named "x"'):
         ensemble([{"record": "x"}], BASE)
 
 
