@@ -10,16 +10,14 @@ use std::time::Duration;
 
 pub use dictionary::dictionary;
 
-use barrelstack_report::column::{
-    Column, ColumnSpec, Role, ValueKind, Values, column_name, csv_heading, csv_rows,
-};
+use barrelstack_report::column::column_name;
 use barrelstack_report::{
     Document, Paper, Trial, base64, csv_field, document_pdf, html_with, shortest,
 };
 use serde_json::{Value, json};
 
-use crate::ensemble;
 use crate::ground::RECORD_LIMIT;
+use crate::outcome::Outcome;
 use crate::report;
 use crate::run::Run;
 use crate::scenario::{FileRef, MotionSource, RecordSource, Scenario, Vertical, View};
@@ -380,22 +378,33 @@ fn csv<R: Iterator<Item = Option<f64>>>(
     text
 }
 
-/// Writes one row for the stack as stated and for every variant, in every plane.
+/// Writes one row for the nominal case and for every variant, in every plane.
 fn variants_csv(answer: &Answer) -> String {
-    let mut text = String::new();
-    for Shown { run, variants, stopped, .. } in
-        std::iter::once(&answer.decides).chain(&answer.other)
-    {
+    let mut text = String::from(
+        "plane,variant,outcome,mode,first_body,collapse (s),first_fall (s),barrels_fallen,barrels\n",
+    );
+    let planes = std::iter::once(&answer.decides).chain(&answer.other);
+    for Shown { run, variants, stopped, .. } in planes {
+        let view = run.assembly.view.map_or("", View::name);
         let results = variants.as_ref().map(|found| &found.results).or(stopped.as_ref());
-        let mut table = ensemble::variants(results.into_iter().flatten());
-        let plane =
-            vec![run.assembly.view.map(|view| view.name().to_owned()); table[0].values.len()];
-        let spec = ColumnSpec::new("plane", "", Role::Key, ValueKind::Text);
-        table.insert(0, Column { spec, values: Values::Text(plane) });
-        if text.is_empty() {
-            text = csv_heading(&table);
+        for (number, result) in results.into_iter().flatten().enumerate() {
+            let (kind, collapse) = match &result.outcome {
+                // Interrupted cases have no row.
+                Ok(Outcome::Interrupted) => continue,
+                Ok(Outcome::Collapse { mode, time, first, .. }) => {
+                    ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))
+                }
+                Ok(outcome) => (outcome.kind(), ",,".to_owned()),
+                Err(_) => ("cannot-stand", ",,".to_owned()),
+            };
+            let first = result.first_fall.map_or_else(String::new, |time| time.to_string());
+            let fallen = result.falls.iter().filter(|(_, at)| at.is_some()).count();
+            let _ = writeln!(
+                text,
+                "{view},{number},{kind},{collapse},{first},{fallen},{}",
+                result.barrels
+            );
         }
-        text += &csv_rows(&table);
     }
     text
 }

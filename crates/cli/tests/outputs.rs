@@ -288,7 +288,6 @@ fn a_column_has_one_name_in_all_files() {
         let without: Vec<&&str> = rows.iter().filter(|row| row.ends_with(',')).collect();
         assert!(without.is_empty(), "{file}: {without:?}");
     }
-    let of_cases = heads(&read("run/variants.csv"));
     // A study lists its columns; names of its own factors stand as they were written.
     done(&["study", "run", "s.toml", "--out", "study"]);
     let columns = read("study/columns.csv");
@@ -299,8 +298,6 @@ fn a_column_has_one_name_in_all_files() {
     let parquet = fs::read(folder.path().join("study/table.parquet")).unwrap();
     let holds = |name: &str| parquet.windows(name.len()).any(|part| part == name.as_bytes());
     assert!(listed.iter().all(|name| holds(name)), "{listed:?}");
-    assert!(of_cases.len() > 30, "{of_cases:?}");
-    assert!(of_cases[2..].iter().all(|name| listed.contains(&name.as_str())), "{of_cases:?}");
     let outcomes = ["first_fall", "energy_residual_ratio"];
     assert!(outcomes.iter().all(|name| listed.contains(name)), "{listed:?}");
 }

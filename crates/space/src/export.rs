@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use barrelstack::export::dictionary;
-use barrelstack_report::column::{column_name, to_csv};
+use barrelstack_report::column::column_name;
 use barrelstack_report::{csv_field, html, shortest};
 
 use crate::columns;
+use crate::fate::Heading;
 use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
@@ -16,7 +17,7 @@ pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
         ("scenario.toml", resolved.to_owned()),
-        ("variants.csv", to_csv(&columns::variants(&answer.cases))),
+        ("variants.csv", variants_csv(answer)),
         ("frames.csv", frames_csv(&answer.run)),
         ("report.html", html(&document(answer))),
     ];
@@ -47,6 +48,46 @@ fn frames_csv(run: &Run) -> String {
             text.push_str(&shortest(*value));
         }
         text.push('\n');
+    }
+    text
+}
+
+/// Writes the case as stated, number 0, and its variants, one row each.
+fn variants_csv(answer: &Answer) -> String {
+    let mut text = String::from(
+        "variant,outcome,mode,collapse (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\
+         debris_away,debris_near,energy_residual_ratio,reason\n",
+    );
+    for (number, case) in answer.cases.iter().enumerate() {
+        use barrelstack::outcome::Outcome;
+        let result = &case.result;
+        let (kind, mode, time, first, reason) = match &result.outcome {
+            // An interrupted case has no row.
+            Ok(Outcome::Interrupted) => continue,
+            Ok(Outcome::Collapse { mode, time, first, .. }) => {
+                ("collapse", mode.name(), Some(*time), first.as_str(), "")
+            }
+            Ok(Outcome::Invalid { reason }) => ("invalid", "", None, "", reason.as_str()),
+            Ok(outcome) => (outcome.kind(), "", None, "", ""),
+            Err(reason) => ("cannot-stand", "", None, "", reason.as_str()),
+        };
+        let number_or_none = |value: Option<f64>| value.map(shortest).unwrap_or_default();
+        let debris = |heading: Heading| case.debris.iter().filter(|one| **one == heading).count();
+        let _ = writeln!(
+            text,
+            "{number},{kind},{mode},{},{},{},{},{},{},{},{},{},{},{}",
+            number_or_none(time),
+            csv_field(first),
+            case.first.map_or("", Heading::name),
+            number_or_none(result.first_fall),
+            result.falls.iter().filter(|(_, at)| at.is_some()).count(),
+            debris(Heading::Right),
+            debris(Heading::Left),
+            debris(Heading::Away),
+            debris(Heading::Near),
+            number_or_none(result.energy_residual_ratio),
+            csv_field(reason)
+        );
     }
     text
 }

@@ -9,9 +9,16 @@ use crate::ensemble;
 
 /// Meanings of columns that have one name in all files, and of those that end in it after the name of a body, of two
 /// bodies, or of the ground.
-const MEANINGS: [(&str, &str); 38] = [
+const MEANINGS: [(&str, &str); 42] = [
     ("time", "time since the motion began"),
     ("plane", "plane of the run: transverse, across the barrels, or longitudinal, along them"),
+    (
+        "outcome",
+        "stable, collapse, not-judged, invalid, or cannot-stand where the stack could not be run",
+    ),
+    ("collapse", "when the first body left its seat; 0 where the stack fell under its own weight"),
+    ("first_body", "body that left its seat first"),
+    ("reason", "why there is no verdict"),
     ("ground_acceleration_x", "acceleration of the ground to the right"),
     ("ground_acceleration_z", "acceleration of the ground upward"),
     ("ground_velocity_x", "velocity of the ground to the right"),
@@ -67,14 +74,14 @@ pub fn dictionary(
     let tables =
         files.iter().filter(|(name, _)| Path::new(name).extension().is_some_and(|of| of == "csv"));
     for (file, bytes) in tables {
-        let of_cases = file == "variants.csv";
         let heading = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
         for column in String::from_utf8_lossy(heading).split(',') {
             let (name, unit) = column.split_once(" (").unwrap_or((column, ""));
             let unit = unit.trim_end_matches(')');
-            let of_case = || ensemble::meaning(name).or_else(|| other(name));
-            let meaning =
-                of_case().filter(|_| of_cases).or_else(|| meaning(name)).unwrap_or_default();
+            let meaning = equal(name)
+                .or_else(|| ensemble::meaning(name).or_else(|| other(name)))
+                .or_else(|| ends_in(name))
+                .unwrap_or_default();
             let row = [file, name, unit, meaning].map(csv_field);
             let _ = writeln!(text, "{}", row.join(","));
         }
@@ -82,8 +89,13 @@ pub fn dictionary(
     ("columns.csv".to_owned(), text.into_bytes())
 }
 
-fn meaning(name: &str) -> Option<&'static str> {
-    let equal = MEANINGS.iter().find(|(known, _)| *known == name);
-    let ends = || MEANINGS.iter().find(|(end, _)| end.starts_with('_') && name.ends_with(end));
-    equal.or_else(ends).map(|(_, meaning)| *meaning)
+/// Returns the meaning of a name that is listed whole.
+fn equal(name: &str) -> Option<&'static str> {
+    MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+}
+
+/// Returns the meaning of a name that begins with a body.
+fn ends_in(name: &str) -> Option<&'static str> {
+    let ends = |end: &str| end.starts_with('_') && name.ends_with(end);
+    MEANINGS.iter().find(|(end, _)| ends(end)).map(|(_, meaning)| *meaning)
 }
