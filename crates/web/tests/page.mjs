@@ -372,7 +372,7 @@ export async function checkPage(browser, suite, { file, program, native }) {
       }, name);
       demand(Buffer.from(base64, "base64").equals(readFileSync(join(out, name))), `${name} differs`);
     }
-    demand(names.length === 14, names.join(", "));
+    demand(names.length === 15, names.join(", "));
     return `${names.length} files`;
   });
   await suite.check("the report of the command answers with the engine in it", async () => {
