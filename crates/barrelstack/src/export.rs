@@ -381,7 +381,7 @@ fn csv<R: Iterator<Item = Option<f64>>>(
 /// Writes one row for the nominal case and for every variant, in every plane.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
-        "plane,variant,outcome,mode,first_body,collapse (s),first_fall (s),barrels_fallen,barrels\n",
+        "plane,variant,outcome,mode,first_body,first_loss (s),first_fall (s),barrels_fallen,barrels\n",
     );
     let planes = std::iter::once(&answer.decides).chain(&answer.other);
     for Shown { run, variants, stopped, .. } in planes {
@@ -395,7 +395,7 @@ fn variants_csv(answer: &Answer) -> String {
                     ("collapse", format!("{},{},{time}", mode.name(), csv_field(first)))
                 }
                 Ok(outcome) => (outcome.kind(), ",,".to_owned()),
-                Err(_) => ("cannot-stand", ",,".to_owned()),
+                Err(_) => ("error", ",,".to_owned()),
             };
             let first = result.first_fall.map_or_else(String::new, |time| time.to_string());
             let fallen = result.falls.iter().filter(|(_, at)| at.is_some()).count();

@@ -92,7 +92,8 @@ pub struct Request {
 pub struct Ranked {
     /// The protection.
     pub protection: Protection,
-    /// Share of the runs that collapse, over equally weighted levels of shaking; at a site, the number of collapses per year.
+    /// Share of the runs that collapse, over equally weighted levels of shaking; at a site, the number of collapses per
+    /// year.
     pub collapse: Estimate,
     /// Barrels of a stack that fall, likewise.
     pub fallen: Estimate,

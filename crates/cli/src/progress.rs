@@ -348,7 +348,7 @@ mod tests {
             assert!(at < 5.2, "{at} s");
             assert!((0.25..=4.0).contains(&(estimate / all)), "{estimate} of {all} s");
             wrong[0] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
-            // Where simulated times are not known, the number of finished runs tells, later.
+            // Without simulated times the number of finished runs decides, and the estimate comes later.
             let (at, estimate) = first(&runs, false).expect("an estimate");
             assert!(at <= 0.75 * all, "{at} of {all} s");
             wrong[1] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));

@@ -33,6 +33,10 @@ fn a_run_in_space_says_what_fell_and_whereto_and_leaves_its_files() {
     let frames = fs::read_to_string(out.join("frames.csv")).unwrap();
     // Time, and seven numbers of seven bodies.
     assert!(frames.lines().all(|line| line.split(',').count() == 50));
+    // A heading, the columns of variants, those of frames; each has a meaning.
+    let columns = fs::read_to_string(out.join("columns.csv")).unwrap();
+    assert_eq!(columns.lines().count(), 1 + 14 + 50, "{columns}");
+    assert!(columns.lines().all(|line| !line.ends_with(',')), "{columns}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     for view in ["Across the barrels", "Along the barrels", "From above"] {
         assert!(page.contains(view), "{view}");
@@ -90,6 +94,10 @@ fn a_free_scene_in_space_leaves_its_files() {
     let number = |value: &Value| value.as_f64().unwrap();
     let speed = number(&body["velocity"][0]).hypot(number(&body["velocity"][1]));
     assert!((speed - 5.0 / 7.0).abs() < 1e-4, "{speed}");
+    // A heading, the columns of variants, those of frames; each has a meaning.
+    let columns = fs::read_to_string(out.join("columns.csv")).unwrap();
+    assert_eq!(columns.lines().count(), 1 + 14 + 50, "{columns}");
+    assert!(columns.lines().all(|line| !line.ends_with(',')), "{columns}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     for view in ["From the front", "From the side", "From above"] {
         assert!(page.contains(view), "{view}");

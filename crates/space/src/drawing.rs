@@ -44,7 +44,7 @@ impl Sight {
     /// All view directions.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// Returns the words as text, depending on the stack.
+    /// Returns the direction of view as a phrase: "along the barrels".
     pub fn words(self, stack: &Stack) -> &'static str {
         match self {
             Self::Across if stack.is_free() => "from the front",

@@ -55,8 +55,8 @@ fn frames_csv(run: &Run) -> String {
 /// Writes the case as stated, number 0, and its variants, one row each.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
-        "variant,outcome,mode,collapse (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\
-         debris_away,debris_near,energy_residual_ratio,reason\n",
+        "variant,outcome,mode,first_loss (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\
+         debris_away,debris_near,energy_residual_ratio,error\n",
     );
     for (number, case) in answer.cases.iter().enumerate() {
         use barrelstack::outcome::Outcome;
@@ -69,7 +69,7 @@ fn variants_csv(answer: &Answer) -> String {
             }
             Ok(Outcome::Invalid { reason }) => ("invalid", "", None, "", reason.as_str()),
             Ok(outcome) => (outcome.kind(), "", None, "", ""),
-            Err(reason) => ("cannot-stand", "", None, "", reason.as_str()),
+            Err(reason) => ("error", "", None, "", reason.as_str()),
         };
         let number_or_none = |value: Option<f64>| value.map(shortest).unwrap_or_default();
         let debris = |heading: Heading| case.debris.iter().filter(|one| **one == heading).count();

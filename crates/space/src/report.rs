@@ -120,8 +120,9 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges are those of 5 to 95 % of the variants. The first body has the direction in which it left its \
-             seat; barrels that fell{} have that from their places at rest to their places at the end of that time.",
+            "Ranges are those of 5 to 95 % of the variants. The direction of the first body is that in which it \
+             left its seat; that of a barrel which fell{} leads from its place at rest to its place when its variant \
+             ended.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],

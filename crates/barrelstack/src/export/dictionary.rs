@@ -7,18 +7,12 @@ use barrelstack_report::csv_field;
 
 use crate::ensemble;
 
-/// Meanings of columns that have one name in all files, and of those that end in it after the name of a body, of two
-/// bodies, or of the ground.
-const MEANINGS: [(&str, &str); 42] = [
+/// Names of columns with their meanings; one that begins with `_` stands for all names that end in it, after the name
+/// of a body, of two bodies or of the ground.
+const MEANINGS: [(&str, &str); 39] = [
     ("time", "time since the motion began"),
     ("plane", "plane of the run: transverse, across the barrels, or longitudinal, along them"),
-    (
-        "outcome",
-        "stable, collapse, not-judged, invalid, or cannot-stand where the stack could not be run",
-    ),
-    ("collapse", "when the first body left its seat; 0 where the stack fell under its own weight"),
     ("first_body", "body that left its seat first"),
-    ("reason", "why there is no verdict"),
     ("ground_acceleration_x", "acceleration of the ground to the right"),
     ("ground_acceleration_z", "acceleration of the ground upward"),
     ("ground_velocity_x", "velocity of the ground to the right"),
@@ -53,11 +47,14 @@ const MEANINGS: [(&str, &str); 42] = [
     ("_rotation", "rotation, counterclockwise"),
     ("_vertical_force", "upward force on the upper body"),
     ("_horizontal_force", "force to the right on the upper body"),
-    ("_x", "place of the center of mass to the right, from a fixed point"),
-    ("_y", "place of the center of mass along the barrels, away, from a fixed point"),
-    ("_z", "place of the center of mass upward, from a fixed point"),
+    ("_x", "place of the center of mass to the right, in the frame of the ground before it moved"),
+    ("_y", "the same away from the viewer, along the barrels"),
+    ("_z", "the same upward"),
     ("_angle", "rotation, counterclockwise"),
-    ("_qw", "real part of the quaternion from the frame of the body to that of the room"),
+    (
+        "_qw",
+        "real part of the quaternion from the frame of the body to that of the ground before it moved",
+    ),
     ("_qx", "first imaginary part of that quaternion"),
     ("_qy", "second imaginary part of that quaternion"),
     ("_qz", "third imaginary part of that quaternion"),

@@ -233,7 +233,8 @@ impl RenderFolder {
         })
     }
 
-    /// Writes a part by calling `write`, which returns the number of files; where a file cannot be written, removes those before it.
+    /// Writes a part by calling `write`, which returns the number of files; where a file cannot be written, removes
+    /// those before it.
     fn whole(
         &self,
         part: Part,

@@ -134,8 +134,8 @@ fn motion_of(
     template::motion(&opened.sources, &format!("motion.{number}"), &table, origin)
 }
 
-/// Returns what a folder has under names that match a pattern, sorted, as paths relative to the study; neither folders
-/// nor names that begin with a period. What is no file is refused where it is read, so that nothing is left out unsaid.
+/// Returns the paths, relative to the study and sorted, of all entries of a folder whose names match a pattern, without
+/// folders and names that begin with a period. Entries that are no files are refused where they are read.
 fn matching(
     set: &Reader<'_>,
     folder: &Path,

@@ -145,9 +145,9 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         self.steps += 1;
         if self.steps == PATIENCE {
             self.steps = 0;
-            for (lane, part) in self.shares.iter_mut().enumerate() {
-                if let Some(part) = part {
-                    part.reached(state.time.lane(lane) / self.group[self.runs[lane]].end_time);
+            for (lane, share) in self.shares.iter_mut().enumerate() {
+                if let Some(share) = share {
+                    share.reached(state.time.lane(lane) / self.group[self.runs[lane]].end_time);
                 }
             }
             if (self.audience.stop)() {
@@ -206,9 +206,9 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let verdict = conclude(assembly, ground, &fates, ended, end.time, ending);
         let observed = Observed { fates: &fates, stresses: &stresses, joints: &joints, trail };
         let result = CaseResult::of(assembly, ground, observed, verdict, end.time);
-        let (index, share) = (run.index, end.time / run.end_time);
-        if let Some(part) = self.shares[lane].take() {
-            part.end(share);
+        let (index, reached) = (run.index, end.time / run.end_time);
+        if let Some(share) = self.shares[lane].take() {
+            share.end(reached);
         }
         (self.audience.on_case)(&result);
         self.results.push((index, result));

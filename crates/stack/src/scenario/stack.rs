@@ -138,7 +138,7 @@ impl View {
         }
     }
 
-    /// Returns the words as text.
+    /// Returns the direction as a phrase: "along the barrels".
     pub fn words(self) -> &'static str {
         match self {
             Self::Transverse => "across the barrels",
