@@ -155,7 +155,7 @@ impl Of {
         work: Work,
     ) -> Option<Duration> {
         let gone = done - first;
-        if let (Self::Many, Some(left)) = (self, left(work, of - done)) {
+        if let (Self::Many, Some(left)) = (self, left(work, of - done, of - first)) {
             return (spent >= EVERY).then(|| spent.mul_f64(left.min(1e6)));
         }
         let enough = match self {
@@ -167,14 +167,20 @@ impl Of {
     }
 }
 
-/// Returns the factor from the work done to that left in `open` unfinished cases; none before any is done.
+/// Returns the factor from the time spent to that left for `open` of `all` cases; none before any was shaken.
 ///
-/// Cases end early at the rate at which they did so far; the first are expected to take 0.7 of their time.
-fn left(work: Work, open: f64) -> Option<f64> {
+/// Cases end early at the rate at which they did so far; the first are expected to take 0.7 of their time. Those whose
+/// stack is not at rest yet take as long for that as the others did.
+fn left(work: Work, open: f64, all: f64) -> Option<f64> {
     let rate = (work.early + 0.75) / (work.done + 1.0);
     // Close to (1 - exp(-rate)) / rate, the mean share of a case that ends early at a constant rate.
     let mean = 1.0 / (1.0 + rate / 2.0 + rate * rate / 12.0);
-    (work.done > 0.0).then(|| (open - work.under_way).max(0.0) * mean / work.done)
+    if work.done <= 0.0 || work.shaking <= 0.0 {
+        return None;
+    }
+    let shaking = work.shaking * (open - work.under_way).max(0.0) * mean / work.done;
+    let settling = work.settling * (all - work.at_rest).max(0.0) / work.at_rest.max(1.0);
+    Some((shaking + settling) / (work.shaking + work.settling))
 }
 
 /// Lines without a terminal: an estimate of the total time, then the progress every few seconds.
@@ -279,21 +285,23 @@ fn rounded(time: Duration) -> String {
 mod tests {
     use super::*;
 
-    /// A run: start and end (s), and the time (s) that it would take without a collapse.
+    /// A run: start (s) of the search for rest, of the shaking, and end (s), and the time (s) that the shaking would take
+    /// without a collapse.
     struct Timed {
+        first: f64,
         start: f64,
         end: f64,
         whole: f64,
     }
 
-    /// Returns runs of these lengths and whole times, `width` of them side by side, in their order.
-    fn side_by_side(width: usize, lengths: &[[f64; 2]]) -> Vec<Timed> {
+    /// Returns runs of these lengths and whole times after `settling`, `width` of them side by side, in their order.
+    fn side_by_side(width: usize, settling: f64, lengths: &[[f64; 2]]) -> Vec<Timed> {
         let mut free = vec![0.0_f64; width];
         let run = |[length, whole]: &[f64; 2]| {
             let next = free.iter_mut().min_by(|a, b| a.total_cmp(b)).unwrap();
-            let start = *next;
-            *next += length;
-            Timed { start, end: *next, whole: *whole }
+            let first = *next;
+            *next += settling + length;
+            Timed { first, start: first + settling, end: *next, whole: *whole }
         };
         lengths.iter().map(run).collect()
     }
@@ -308,7 +316,11 @@ mod tests {
             let share = |run: &Timed| ((time.min(run.end) - run.start) / run.whole).max(0.0);
             let open = runs.iter().filter(|run| !ended(run));
             let early = |run: &&Timed| run.end - run.start < 0.99 * run.whole;
+            let between = |from: f64, to: f64| (time.min(to) - from).max(0.0);
             let work = Work {
+                at_rest: runs.iter().filter(|run| run.start <= time).count() as f64,
+                settling: runs.iter().map(|run| between(run.first, run.start)).sum(),
+                shaking: runs.iter().map(|run| between(run.start, run.end)).sum(),
                 done: runs.iter().map(share).sum(),
                 under_way: open.map(share).sum(),
                 early: runs.iter().filter(ended).filter(early).count() as f64,
@@ -338,7 +350,8 @@ mod tests {
                 let length = if uniform() < share { part * (0.7 + 0.6 * uniform()) } else { 1.0 };
                 [whole * length, whole]
             });
-            let runs = side_by_side(width, &lengths.collect::<Vec<_>>());
+            let settling = whole * [0.0, 0.1, 1.0][trial / 36 % 3];
+            let runs = side_by_side(width, settling, &lengths.collect::<Vec<_>>());
             let all = runs.iter().map(|run| run.end).fold(0.0, f64::max);
             if all < 12.0 {
                 continue;

@@ -94,9 +94,9 @@ fn a_free_scene_in_space_leaves_its_files() {
     let number = |value: &Value| value.as_f64().unwrap();
     let speed = number(&body["velocity"][0]).hypot(number(&body["velocity"][1]));
     assert!((speed - 5.0 / 7.0).abs() < 1e-4, "{speed}");
-    // A heading, the columns of variants, those of frames; each has a meaning.
+    // A heading, and the columns of frames.
     let columns = fs::read_to_string(out.join("columns.csv")).unwrap();
-    assert_eq!(columns.lines().count(), 1 + 14 + 50, "{columns}");
+    assert_eq!(columns.lines().count(), 1 + 15, "{columns}");
     assert!(columns.lines().all(|line| !line.ends_with(',')), "{columns}");
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     for view in ["From the front", "From the side", "From above"] {

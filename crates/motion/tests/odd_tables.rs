@@ -246,6 +246,8 @@ fn marks_among_comparable_values_are_found() {
 fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
     for stated in [
         "scale factor: 0.01\nunit: m/s2",
+        "gain: 2\nunit: m/s2",
+        "# Calibration factor = 0.5\nunit: m/s2",
         "# Scale Factor = 2.0\n# unit: m/s2",
         "multiplier 100\nunit: m/s2",
         "scale: 9.81\nunit: m/s2",
@@ -279,8 +281,13 @@ fn factors_in_headers_are_refused_and_a_factor_of_one_is_none() {
         let error = read(text.as_bytes(), "a.txt", &options).unwrap_err().to_string();
         assert!(error.contains("without a factor"), "{name}: {error}");
     }
-    for stated in ["scale factor: 1.0\nunit: m/s2", "unit = 1 m/s2", "unit: m/s**2", "units: m s-2"]
-    {
+    for stated in [
+        "gain: 1\nunit: m/s2",
+        "scale factor: 1.0\nunit: m/s2",
+        "unit = 1 m/s2",
+        "unit: m/s**2",
+        "units: m s-2",
+    ] {
         let values = rows(|_, _, a| format!("{a:.6}\n"));
         is_the_wave(&format!("{stated}\ndt = 0.005 s\n{values}"), 1);
     }
@@ -361,5 +368,19 @@ fn steps_of_no_record_are_no_steps_and_kilohertz_are_thousands() {
     }
     for rate in ["Sampling rate 0.2 kHz", "sampling rate (kHz): 0.2"] {
         is_the_wave(&format!("{rate}\nunit: m/s2\n{values}"), 1);
+    }
+}
+
+#[test]
+fn headings_without_rows_are_named_as_such() {
+    for text in [
+        "time (s),acceleration (g)\n",
+        "Station: X\ntime (s);acc (m/s2)\n\n",
+        "unit: g\nstep: 0.01 s\nacceleration\n",
+    ] {
+        let error = read(text.as_bytes(), "a.csv", &ReadOptions::default()).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains("expected rows of numbers below the headings"), "{said}");
+        assert!(said.contains("after which the file ends"), "{said}");
     }
 }

@@ -90,7 +90,8 @@ fn write(folder: &Path, first: u32, changes: &[String]) -> Result<(), Box<dyn Er
     };
     let plane = of(changes)?;
     let seats = SEATS.iter().flat_map(|seat| ALIKE.map(|own| format!("interface.{seat}.{own}")));
-    let alike = of(&changes.iter().cloned().chain(seats).collect::<Vec<_>>())?;
+    // The law first: a stated restitution then belongs to it.
+    let alike = of(&seats.chain(changes.iter().cloned()).collect::<Vec<_>>())?;
     let ground = Ground::of(&plane.scenario)?;
     let name = format!("motion-{first}.json");
     std::fs::write(folder.join(&name), motion(&ground).to_string())?;

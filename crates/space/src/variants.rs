@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
-use barrelstack::ensemble::CaseResult;
+use barrelstack::ensemble::{CaseResult, Share, settling, shaking};
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
@@ -15,7 +15,7 @@ use barrelstack::variants::{
     Advance, Failed, Observer, Plane, Remedy, RunChoice, Spread, Trial, fails, planes, remedy_by,
 };
 use barrelstack::watch::Ending;
-use barrelstack::{RunFailure, Scenario, pool};
+use barrelstack::{Progress, RunFailure, Scenario, pool};
 use barrelstack_dynamics::Vec3;
 
 use crate::fate::Heading;
@@ -206,11 +206,25 @@ fn run_some(
         if going(()).is_break() {
             return interrupted();
         }
-        let case = match run_on(&variant, ground.clone(), &mut |_| going(())) {
+        // Until it is shaken, the stack comes to rest.
+        let (mut share, mut inside, mut shaken) = (Share::default(), Some(settling()), false);
+        let mut advance = |progress: Progress| {
+            if !shaken {
+                inside = None;
+                inside = Some(shaking(1));
+                shaken = true;
+            }
+            share.reached(progress.time / progress.end_time);
+            going(())
+        };
+        let case = match run_on(&variant, ground.clone(), &mut advance) {
             Ok(run) if run.ending == Ending::Interrupted => {
                 return interrupted();
             }
-            Ok(run) => Case::of(&run),
+            Ok(run) => {
+                share.end(run.end_time / run.simulation.end_time);
+                Case::of(&run)
+            }
             Err(failure) => Case::refused(&variant, &failure),
         };
         report(done.fetch_add(1, Ordering::Relaxed) + 1);

@@ -234,6 +234,15 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
                 "write the numbers alone, with hyphens for minus signs, and times in seconds",
             ));
         }
+        if let Some(line) = refused::headings_alone(source) {
+            return Err(source.error(
+                line,
+                Refusal::Unrecognized,
+                "rows of numbers below the headings",
+                format!("{}, after which the file ends", quoted(&source.text(line))),
+                "the file is cut or was never filled; export it again, or get it again from its source",
+            ));
+        }
         let first_line = || format!("\"{}\" as first line", shorten(&source.text(0)));
         return Err(source.error(
             (),

@@ -1,5 +1,6 @@
 //! Known formats without an acceleration history that can be read here.
 
+use super::columns::facts::says_acceleration;
 use super::source::{Source, parse_number};
 use super::{Format, Hints};
 use crate::error::{ReadError, Refusal};
@@ -130,6 +131,13 @@ pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
             && numbers.iter().all(|field| parse_number(field.as_bytes()).is_some())
     };
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
+}
+
+/// Returns the last line of a file that names an acceleration or a time and has no row of numbers below it.
+pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
+    let last = (0..source.lines.len()).rfind(|&line| !source.text(line).trim().is_empty())?;
+    let lower = source.text(last).to_lowercase();
+    (says_acceleration(&lower) || lower.starts_with("time")).then_some(last)
 }
 
 /// Declares a format that is recognized by its first bytes and refused by its name.

@@ -17,7 +17,12 @@ const FACTOR_KEYS: &[&str] = &[
     "multiply by",
     "multiplication factor",
     "conversion factor",
+    "calibration factor",
+    "gain",
 ];
+
+/// Those that count at the begin of a line alone: within one they may belong to an instrument.
+const AT_THE_BEGIN: [&str; 2] = ["scale", "gain"];
 
 /// Refuses a factor of the values above them: `1.0e+03 *`, as MATLAB shows matrices, `scale factor: 0.01`, or a unit with
 /// a number, `unit = 0.01 m/s2`.
@@ -31,7 +36,8 @@ pub(super) fn refuse(
             lower.strip_suffix('*').is_some_and(|number| number.trim().parse::<f64>().is_ok());
         let plain = lower.trim_start_matches(['#', '%', '!', '/', ' ']);
         let of = |key: &&str| {
-            value_behind(plain, key).filter(|_| *key != "scale" || plain.starts_with(key))
+            value_behind(plain, key)
+                .filter(|_| !AT_THE_BEGIN.contains(key) || plain.starts_with(key))
         };
         let factor = FACTOR_KEYS.iter().find_map(of).map(|value| value.printed.value);
         let in_unit = UNIT_WORDS.iter().find_map(|word| lower.split_once(word));

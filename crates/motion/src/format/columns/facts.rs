@@ -375,7 +375,7 @@ fn peak(text: &str) -> Option<Peak> {
 }
 
 /// `true` if a text mentions acceleration.
-pub(super) fn says_acceleration(lower: &str) -> bool {
+pub(in crate::format) fn says_acceleration(lower: &str) -> bool {
     words(lower).any(|word| ACCELERATIONS.iter().any(|start| word.starts_with(start)))
 }
 
