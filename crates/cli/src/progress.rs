@@ -358,7 +358,8 @@ mod tests {
             }
             made += 1;
             let (at, estimate) = first(&runs, true).expect("an estimate");
-            assert!(at < 5.2, "{at} s");
+            // Before the first stack is shaken nothing is known.
+            assert!(at < 5.2_f64.max(settling + 0.2), "{at} s");
             assert!((0.25..=4.0).contains(&(estimate / all)), "{estimate} of {all} s");
             wrong[0] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
             // Without simulated times the number of finished runs decides, and the estimate comes later.
