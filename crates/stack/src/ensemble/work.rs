@@ -97,8 +97,12 @@ impl Drop for Inside {
     }
 }
 
-/// Returns the time since the epoch (ns).
+/// Returns the time since the epoch (ns); 0 in a page, where the standard library has no clock and nobody reads this
+/// one.
 fn now() -> i64 {
+    if cfg!(target_family = "wasm") {
+        return 0;
+    }
     i64::try_from(EPOCH.elapsed().as_nanos()).unwrap_or(i64::MAX)
 }
 
