@@ -367,6 +367,7 @@ mod tests {
             assert!(at <= 0.75 * all, "{at} of {all} s");
             wrong[1] += usize::from(!(0.5..=2.0).contains(&(estimate / all)));
         }
+        // Measured: 11 and 0 of 848.
         assert!(made > 500 && wrong[0] * 40 <= made && wrong[1] * 100 <= made, "{made} {wrong:?}");
     }
 }

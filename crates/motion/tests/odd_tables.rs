@@ -383,4 +383,12 @@ fn headings_without_rows_are_named_as_such() {
         assert!(said.contains("expected rows of numbers below the headings"), "{said}");
         assert!(said.contains("after which the file ends"), "{said}");
     }
+    // Of text that is no table nothing is said that it does not show.
+    for text in [
+        "Notes\nThe files hold accelerations, processed according to the manual.\n",
+        "12 stations\nacceleration\n",
+    ] {
+        let error = read(text.as_bytes(), "a.txt", &ReadOptions::default()).unwrap_err();
+        assert!(!error.to_string().contains("below the headings"), "{error}");
+    }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
-use barrelstack::ensemble::{CaseResult, Share, settling, shaking};
+use barrelstack::ensemble::{CaseResult, Share, Stage};
 use barrelstack::ground::GroundError;
 use barrelstack::outcome::Outcome;
 use barrelstack::run::CUT;
@@ -206,14 +206,9 @@ fn run_some(
         if going(()).is_break() {
             return interrupted();
         }
-        // Until it is shaken, the stack comes to rest.
-        let (mut share, mut inside, mut shaken) = (Share::default(), Some(settling()), false);
+        let (mut share, mut stage) = (Share::default(), Stage::settling());
         let mut advance = |progress: Progress| {
-            if !shaken {
-                inside = None;
-                inside = Some(shaking(1));
-                shaken = true;
-            }
+            stage.shake(1);
             share.reached(progress.time / progress.end_time);
             going(())
         };

@@ -30,7 +30,7 @@ pub use case::{CaseResult, Prepared};
 pub use columns::{CASE_COLUMNS, CaseColumn, Get, meaning, table, variants};
 pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
-pub use work::{Inside, Share, Work, settling, shaking};
+pub use work::{Share, Stage, Work};
 
 /// Version of the results of an ensemble: raised whenever the same case may give other bits, so that results of two
 /// versions are never combined.
@@ -144,7 +144,7 @@ fn simulate_as_far(
     let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
     let mut stacks: Vec<Stack<'_>> = Vec::new();
     let mut runs: Vec<Result<Run<'_>, String>> = Vec::new();
-    let at_rest = settling();
+    let mut stage = Stage::settling();
     for (index, case) in cases.iter().enumerate() {
         if (audience.stop)() {
             return results;
@@ -165,8 +165,7 @@ fn simulate_as_far(
             Err(run) => ready.push(run),
         }
     }
-    drop(at_rest);
-    let _shaken = shaking(cases.len());
+    stage.shake(cases.len());
     for (method, group) in groups(&ready, &stacks) {
         if (audience.stop)() {
             break;

@@ -48,8 +48,11 @@ const MEANINGS: [(&str, &str); 39] = [
     ("_vertical_force", "upward force on the upper body"),
     ("_horizontal_force", "force to the right on the upper body"),
     ("_x", "place of the center of mass to the right, in the frame of the ground before it moved"),
-    ("_y", "the same away from the viewer, along the barrels"),
-    ("_z", "the same upward"),
+    (
+        "_y",
+        "place of the center of mass away from the viewer, in the frame of the ground before it moved",
+    ),
+    ("_z", "place of the center of mass upward, in the frame of the ground before it moved"),
     ("_angle", "rotation, counterclockwise"),
     (
         "_qw",

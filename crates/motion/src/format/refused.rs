@@ -1,7 +1,7 @@
 //! Known formats without an acceleration history that can be read here.
 
 use super::columns::facts::says_acceleration;
-use super::source::{Source, parse_number};
+use super::source::{Source, leading_text, parse_number};
 use super::{Format, Hints};
 use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
@@ -133,11 +133,17 @@ pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
 }
 
-/// Returns the last line of a file that names an acceleration or a time and has no row of numbers below it.
+/// Returns the last line of a file without a row of numbers, if it can be one of headings: it names an acceleration or a
+/// time, and is no sentence.
 pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
-    let last = (0..source.lines.len()).rfind(|&line| !source.text(line).trim().is_empty())?;
-    let lower = source.text(last).to_lowercase();
-    (says_acceleration(&lower) || lower.starts_with("time")).then_some(last)
+    let text = |line: usize| source.text(line);
+    let last = (0..source.lines.len()).rfind(|&line| !text(line).trim().is_empty())?;
+    let lower = text(last).trim().to_lowercase();
+    let fields = lower.split([',', ';', '\t']).map(|field| field.split_whitespace().count());
+    let short = fields.max().is_some_and(|words| words <= 4) && !lower.ends_with(['.', '!', '?']);
+    let numbers = |line: usize| leading_text(text(line).trim().as_bytes()).is_some();
+    let names = says_acceleration(&lower) || lower.starts_with("time");
+    (names && short && !(0..source.lines.len()).any(numbers)).then_some(last)
 }
 
 /// Declares a format that is recognized by its first bytes and refused by its name.

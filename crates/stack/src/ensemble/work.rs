@@ -79,21 +79,44 @@ impl Clock {
         (self.sum.load(Ordering::Relaxed) + threads * now()).max(0) as f64 / 1e9
     }
 
-    /// Counts the thread until the guard is dropped.
-    fn enter(&'static self) -> Inside {
+    fn enter(&self) {
         self.sum.fetch_sub(now(), Ordering::Relaxed);
         self.threads.fetch_add(1, Ordering::Relaxed);
-        Inside(self)
+    }
+
+    fn leave(&self) {
+        self.threads.fetch_sub(1, Ordering::Relaxed);
+        self.sum.fetch_add(now(), Ordering::Relaxed);
     }
 }
 
-/// A thread in a kind of work, until it is dropped.
-pub struct Inside(&'static Clock);
+/// What a thread does with its cases, whose time counts until this is dropped.
+#[must_use]
+pub struct Stage {
+    shaking: bool,
+}
 
-impl Drop for Inside {
+impl Stage {
+    /// Begins to bring stacks to rest.
+    pub fn settling() -> Self {
+        SETTLING.enter();
+        Self { shaking: false }
+    }
+
+    /// Begins to shake the stacks of a number of cases, which are at rest, unless they are shaken already.
+    pub fn shake(&mut self, cases: usize) {
+        if !self.shaking {
+            SETTLING.leave();
+            SHAKING.enter();
+            AT_REST.fetch_add(cases as u64, Ordering::Relaxed);
+            self.shaking = true;
+        }
+    }
+}
+
+impl Drop for Stage {
     fn drop(&mut self) {
-        self.0.threads.fetch_sub(1, Ordering::Relaxed);
-        self.0.sum.fetch_add(now(), Ordering::Relaxed);
+        if self.shaking { SHAKING.leave() } else { SETTLING.leave() }
     }
 }
 
@@ -106,23 +129,12 @@ fn now() -> i64 {
     i64::try_from(EPOCH.elapsed().as_nanos()).unwrap_or(i64::MAX)
 }
 
-/// Counts this thread as bringing stacks to rest until the guard is dropped.
-pub fn settling() -> Inside {
-    SETTLING.enter()
-}
-
-/// Counts this thread as shaking stacks until the guard is dropped, and a number of cases as at rest.
-pub fn shaking(cases: usize) -> Inside {
-    AT_REST.fetch_add(cases as u64, Ordering::Relaxed);
-    SHAKING.enter()
-}
-
 /// A case under way, which counts until it is dropped.
 #[derive(Debug, Default)]
 pub struct Share(u64);
 
 impl Share {
-    /// Reports the simulated share of the case.
+    /// Reports the simulated share of the case, 0 to 1.
     pub fn reached(&mut self, share: f64) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e6")]
         let now = ((share.clamp(0.0, 1.0) * PARTS) as u64).max(self.0);
@@ -131,7 +143,7 @@ impl Share {
         self.0 = now;
     }
 
-    /// Ends the case at this share.
+    /// Ends the case at this share, 0 to 1.
     pub fn end(mut self, share: f64) {
         self.reached(share);
         if share < 0.99 {
