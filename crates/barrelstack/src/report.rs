@@ -9,6 +9,7 @@ mod sections;
 mod spectrum;
 mod tables;
 mod trust;
+mod unknowns;
 mod words;
 
 use barrelstack_report::{Block, Document, Tone, Verdict};
@@ -29,6 +30,7 @@ pub(crate) use inputs::{settings_table, shown};
 pub(crate) use sections::traces;
 pub use sections::{standing_range, stress_figure};
 pub use tables::{demand_table, device_table, interface_table};
+pub use unknowns::unknowns;
 pub use words::{device as device_sentence, fine, stopped};
 pub(crate) use words::{headline, provenance};
 

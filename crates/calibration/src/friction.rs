@@ -58,8 +58,8 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
     let mut scenario = format!("[interface.{interface}.friction]\n");
     let at_rest = estimates[0].value;
     let coefficients = [Some(rest.clone()), slide.clone()];
-    if let Some(slide) = slide {
-        let kinetic = coefficient("kinetic friction", &slide);
+    if let Some(slide) = &slide {
+        let kinetic = coefficient("kinetic friction", slide);
         if kinetic.value <= 0.0 {
             return Err(table.unsuited(format!(
                 "the kinetic coefficient comes out as {}: check distance, time and angle, and their units",
@@ -84,6 +84,16 @@ pub fn friction(table: &Table, interface: &str) -> Result<Calibration, Calibrate
              the larger of the two"
                 .to_owned(),
         );
+    }
+    // Variants draw friction from the scatter of the tests.
+    let field = match interface {
+        "barrel-rack" => Some("friction_barrel_rack"),
+        "rack-ground" => Some("friction_ground"),
+        _ => None,
+    };
+    if let Some(field) = field {
+        let scatter = rounded(dispersion(slide.as_deref().unwrap_or(&rest)).min(1.0));
+        let _ = write!(scenario, "\n[imperfections]\n{field} = {scatter}\n");
     }
     warnings.extend(estimates.iter().filter(|estimate| estimate.low <= 0.0).map(|estimate| {
         format!("the interval of {} reaches zero: repeat the test", estimate.name)
@@ -121,6 +131,15 @@ fn picture(
     let caption =
         "The coefficient of friction that every test gives, and their mean with its 95 % interval.";
     Ok(figure("friction-tests", caption, [axis, Axis::new("coefficient of friction", "")], series))
+}
+
+/// Returns the standard deviation of ln μ of another test: of the scatter of these tests and of their mean.
+fn dispersion(values: &[f64]) -> f64 {
+    let logs: Vec<f64> = values.iter().map(|value| math::ln(*value)).collect();
+    let count = logs.len() as f64;
+    let middle = logs.iter().sum::<f64>() / count;
+    let squares: f64 = logs.iter().map(|log| (log - middle) * (log - middle)).sum();
+    (squares / (count - 1.0) * (1.0 + 1.0 / count)).sqrt()
 }
 
 /// Static coefficients, and kinetic ones if measured.

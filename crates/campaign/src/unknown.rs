@@ -68,8 +68,11 @@ pub(crate) fn factors(scenario: &Scenario) -> String {
                 also.push(other);
             }
         }
-        let on_ground = pair == "rack-ground";
-        let dispersion = if on_ground { spread.friction_ground } else { spread.friction };
+        let dispersion = match pair {
+            "rack-ground" => spread.friction_ground,
+            "barrel-rack" => spread.friction_of_barrels(),
+            _ => spread.friction,
+        };
         factor("friction", friction, &also, dispersion, "");
         factor("stiffness", "stiffness", &[], spread.stiffness, "");
         factor("damping", "damping", &[], spread.damping, "");

@@ -34,6 +34,9 @@ pub(crate) fn rows(
                 spread.collapsed, spread.variants
             ),
         );
+        if let Some([low, high]) = spread.range.map(|range| range.map(percent)) {
+            row("", format!("{low} to {high} over constants that nobody has measured"));
+        }
         if spread.first_loss.is_some() {
             row("", course(spread));
         }

@@ -60,6 +60,7 @@ mod profile;
 mod proportion;
 mod records;
 pub mod sobol;
+mod unknowns;
 
 pub use bootstrap::{Replicates, simulate};
 pub use curve::Lognormal;
@@ -81,3 +82,4 @@ pub use monotone::{Fall, Monotony, Returned, monotony, returns};
 pub use profile::{profile_band, profile_median};
 pub use proportion::{Interval, at_most, clopper_pearson, unobserved, wilson};
 pub use records::{LeaveOneOut, grouped_mean, leave_one_out, mean_difference};
+pub use unknowns::{Conditional, FEWEST_TRIALS, Influence, Trial, conditional};

@@ -10,3 +10,4 @@ mod coverage;
 mod drawing;
 mod fits;
 mod resampling;
+mod unknowns;

@@ -1,7 +1,7 @@
 //! Report of a run in space: verdict, three synchronized views, moments, numbers.
 
 use barrelstack::outcome::Outcome;
-use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend};
+use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend, unknowns};
 use barrelstack::variants::{Range, Remedy};
 use barrelstack_report::{
     Block, Cell, Document, Figure, Pane, Players, Strip, Table, Verdict, capital,
@@ -45,6 +45,11 @@ pub fn document(answer: &Answer) -> Document {
     let heading = |text: &str| Block::heading(2, text);
     if let Some(table) = variants(summary) {
         blocks.extend([heading("In all variants"), Block::Table(table)]);
+    }
+    let decides = summary.ensemble.as_ref().map(|spread| unknowns(&[("", spread)]));
+    if let Some(decides) = decides.filter(|blocks| !blocks.is_empty()) {
+        blocks.push(heading("What decides"));
+        blocks.extend(decides);
     }
     if let Some(found) = &summary.remedy {
         blocks.extend([heading("What would have kept it up"), Block::Table(found.table(false))]);
@@ -136,6 +141,11 @@ fn variants(summary: &Summary) -> Option<Table> {
         let percent = barrelstack::variants::words::percent;
         let [low, high] = spread.interval.map(percent);
         row("share, with its 95 % interval", format!("{} ({low} to {high})", percent(share)));
+    }
+    if let Some([low, high]) =
+        spread.range.map(|range| range.map(barrelstack::variants::words::percent))
+    {
+        row("range over unmeasured constants", format!("{low} to {high}"));
     }
     let range = |Range { p05, p95, .. }: Range, decimals: usize| {
         format!("{p05:.decimals$} to {p95:.decimals$}")

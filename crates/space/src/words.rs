@@ -4,7 +4,7 @@ use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
 use barrelstack::report::{device_sentence, stopped};
 use barrelstack::scenario::View;
-use barrelstack::variants::words::{headline_in_space, percent, tone as of_spread};
+use barrelstack::variants::words::{headline_in_space, measure, percent, tone as of_spread};
 use barrelstack::watch::Loss;
 use barrelstack_report::{Tone, capital};
 
@@ -76,7 +76,7 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
 
 /// Returns the sentences that support the headline.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
-    let mut sentences = Vec::new();
+    let mut sentences: Vec<String> = summary.ensemble.iter().filter_map(measure).collect();
     if let Some(directions) = &summary.directions {
         let [across, along] = directions.first();
         if across + along > 0 {

@@ -112,6 +112,10 @@ pub(super) fn variants(summary: &Summary) -> Vec<Block> {
         let [low, high] = spread.interval.map(percent);
         spread.share.map(|share| format!("{} ({low} to {high})", percent(share)))
     });
+    row("range over unmeasured constants", &|spread| {
+        let [low, high] = spread.range?.map(percent);
+        Some(format!("{low} to {high}"))
+    });
     row("first loss of a seat", &|spread| {
         spread.first_loss.map(|Range { p05, p95, least, most, .. }| {
             format!("{} s ({} s)", span(p05, p95, 1), span(least, most, 1))

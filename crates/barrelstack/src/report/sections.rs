@@ -8,13 +8,14 @@ use barrelstack_report::{
 };
 
 use super::tables::{demand_table, device_table, interface_table};
+use super::unknowns::unknowns;
 use super::{drawing, inputs, planes, spectrum, trust};
 use crate::assemble::PartKind;
 use crate::ensemble::RATE;
 use crate::run::Run;
 use crate::scenario::View;
 use crate::summary::Summary;
-use crate::variants::{Range, Shown, Variants};
+use crate::variants::{Range, Shown, Spread, Variants};
 use crate::verify::Verification;
 use crate::watch::{BoundaryPoint, StressEnvelope};
 
@@ -29,6 +30,10 @@ pub(super) fn all(
     let mut blocks = vec![stage(run, summary, other, scene)];
     let remedy = summary.remedy.iter().map(|found| Block::Table(found.table(true))).collect();
     section(&mut blocks, 2, "What would have kept it up", remedy);
+    let spreads = summary.spreads();
+    let placed: Vec<(&str, &Spread)> =
+        spreads.iter().map(|(view, spread)| (view.words(), *spread)).collect();
+    section(&mut blocks, 2, "What decides", unknowns(&placed));
     section(&mut blocks, 2, "In all variants", planes::variants(summary));
     section(&mut blocks, 2, "Collapse sequence", sequence(run, scene));
     let trusted = verification.map(trust::trust).unwrap_or_default();

@@ -12,7 +12,7 @@ use crate::scenario::{
 /// The bodies follow with two axes each. In space their places along the barrels come after all of these, so that the
 /// first row of the stack draws the same values as in the plane across the barrels.
 #[derive(Clone, Copy)]
-enum Shared {
+pub(super) enum Shared {
     FrictionGround,
     FrictionBarrelRack,
     FrictionRackRack,
@@ -35,6 +35,10 @@ struct Point {
 }
 
 impl Point {
+    fn of(imperfections: &Imperfections, number: u32) -> Self {
+        Self { number: number.saturating_sub(1), seed: u64::from(imperfections.seed) }
+    }
+
     fn uniform(&self, axis: usize) -> f64 {
         sobol::padded(axis, self.number, self.seed)
     }
@@ -49,11 +53,16 @@ impl Point {
     }
 }
 
+/// Returns the standard normal deviate of a shared quantity in a variant, by its number from 1.
+pub(super) fn deviate(imperfections: &Imperfections, axis: Shared, number: u32) -> f64 {
+    Point::of(imperfections, number).normal(axis as usize)
+}
+
 /// Returns a variant by its number, from 1; a free scene has none and stays as it is.
 pub(super) fn variant(scenario: &Scenario, number: u32) -> Scenario {
     let mut changed = scenario.clone();
     let Scene::Stack { stack, imperfections, .. } = &mut changed.scene else { return changed };
-    let point = Point { number: number.saturating_sub(1), seed: u64::from(imperfections.seed) };
+    let point = Point::of(imperfections, number);
     if imperfections.sign && point.uniform(Shared::Sign as usize) < 0.5 {
         stack.mirror = !stack.mirror;
     }
@@ -79,7 +88,7 @@ fn ignorance(laws: &mut StackInterfaces, spread: &Imperfections, point: &Point) 
     roughen(Shared::FrictionGround, ground, steel);
     roughen(Shared::FrictionBarrelGround, ground, &mut [&mut laws.barrel_ground]);
     let wood = &mut [&mut laws.barrel_rack, &mut laws.fallen_barrel_rack];
-    roughen(Shared::FrictionBarrelRack, others, wood);
+    roughen(Shared::FrictionBarrelRack, spread.friction_of_barrels(), wood);
     let steel = &mut [&mut laws.rack_rack, &mut laws.fallen_rack_rack];
     roughen(Shared::FrictionRackRack, others, steel);
     roughen(Shared::FrictionBarrelBarrel, others, &mut [&mut laws.barrel_barrel]);

@@ -20,6 +20,7 @@
 
 mod advice;
 mod answer;
+mod decides;
 mod draw;
 mod remedy;
 mod spread;
@@ -38,6 +39,7 @@ use crate::watch::after_collapse;
 
 pub use answer::{Advance, Answer, RunChoice, Shown, answer, answer_of};
 pub(crate) use answer::{common_number, run_together};
+pub use decides::{ShareAt, Unknown};
 pub use remedy::{ENOUGH, Failed, Observer, PRETENSIONS, Remedy, Trial, Tried, remedy, remedy_by};
 pub use spread::{LEVEL, Range, Spread, fails};
 

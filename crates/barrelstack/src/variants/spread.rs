@@ -6,6 +6,7 @@ use barrelstack_fragility::{quantile, wilson};
 use barrelstack_report::described;
 
 use super::Plane;
+use super::decides::{self, Unknown};
 use super::typical::Order;
 use crate::ensemble::CaseResult;
 use crate::outcome::Outcome;
@@ -30,6 +31,14 @@ described! {
         pub share: Option<f64> as "1",
         /// Wilson's interval of that share, 95 %; it spans what variants without a verdict could make of it.
         pub interval: [f64; 2] as "1",
+        /// Range of the share of stacks that collapse over the constants that nobody has measured: 95 % of the shares
+        /// under constants drawn from their distributions, sampling included; null with fewer than 16 variants, if
+        /// one of them has no verdict, or if they differ in places and masses alone.
+        pub range: Option<[f64; 2]> as "1",
+        /// Share of stacks that collapse with all these constants as stated; null as `range`.
+        pub share_as_stated: Option<f64> as "1",
+        /// The constants that nobody has measured, the most influential first; empty where `range` is null.
+        pub decides: Vec<Unknown>,
         /// When the first body lost its seat, of the variants that collapse while they are shaken.
         pub first_loss: Option<Range> as "s",
         /// When the first barrel had fallen, of the variants in which one falls while they are shaken, until these
@@ -116,6 +125,7 @@ impl Spread {
         let interval = |falls| wilson(falls, count + broken, LEVEL);
         let staves = || judged().filter_map(|result| result.demands.stave_utilization);
         let order = Order::of(results);
+        let unknowns = decides::range(plane, results);
         // The duration may end a variant sooner; differences of times have rounding errors.
         let after = plane.counted_for();
         let cut = shaken().filter(|result| result.cut.is_some_and(|left| left > 0.0));
@@ -128,6 +138,9 @@ impl Spread {
             collapsed: falls,
             share: (count > 0).then(|| f64::from(falls) / f64::from(count)),
             interval: [interval(falls).low, interval(falls + broken).high],
+            range: unknowns.as_ref().map(|found| found.range),
+            share_as_stated: unknowns.as_ref().map(|found| found.as_stated),
+            decides: unknowns.map(|found| found.decides).unwrap_or_default(),
             first_loss: Range::of(shaken().filter_map(loss)),
             first_fall: Range::of(shaken().filter_map(|result| result.first_fall)),
             barrels_fallen: Range::of(shaken().map(|result| fallen(result) as f64)),

@@ -87,6 +87,7 @@ pub fn headline_in_space(spread: &Spread) -> String {
 fn answer(planes: &[Placed<'_>]) -> String {
     let mut sentences: Vec<String> = planes.iter().flat_map(|plane| before(*plane)).collect();
     sentences.extend(verdict(planes));
+    sentences.extend(worst(planes).and_then(hangs_on));
     if let [(_, spread)] = planes
         && spread.collapsed > spread.cannot_stand
     {
@@ -96,12 +97,62 @@ fn answer(planes: &[Placed<'_>]) -> String {
     sentences.join(" ")
 }
 
+/// Returns the planes, that with the largest share first; of equals the first.
+fn worst_first<'a>(planes: &[Placed<'a>]) -> Vec<Placed<'a>> {
+    let mut sorted = planes.to_vec();
+    let severity = |spread| judged_share(spread).unwrap_or(-1.0);
+    sorted.sort_by(|(_, a), (_, b)| severity(b).total_cmp(&severity(a)));
+    sorted
+}
+
+fn worst<'a>(planes: &[Placed<'a>]) -> Option<Placed<'a>> {
+    worst_first(planes).into_iter().next()
+}
+
+/// Width of a range of shares up to which the unknown constants are said to matter little.
+const NARROW: f64 = 0.1;
+
+/// Describes the range of the share over the unknown constants, and the constant that decides: "Depending on constants
+/// that nobody has measured, 31 to 100 % fall along the barrels; the stiffness of seats decides: …".
+fn hangs_on((view, spread): Placed<'_>) -> Option<String> {
+    let [low, high] = spread.range?;
+    let place = view.map_or_else(String::new, |view| format!(" {}", view.words()));
+    let (from, to) = (percent(low), percent(high));
+    let range = format!("{} to {to}", from.trim_end_matches(" %"));
+    if high - low <= NARROW {
+        return Some(format!(
+            "Constants that nobody has measured matter little: over their ranges {range} fall{place}."
+        ));
+    }
+    let decisive = spread.decisive().and_then(|one| Some((one, one.ends()?)));
+    let which = decisive.map_or_else(
+        || "none of them decides alone".to_owned(),
+        |(one, ends)| {
+            let [first, last] =
+                ends.map(|end| format!("{} at {}", percent(end.share), one.words(end.value)));
+            format!("the {} decides: {first}, {last}", one.name)
+        },
+    );
+    Some(format!("Depending on constants that nobody has measured, {range} fall{place}; {which}."))
+}
+
+/// Describes the measurement that narrows the range of the share most; `None` if none does.
+pub fn measure(spread: &Spread) -> Option<String> {
+    let [low, high] = spread.range?;
+    let (one, left) = spread.worth_measuring()?;
+    Some(format!(
+        "To narrow that range, measure the {}: {}. On average that leaves a range of {:.0} percentage points, instead of {:.0}.",
+        one.name,
+        one.test()?,
+        100.0 * left,
+        100.0 * (high - low)
+    ))
+}
+
 /// Returns the verdict and the counts that it rests on.
 fn verdict(planes: &[Placed<'_>]) -> Option<String> {
     let judgment = Judgment::worst(planes.iter().map(|(_, spread)| *spread))?;
-    let mut worst_first = planes.to_vec();
-    let severity = |spread| judged_share(spread).unwrap_or(-1.0);
-    worst_first.sort_by(|(_, a), (_, b)| severity(b).total_cmp(&severity(a)));
+    let worst_first = worst_first(planes);
     // Some may fall before they are shaken.
     let shaken = planes.iter().all(|(_, spread)| spread.cannot_stand == 0);
     let clause = |(number, &(view, spread)): (usize, &Placed<'_>)| {
@@ -177,14 +228,16 @@ fn counts(spread: &Spread, noun: &str) -> Option<String> {
 /// Returns the sentences that support the headline of a run and its variants.
 pub(crate) fn sentences(summary: &Summary) -> Vec<String> {
     let planes = summary.spreads();
-    if planes.len() < 2 {
-        return Vec::new();
-    }
+    let placed: Vec<Placed<'_>> =
+        planes.iter().map(|(view, spread)| (Some(*view), *spread)).collect();
+    let mut sentences: Vec<String> =
+        worst(&placed).and_then(|(_, spread)| measure(spread)).into_iter().collect();
     let falls = planes.iter().filter(|(_, spread)| spread.collapsed > 0);
     let sentence = |(view, spread): &(View, &Spread)| {
         format!("Where it falls {}: {}.", view.words(), course(spread))
     };
-    falls.map(sentence).collect()
+    sentences.extend(falls.filter(|_| planes.len() > 1).map(sentence));
+    sentences
 }
 
 /// Describes the shown run, and the differences of variants, in the governing plane.
@@ -353,6 +406,9 @@ mod tests {
             collapsed,
             share: (variants > 0).then(|| f64::from(collapsed) / f64::from(variants)),
             interval: [interval.low, interval.high],
+            range: None,
+            share_as_stated: None,
+            decides: Vec::new(),
             first_loss: falls.then(|| range(5.6, 6.4, 5.0, 7.0)),
             first_fall: falls.then(|| range(5.7, 6.6, 5.1, 7.2)),
             barrels_fallen: falls.then(|| range(4.0, 8.0, 4.0, 8.0)),

@@ -42,6 +42,8 @@ section! {
     mass: f64 = SHARE, Default::Value("0.01");
     /// Ignorance: standard deviation of ln μ where racks or barrels touch each other, lognormal, one draw for each pair of materials (wood on steel goes from 0.1 to 0.6 by moisture and finish, pallets on steel racks from 0.37 to 0.45 by test; with 0.35 nine in ten lie within a factor of 1.8; the number is an assumption).
     friction: f64 = DISPERSION, Default::Value("0.35");
+    /// Ignorance: the same for barrels on racks alone, where their friction was measured: the scatter of ln μ between racks and barrels.
+    friction_barrel_rack: Option<f64> = DISPERSION, Default::Derived("`friction`");
     /// Ignorance: the same on the ground (floors are washed daily; steel on concrete goes from 0.4 in design to 0.65 by test; the number is an assumption).
     friction_ground: f64 = DISPERSION, Default::Value("0.2");
     /// Ignorance: standard deviation of ln k, lognormal, one draw for all seats (nobody has measured these racks: with 0.6 nineteen in twenty lie within a factor of 3.2, which reaches from what Candia, de la Llera and Almazán 2008 measured to a stave that is clamped between hoops).
@@ -52,4 +54,11 @@ section! {
     damping: f64 = DISPERSION, Default::Value("0.3");
     /// True if half of the variants are shaken with the opposite sign, as stacks that face the opposite side are.
     sign: bool = Kind::Flag, Default::Value("false");
+}
+
+impl Imperfections {
+    /// Returns the standard deviation of ln μ of barrels on racks.
+    pub fn friction_of_barrels(&self) -> f64 {
+        self.friction_barrel_rack.unwrap_or(self.friction)
+    }
 }

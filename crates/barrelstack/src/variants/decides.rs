@@ -1,0 +1,307 @@
+//! The range of the share of collapses over the constants that nobody has measured, and which of them decides.
+
+use barrelstack_fragility::{Influence, Trial, conditional, normal_quantile};
+use barrelstack_motion::Random;
+use barrelstack_report::described;
+
+use super::draw::{self, Shared};
+use super::spread::{LEVEL, collapsed, judged};
+use super::{Plane, Spread};
+use crate::ensemble::CaseResult;
+use crate::scenario::{
+    Basis, Damping, Friction, Imperfection, Imperfections, Interface, NormalLaw, StackInterfaces,
+};
+
+/// Smallest difference of the share between the 5 % and the 95 % fractile of a constant that decides.
+const DECISIVE: f64 = 0.2;
+
+/// Fractiles at which the share is given as a function of a constant.
+const FRACTILES: [f64; 9] = [0.05, 0.1625, 0.275, 0.3875, 0.5, 0.6125, 0.725, 0.8375, 0.95];
+
+described! {
+    /// A constant that nobody has measured on this stack, and its effect on the share of variants that collapse.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Unknown {
+        /// Name of the constant.
+        pub name: &'static str,
+        /// The field of the scenario that is its median.
+        pub field: &'static str,
+        /// Its unit; "1" for a pure number.
+        pub unit: &'static str,
+        /// Standard deviation of its logarithm, of a restitution that of its damping ratio.
+        pub dispersion: f64 as "1",
+        /// The share as a function of the constant, from its 5 % to its 95 % fractile, averaged over all other
+        /// constants.
+        pub shares: Vec<ShareAt>,
+        /// 95 % interval of the difference between the last and the first of these shares.
+        pub difference: [f64; 2] as "1",
+        /// Fraction of the variance of the share that is left if all other constants are known: the total index.
+        pub total: f64 as "1",
+        /// Width of the range of the share that is left on average if this constant is measured exactly.
+        pub width_if_measured: f64 as "1",
+    }
+
+    /// Share of variants that collapse at a value of a constant.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct ShareAt {
+        /// Value of the constant.
+        pub value: f64 as "`unit`",
+        /// The share.
+        pub share: f64 as "1",
+        /// Its 95 % interval.
+        pub interval: [f64; 2] as "1",
+    }
+}
+
+impl Unknown {
+    /// Returns the values at the 5 % and the 95 % fractile, each with the share there.
+    pub fn ends(&self) -> Option<[&ShareAt; 2]> {
+        Some([self.shares.first()?, self.shares.last()?])
+    }
+
+    /// Returns `true` if the share differs by a fifth and more between its 5 % and its 95 % fractile, and differs for
+    /// certain.
+    pub fn is_decisive(&self) -> bool {
+        let [low, high] = self.difference;
+        let far = |[first, last]: [&ShareAt; 2]| (last.share - first.share).abs() >= DECISIVE;
+        self.ends().is_some_and(far) && (low > 0.0 || high < 0.0)
+    }
+
+    /// Formats a value with its unit, such as "μ = 0.22" or "3.1 MN/m".
+    pub fn words(&self, value: f64) -> String {
+        match self.unit {
+            "1" if self.field.ends_with("friction.coefficient") => format!("μ = {value:.2}"),
+            "1" if self.field == RESTITUTION => format!("e = {value:.2}"),
+            "1" => format!("{value:.2}"),
+            unit => format!("{} M{unit}", barrelstack_report::significant(1e-6 * value, 2)),
+        }
+    }
+
+    /// Returns the test that measures it; `None` if no simple one does.
+    pub fn test(&self) -> Option<&'static str> {
+        match self.field {
+            FRICTION_BARREL_RACK => Some(
+                "tilt a rack with an empty barrel on it until the barrel slips, read the angle, and run `barrelstack \
+                 calibrate friction`",
+            ),
+            FRICTION_RACK_GROUND => Some(
+                "pull an empty rack over the floor with a luggage scale, and run `barrelstack calibrate friction`",
+            ),
+            STIFFNESS => Some(
+                "set a full barrel down on a rack, read how far it sinks, and run `barrelstack calibrate stiffness`",
+            ),
+            _ => None,
+        }
+    }
+}
+
+const FRICTION_RACK_GROUND: &str = "interface.rack-ground.friction.coefficient";
+const FRICTION_BARREL_RACK: &str = "interface.barrel-rack.friction.coefficient";
+const FRICTION_RACK_RACK: &str = "interface.rack-rack.friction.coefficient";
+const STIFFNESS: &str = "interface.barrel-rack.stiffness";
+const RESTITUTION: &str = "interface.barrel-rack.restitution";
+const DAMPING: &str = "interface.barrel-rack.damping";
+
+/// A constant as variants draw it.
+struct Drawn {
+    axis: Shared,
+    name: &'static str,
+    field: &'static str,
+    unit: &'static str,
+    dispersion: f64,
+    /// Changes the law by a factor on the constant.
+    change: fn(&mut Interface, f64),
+    /// The constant of a law.
+    value: fn(&Interface) -> Option<f64>,
+    law: Interface,
+}
+
+impl Drawn {
+    /// Returns the constant at a deviate.
+    fn at(&self, deviate: f64) -> Option<f64> {
+        let mut law = self.law;
+        (self.change)(&mut law, libm::exp(self.dispersion * deviate));
+        (self.value)(&law)
+    }
+}
+
+/// Returns the constants that may decide before a seat is lost: friction, stiffness and damping of seats. Those of
+/// impacts, and of bodies that have fallen, vary as places and masses do.
+fn drawn(laws: &StackInterfaces, spread: &Imperfections, posts: bool) -> Vec<Drawn> {
+    let seat = laws.barrel_rack;
+    let friction = |axis, name, field, dispersion, law| Drawn {
+        axis,
+        name,
+        field,
+        unit: "1",
+        dispersion,
+        change: Interface::roughen,
+        value: coefficient,
+        law,
+    };
+    let mut all = vec![
+        Drawn {
+            axis: Shared::SeatStiffness,
+            name: "stiffness of seats",
+            field: STIFFNESS,
+            unit: unit(&seat),
+            dispersion: spread.stiffness,
+            change: Interface::stiffen,
+            value: stiffness,
+            law: seat,
+        },
+        friction(
+            Shared::FrictionBarrelRack,
+            "friction of barrels on racks",
+            FRICTION_BARREL_RACK,
+            spread.friction_of_barrels(),
+            seat,
+        ),
+        friction(
+            Shared::FrictionGround,
+            "friction of racks on the floor",
+            FRICTION_RACK_GROUND,
+            spread.friction_ground,
+            laws.rack_ground,
+        ),
+        Drawn {
+            axis: Shared::SeatDamping,
+            name: "damping of seats",
+            field: if seat.states_restitution() { RESTITUTION } else { DAMPING },
+            unit: if seat.states_restitution() { "1" } else { "N·s/m" },
+            dispersion: spread.damping,
+            change: Interface::damp,
+            value: damping,
+            law: seat,
+        },
+    ];
+    if posts {
+        all.push(friction(
+            Shared::FrictionRackRack,
+            "friction of racks on racks",
+            FRICTION_RACK_RACK,
+            spread.friction,
+            laws.rack_rack,
+        ));
+    }
+    all.retain(|one| one.dispersion > 0.0 && one.at(0.0).is_some());
+    all
+}
+
+fn coefficient(law: &Interface) -> Option<f64> {
+    match law.friction {
+        Friction::Coulomb { coefficient, .. } | Friction::Regularized { coefficient, .. } => {
+            Some(coefficient)
+        }
+        Friction::None => None,
+    }
+}
+
+fn stiffness(law: &Interface) -> Option<f64> {
+    match law.normal {
+        NormalLaw::SpeedGap { stiffness, .. }
+        | NormalLaw::KelvinVoigt { stiffness, .. }
+        | NormalLaw::HuntCrossley { stiffness, .. }
+        | NormalLaw::Rebound { stiffness, .. }
+        | NormalLaw::Hertz { stiffness } => Some(stiffness),
+    }
+}
+
+fn damping(law: &Interface) -> Option<f64> {
+    match law.normal {
+        NormalLaw::SpeedGap { damping, .. } | NormalLaw::KelvinVoigt { damping, .. } => {
+            Some(match damping {
+                Damping::Coefficient(value) => value,
+                Damping::Restitution { restitution, .. } => restitution,
+            })
+        }
+        NormalLaw::HuntCrossley { .. } | NormalLaw::Rebound { .. } | NormalLaw::Hertz { .. } => {
+            None
+        }
+    }
+}
+
+fn unit(law: &Interface) -> &'static str {
+    let linear = matches!(law.normal, NormalLaw::SpeedGap { .. } | NormalLaw::KelvinVoigt { .. });
+    match (law.basis, linear) {
+        (Basis::Length, true) => "N/m²",
+        (_, true) => "N/m",
+        (Basis::Length, false) => "N/m^2.5",
+        (_, false) => "N/m^1.5",
+    }
+}
+
+/// The range of the share over the unknown constants, the share with all of them as stated, and the constants, the most
+/// influential first.
+pub(super) struct Fitted {
+    pub(super) range: [f64; 2],
+    pub(super) as_stated: f64,
+    pub(super) decides: Vec<Unknown>,
+}
+
+/// Fits the share to the results of the nominal case and of its variants, in the order of their numbers; `None` if
+/// variants differ in places and masses alone, if one has no verdict, or with too few of them.
+pub(super) fn range(plane: &Plane, results: &[CaseResult]) -> Option<Fitted> {
+    let imperfections = plane.scenario.imperfections()?;
+    let stack = plane.scenario.stack()?;
+    let variants = results.get(1..)?;
+    if imperfections.kind == Imperfection::Hair || !variants.iter().all(judged) {
+        return None;
+    }
+    let constants = drawn(&stack.interfaces, imperfections, stack.rack.posts.is_some());
+    let trial = |(number, result): (u32, &CaseResult)| Trial {
+        deviates: constants
+            .iter()
+            .map(|one| draw::deviate(imperfections, one.axis, number))
+            .collect(),
+        second_half: plane.exchanged.is_some() && plane.is_exchanged(number),
+        failed: collapsed(result),
+    };
+    let trials: Vec<Trial> = (1..).zip(variants).map(trial).collect();
+    let mut random = Random::new(u64::from(imperfections.seed));
+    let fitted = conditional(&trials, || random.uniform())?;
+    let whole = fitted.range(LEVEL);
+    let unknown = |(at, (one, influence)): (usize, (&Drawn, Influence))| {
+        let share_at = |fractile: f64| {
+            let deviate = normal_quantile(fractile);
+            let (share, interval) = fitted.at(at, deviate, LEVEL);
+            Some(ShareAt {
+                value: one.at(deviate)?,
+                share,
+                interval: [interval.low, interval.high],
+            })
+        };
+        Unknown {
+            name: one.name,
+            field: one.field,
+            unit: one.unit,
+            dispersion: one.dispersion,
+            shares: FRACTILES.into_iter().filter_map(share_at).collect(),
+            difference: [influence.difference.low, influence.difference.high],
+            total: influence.total,
+            width_if_measured: influence.width_if_known,
+        }
+    };
+    let influences = fitted.influences(LEVEL);
+    let mut decides: Vec<Unknown> =
+        constants.iter().zip(influences).enumerate().map(unknown).collect();
+    decides.sort_by(|a, b| b.total.total_cmp(&a.total));
+    Some(Fitted { range: [whole.low, whole.high], as_stated: fitted.at_medians(), decides })
+}
+
+impl Spread {
+    /// Returns the constant with a simple test that narrows the range most, and the width that it leaves on average;
+    /// `None` if none narrows it by a tenth.
+    pub fn worth_measuring(&self) -> Option<(&Unknown, f64)> {
+        let [low, high] = self.range?;
+        let tested = self.decides.iter().filter(|one| one.test().is_some());
+        let best = tested.min_by(|a, b| a.width_if_measured.total_cmp(&b.width_if_measured))?;
+        let left = best.width_if_measured;
+        (left < 0.9 * (high - low)).then_some((best, left))
+    }
+
+    /// Returns the constant that decides most; `None` if none decides for certain.
+    pub fn decisive(&self) -> Option<&Unknown> {
+        self.decides.iter().find(|one| one.is_decisive())
+    }
+}

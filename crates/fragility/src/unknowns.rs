@@ -1,0 +1,306 @@
+//! Share of failures as a function of constants that nobody has measured.
+
+use crate::math::{exp, ln, normal, normal_quantile, quantile};
+use crate::proportion::Interval;
+use crate::sobol;
+
+/// Fewest trials to which a [`Conditional`] share is fitted.
+pub const FEWEST_TRIALS: usize = 16;
+
+/// Discarded and kept samples of the posterior distribution.
+const SAMPLES: [usize; 2] = [400, 3000];
+
+/// Degrees of freedom and scale of Student's t, the prior distribution of every coefficient but the first.
+///
+/// With a scale of 0.6 a typical constant moves the share from 16 to 84 % over ±1.6 of its standard deviations; the heavy tail
+/// permits a constant that decides alone.
+const PRIOR: [f64; 2] = [3.0, 0.6];
+
+/// Standard deviation of the normal prior distribution of the first coefficient.
+const PRIOR_MIDDLE: f64 = 2.5;
+
+/// One trial under drawn constants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// Standard normal deviates of the unknown constants.
+    pub deviates: Vec<f64>,
+    /// Half of the trials to which this one belongs, where halves differ on purpose, such as in their component of the
+    /// motion.
+    pub second_half: bool,
+    /// `true` if it failed.
+    pub failed: bool,
+}
+
+/// Share of failures under given constants, with the uncertainty of a finite number of trials: samples of the posterior
+/// distribution of a probit regression.
+///
+/// ```text
+/// share(z) = ½ [Φ(b + g + Σ aⱼ zⱼ) + Φ(b − g + Σ aⱼ zⱼ)]
+/// ```
+///
+/// `z` are the standard normal deviates of the constants, and `±g` distinguishes the halves of the trials.
+/// The posterior distribution is sampled as by Albert and Chib 1993.
+#[derive(Clone, Debug)]
+pub struct Conditional {
+    /// Coefficients `b`, `g`, `a₁`, … of each sample.
+    samples: Vec<Vec<f64>>,
+    unknowns: usize,
+}
+
+/// Influence of one constant on the share of failures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Influence {
+    /// Share of failures with the constant at its 5 % fractile and at its 95 % fractile, averaged over all others.
+    pub shares: [f64; 2],
+    /// Interval of the difference of these, the second less the first.
+    pub difference: Interval,
+    /// Fraction of the variance of the share that is left if all other constants are known, including interactions.
+    pub total: f64,
+    /// Width of the range of the share that is left on average if this constant is known exactly.
+    pub width_if_known: f64,
+}
+
+/// Fits the share of failures as a function of the unknown constants; `None` for fewer than [`FEWEST_TRIALS`] trials,
+/// without constants, or if trials differ in the number of their constants.
+///
+/// `uniform` returns random numbers from 0, inclusive, to 1.
+pub fn conditional(trials: &[Trial], mut uniform: impl FnMut() -> f64) -> Option<Conditional> {
+    // Logarithms of it are finite.
+    let mut uniform = || 1.0 - uniform();
+    let unknowns = trials.first()?.deviates.len();
+    if trials.len() < FEWEST_TRIALS
+        || unknowns == 0
+        || trials.iter().any(|trial| trial.deviates.len() != unknowns)
+    {
+        return None;
+    }
+    let halves = trials.iter().any(|trial| trial.second_half != trials[0].second_half);
+    let side = |trial: &Trial| match (halves, trial.second_half) {
+        (false, _) => 0.0,
+        (true, false) => -1.0,
+        (true, true) => 1.0,
+    };
+    let rows: Vec<Vec<f64>> = trials
+        .iter()
+        .map(|trial| [1.0, side(trial)].into_iter().chain(trial.deviates.iter().copied()).collect())
+        .collect();
+    let size = unknowns + 2;
+    let mut squares = vec![vec![0.0; size]; size];
+    for row in &rows {
+        for (i, line) in squares.iter_mut().enumerate() {
+            for (j, cell) in line.iter_mut().enumerate() {
+                *cell += row[i] * row[j];
+            }
+        }
+    }
+    let mut coefficients = vec![0.0; size];
+    let mut samples = Vec::with_capacity(SAMPLES[1]);
+    for step in 0..SAMPLES[0] + SAMPLES[1] {
+        let mut sums = vec![0.0; size];
+        for (row, trial) in rows.iter().zip(trials) {
+            let middle = dot(&coefficients, row);
+            let latent = if trial.failed {
+                middle + above(-middle, &mut uniform)
+            } else {
+                middle - above(middle, &mut uniform)
+            };
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += value * latent;
+            }
+        }
+        let mut precision = squares.clone();
+        for (i, line) in precision.iter_mut().enumerate() {
+            let variance = if i == 0 {
+                PRIOR_MIDDLE * PRIOR_MIDDLE
+            } else {
+                let [freedom, scale] = PRIOR;
+                let rate = 0.5 * (freedom * scale * scale + coefficients[i] * coefficients[i]);
+                // The sum of two exponential deviates has the gamma distribution of shape 2 = (3 + 1) / 2.
+                rate / -(ln(uniform()) + ln(uniform()))
+            };
+            line[i] += 1.0 / variance;
+        }
+        coefficients = sampled(precision, &sums, &mut uniform);
+        if step >= SAMPLES[0] {
+            samples.push(coefficients.clone());
+        }
+    }
+    Some(Conditional { samples, unknowns })
+}
+
+impl Conditional {
+    /// Returns the range of the share that the unknown constants leave: a fraction `level` of the posterior
+    /// distribution of the share under constants drawn from their own distributions, rounded outward to hundredths.
+    pub fn range(&self, level: f64) -> Interval {
+        let Interval { low, high } = self.range_given(level, None);
+        Interval { low: (100.0 * low).floor() / 100.0, high: (100.0 * high).ceil() / 100.0 }
+    }
+
+    /// Returns the share with all constants at their medians, as the mean of the posterior distribution.
+    pub fn at_medians(&self) -> f64 {
+        let none = vec![0.0; self.unknowns];
+        mean(self.samples.iter().map(|sample| share(sample, &none)))
+    }
+
+    /// Returns the influence of every constant; the differences of shares have intervals at the given level.
+    pub fn influences(&self, level: f64) -> Vec<Influence> {
+        let totals = self.totals();
+        let of = |(unknown, total): (usize, f64)| {
+            let [low, high] = [0.05, 0.95].map(|fractile| self.shares_at(unknown, fractile));
+            let mut differences: Vec<f64> = high.iter().zip(&low).map(|(b, a)| b - a).collect();
+            differences.sort_by(f64::total_cmp);
+            let width = |step: u32| {
+                let deviate = normal_quantile((f64::from(step) + 0.5) / 9.0);
+                let Interval { low, high } = self.range_given(level, Some((unknown, deviate)));
+                high - low
+            };
+            Influence {
+                shares: [mean(low.into_iter()), mean(high.into_iter())],
+                difference: ends(&differences, level),
+                total,
+                width_if_known: mean((0..9).map(width)),
+            }
+        };
+        totals.into_iter().enumerate().map(of).collect()
+    }
+
+    /// Returns the mean share with one constant at a deviate and all others unknown, and its interval.
+    pub fn at(&self, unknown: usize, deviate: f64, level: f64) -> (f64, Interval) {
+        let mut shares = self.shares_at(unknown, normal(deviate));
+        shares.sort_by(f64::total_cmp);
+        (mean(shares.iter().copied()), ends(&shares, level))
+    }
+
+    /// Returns the share in every sample with one constant at a fractile, averaged over all others.
+    fn shares_at(&self, unknown: usize, fractile: f64) -> Vec<f64> {
+        let deviate = normal_quantile(fractile);
+        let of = |sample: &Vec<f64>| {
+            let all: f64 = sample[2..].iter().map(|a| a * a).sum();
+            let own = sample[2 + unknown];
+            // A normal deviate in the argument of Φ widens it.
+            let width = (1.0 + (all - own * own).max(0.0)).sqrt();
+            let middle = sample[0] + own * deviate;
+            0.5 * (normal((middle + sample[1]) / width) + normal((middle - sample[1]) / width))
+        };
+        self.samples.iter().map(of).collect()
+    }
+
+    fn range_given(&self, level: f64, known: Option<(usize, f64)>) -> Interval {
+        let mut shares: Vec<f64> = (0_u32..)
+            .zip(&self.samples)
+            .map(|(point, sample)| {
+                let deviate = |axis| match known {
+                    Some((unknown, deviate)) if unknown == axis => deviate,
+                    _ => normal_quantile(sobol::padded(axis, point, 0)),
+                };
+                share(sample, &(0..self.unknowns).map(deviate).collect::<Vec<_>>())
+            })
+            .collect();
+        shares.sort_by(f64::total_cmp);
+        ends(&shares, level)
+    }
+
+    /// Returns the total indices of the mean share (Jansen 1999).
+    fn totals(&self) -> Vec<f64> {
+        const POINTS: u32 = 128;
+        let thinned = self.samples.len().div_ceil(64);
+        let mean_share = |deviates: &[f64]| {
+            mean(self.samples.iter().step_by(thinned).map(|sample| share(sample, deviates)))
+        };
+        let deviate = |axis, point| normal_quantile(sobol::padded(axis, point, 0));
+        let points: Vec<Vec<f64>> = (0..POINTS)
+            .map(|point| (0..self.unknowns).map(|axis| deviate(axis, point)).collect())
+            .collect();
+        let shares: Vec<f64> = points.iter().map(|point| mean_share(point)).collect();
+        let middle = mean(shares.iter().copied());
+        let variance = mean(shares.iter().map(|share| (share - middle) * (share - middle)));
+        let total = |unknown: usize| {
+            let squares =
+                (0..POINTS).zip(&points).zip(&shares).map(|((point, deviates), share)| {
+                    let mut changed = deviates.clone();
+                    changed[unknown] = deviate(self.unknowns + unknown, point);
+                    let change = mean_share(&changed) - share;
+                    0.5 * change * change
+                });
+            if variance > 0.0 { (mean(squares) / variance).min(1.0) } else { 0.0 }
+        };
+        (0..self.unknowns).map(total).collect()
+    }
+}
+
+fn share(sample: &[f64], deviates: &[f64]) -> f64 {
+    let middle = sample[0] + dot(&sample[2..], deviates);
+    if sample[1] == 0.0 {
+        return normal(middle);
+    }
+    0.5 * (normal(middle + sample[1]) + normal(middle - sample[1]))
+}
+
+fn ends(ascending: &[f64], level: f64) -> Interval {
+    let rest = 0.5 * (1.0 - level);
+    Interval { low: quantile(ascending, rest), high: quantile(ascending, 1.0 - rest) }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn deviate(uniform: &mut impl FnMut() -> f64) -> f64 {
+    // Box and Muller 1958.
+    (-2.0 * ln(uniform())).sqrt() * libm::cos(std::f64::consts::TAU * uniform())
+}
+
+/// Draws a standard normal deviate above a bound (Robert 1995).
+fn above(bound: f64, uniform: &mut impl FnMut() -> f64) -> f64 {
+    if bound < 0.5 {
+        loop {
+            let value = deviate(uniform);
+            if value > bound {
+                return value;
+            }
+        }
+    }
+    let rate = 0.5 * (bound + (bound * bound + 4.0).sqrt());
+    loop {
+        let value = bound - ln(uniform()) / rate;
+        if uniform() <= exp(-0.5 * (value - rate) * (value - rate)) {
+            return value;
+        }
+    }
+}
+
+/// Draws from the normal distribution of a precision `P` and of the mean `P⁻¹ s`, by Cholesky's factor of `P`.
+fn sampled(
+    mut precision: Vec<Vec<f64>>,
+    sums: &[f64],
+    uniform: &mut impl FnMut() -> f64,
+) -> Vec<f64> {
+    let size = sums.len();
+    for j in 0..size {
+        for i in j..size {
+            let known: f64 = (0..j).map(|k| precision[i][k] * precision[j][k]).sum();
+            let rest = precision[i][j] - known;
+            precision[i][j] = if i == j { rest.sqrt() } else { rest / precision[j][j] };
+        }
+    }
+    let lower = precision;
+    let mut forward = vec![0.0; size];
+    for i in 0..size {
+        let known: f64 = (0..i).map(|k| lower[i][k] * forward[k]).sum();
+        forward[i] = (sums[i] - known) / lower[i][i];
+    }
+    for value in &mut forward {
+        *value += deviate(uniform);
+    }
+    let mut found = vec![0.0; size];
+    for i in (0..size).rev() {
+        let known: f64 = (i + 1..size).map(|k| lower[k][i] * found[k]).sum();
+        found[i] = (forward[i] - known) / lower[i][i];
+    }
+    found
+}

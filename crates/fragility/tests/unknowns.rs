@@ -1,0 +1,135 @@
+//! Coverage of the range that unknown constants leave to a share of failures: simulated on known truths.
+//!
+//! `cargo test --release -p barrelstack-fragility --test all unknowns -- --nocapture` prints the table of
+//! `validation/statistics.md`.
+
+#![expect(clippy::print_stdout, reason = "the measured shares, shown with --nocapture")]
+
+use barrelstack_fragility::{Influence, Trial, conditional, normal, normal_quantile, sobol};
+use barrelstack_motion::Random;
+
+const LEVEL: f64 = 0.95;
+
+const UNKNOWNS: usize = 4;
+
+/// Standard normal number (Box and Muller 1958).
+fn deviate(random: &mut Random) -> f64 {
+    let (radius, angle) = (random.uniform().max(1e-300), random.uniform());
+    (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+}
+
+/// The true share of failures as a function of the constants and of the half of the trials.
+type Truth = Box<dyn Fn(&[f64], bool) -> f64>;
+
+/// Draws a truth of a kind.
+fn truth(kind: &str, random: &mut Random) -> Truth {
+    let a: Vec<f64> = (0..UNKNOWNS).map(|_| 0.8 * deviate(random)).collect();
+    let b = deviate(random);
+    let sum = move |z: &[f64]| b + a.iter().zip(z).map(|(a, z)| a * z).sum::<f64>();
+    match kind {
+        "probit" => Box::new(move |z, _| normal(sum(z))),
+        "halves" => Box::new(move |z, second| normal(sum(z) + if second { 0.7 } else { -0.7 })),
+        "threshold" => Box::new(move |z, _| if z[0] + 0.3 * z[1] > b { 1.0 } else { 0.0 }),
+        "logistic, steep" => Box::new(move |z, _| 1.0 / (1.0 + (-6.0 * (z[0] - b)).exp())),
+        "curved" => Box::new(move |z, _| normal(sum(z) + 0.6 * (z[0] * z[0] - 1.0))),
+        "interaction" => Box::new(move |z, _| normal(sum(z) + z[0] * z[1])),
+        "no influence" => Box::new(move |_, _| normal(b)),
+        "nearly all" => Box::new(move |z, _| normal(2.0 + 0.5 * sum(z))),
+        _ => Box::new(move |z, _| normal(-2.5 + 0.3 * sum(z))),
+    }
+}
+
+const KINDS: [&str; 9] = [
+    "probit",
+    "halves",
+    "threshold",
+    "logistic, steep",
+    "curved",
+    "interaction",
+    "no influence",
+    "nearly all",
+    "hardly any",
+];
+
+fn trials(truth: &Truth, count: u32, seed: u64, random: &mut Random) -> Vec<Trial> {
+    let trial = |number: u32| {
+        let at = |axis| normal_quantile(sobol::padded(axis, number, seed));
+        let deviates: Vec<f64> = (0..UNKNOWNS).map(at).collect();
+        let second_half = number >= count / 2;
+        let failed = random.uniform() < truth(&deviates, second_half);
+        Trial { deviates, second_half, failed }
+    };
+    (0..count).map(trial).collect()
+}
+
+/// At least 90 % of true shares lie in the stated range, whatever the kind of the truth.
+#[test]
+fn the_range_over_unknowns_contains_the_true_share() {
+    let truths = if cfg!(debug_assertions) { 25 } else { 200 };
+    for count in [32, 64] {
+        let (mut held, mut all) = (0, 0);
+        for kind in KINDS {
+            let (mut within, mut width, mut unconditional) = (0, 0.0, 0);
+            for seed in 0..truths {
+                let mut random = Random::new(1000 * u64::from(count) + seed);
+                let truth = truth(kind, &mut random);
+                let trials = trials(&truth, count, seed, &mut random);
+                let fitted = conditional(&trials, || random.uniform()).unwrap();
+                let range = fitted.range(LEVEL);
+                let failed = trials.iter().filter(|trial| trial.failed).count();
+                let own: Vec<f64> = (0..UNKNOWNS).map(|_| deviate(&mut random)).collect();
+                let share = 0.5 * (truth(&own, false) + truth(&own, true));
+                within += u32::from(range.low <= share && share <= range.high);
+                let wilson =
+                    barrelstack_fragility::wilson(u32::try_from(failed).unwrap(), count, LEVEL);
+                unconditional += u32::from(wilson.low <= share && share <= wilson.high);
+                width += range.high - range.low;
+            }
+            let percent = |count: u32| 100.0 * f64::from(count) / truths as f64;
+            println!(
+                "{count} trials, {kind}: contained {:.1} %, width {:.2}; Wilson's interval {:.1} %",
+                percent(within),
+                width / truths as f64,
+                percent(unconditional)
+            );
+            held += within;
+            all += u32::try_from(truths).unwrap();
+            assert!(percent(within) >= 84.0, "{kind}: {} %", percent(within));
+        }
+        let share = 100.0 * f64::from(held) / f64::from(all);
+        println!("{count} trials, all kinds: {share:.1} %");
+        assert!(share >= 90.0, "{share} %");
+    }
+}
+
+/// The constant that decides is found, and its effect is that of the truth.
+#[test]
+fn the_constant_that_decides_comes_first() {
+    let mut random = Random::new(5);
+    let truth: Truth = Box::new(|z, _| normal(0.3 + 1.5 * z[2] - 0.4 * z[0]));
+    let trials = trials(&truth, 512, 3, &mut random);
+    let fitted = conditional(&trials, || random.uniform()).unwrap();
+    let all: Vec<Influence> = fitted.influences(LEVEL);
+    // With the others unknown: Φ((0.3 + 1.5 z) / √(1 + 0.4²)) at z = ±1.645.
+    for (found, sign) in all[2].shares.iter().zip([-1.0, 1.0]) {
+        let exact = normal((0.3 + sign * 1.5 * 1.645) / (1.0_f64 + 0.16).sqrt());
+        assert!((found - exact).abs() < 0.03, "{found} {exact}");
+    }
+    assert!(all[2].difference.low > 0.8 && all[2].total > 0.9, "{:?}", all[2]);
+    assert!(all[0].difference.high < 0.0 && all[0].total < 0.2, "{:?}", all[0]);
+    assert!(all[1].difference.low < 0.0 && all[1].difference.high > 0.0, "{:?}", all[1]);
+    let whole = fitted.range(LEVEL);
+    assert!(all[2].width_if_known < 0.5 * (whole.high - whole.low), "{:?}", all[2]);
+    assert!((fitted.at_medians() - normal(0.3)).abs() < 0.05);
+}
+
+/// Too little to fit gives nothing.
+#[test]
+fn few_trials_have_no_range() {
+    let trial = Trial { deviates: vec![0.1], second_half: false, failed: true };
+    let mut random = Random::new(1);
+    assert!(conditional(&vec![trial.clone(); 15], || random.uniform()).is_none());
+    assert!(conditional(&vec![trial; 16], || random.uniform()).is_some());
+    let none = Trial { deviates: Vec::new(), second_half: false, failed: true };
+    assert!(conditional(&vec![none; 64], || random.uniform()).is_none());
+}
