@@ -135,7 +135,7 @@ fn picture(
 
 /// Returns the standard deviation of ln μ of another test: of the scatter of these tests and of their mean.
 fn dispersion(values: &[f64]) -> f64 {
-    let logs: Vec<f64> = values.iter().map(|value| math::ln(*value)).collect();
+    let logs: Vec<f64> = values.iter().map(|value| libm::log(*value)).collect();
     let count = logs.len() as f64;
     let middle = logs.iter().sum::<f64>() / count;
     let squares: f64 = logs.iter().map(|log| (log - middle) * (log - middle)).sum();

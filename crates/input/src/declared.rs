@@ -83,8 +83,11 @@ impl Held for f64 {
     }
 
     fn read_optional(reader: &Reader<'_>, name: &'static str) -> Result<Option<Self>, InputError> {
-        if has_word(reader.kind_of(name)) {
+        let kind = reader.kind_of(name);
+        if has_word(kind) {
             reader.word_or_quantity(name)
+        } else if is_plain(kind) {
+            reader.optional_number(name)
         } else {
             reader.optional_quantity(name)
         }
