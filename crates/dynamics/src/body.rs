@@ -122,7 +122,7 @@ impl<S: Space> Nodes<S> {
 pub struct Body<S: Space> {
     /// Name in messages and results; unique in a model.
     pub name: String,
-    /// Source of its motion.
+    /// Whether the body moves under forces or with the ground.
     pub motion: Motion,
     /// Mass (kg).
     pub mass: S::Real,

@@ -35,8 +35,8 @@ pub struct ContactPair {
 /// One pair may test a face by its nodes and another pair test it exactly. Without the filter, a contact found by both
 /// would be counted twice.
 ///
-/// A contact belongs to the face if the other body's center of mass lies before it and the angle between the
-/// contact's normal and the face's is within [`Face::widest`](crate::body::Face::widest).
+/// A contact belongs to the face if the other body's center of mass lies in front of the face and the angle between the
+/// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
     /// All contacts count.

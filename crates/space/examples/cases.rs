@@ -12,11 +12,11 @@
 //! friction between barrels and racks, under three factors on the motion. Each case is one variant, which differs from
 //! the stated stack only in positions and masses.
 //!
-//! Every `motion-1.json` has the velocity of the ground. Every `0001.json` has one case: bodies at rest with their
-//! masses, solids and seats; the pairs of solids that may touch, with their laws; the thresholds; and two outcomes.
-//! `outcome` is that of the case as stated. `alike` is that of seats as in MuJoCo, whose friction holds without an
-//! elastic stick and whose damper acts in both directions, with the same restitution. All values are in SI units;
-//! rotations are quaternions `w`, `x`, `y`, `z` from the body frame to the inertial frame.
+//! Files such as `motion-1.json` have the velocity of the ground, files such as `0001.json` one case each: bodies at
+//! rest with their masses, solids and seats; the pairs of solids that may touch, with their laws; the thresholds; and
+//! two outcomes. `outcome` is that of the case as stated. `alike` is that of seats as in MuJoCo, whose friction holds
+//! without an elastic stick and whose damper acts in both directions, with the same restitution. All values are in SI
+//! units; rotations are quaternions `w`, `x`, `y`, `z` from the body frame to the inertial frame.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 

@@ -129,7 +129,7 @@ fn drawn(shares: &[Share]) -> Figure {
     let dot = SeriesStyle { points: true, index: Some(0), ..SeriesStyle::default() };
     let series = shares.iter().enumerate().flat_map(|(place, (_, share, interval))| {
         [
-            of(place, "95 % interval", vec![interval.low, interval.high], bar),
+            of(place, "interval of 95 %", vec![interval.low, interval.high], bar),
             of(place, "share of variants that fall", vec![*share], dot),
         ]
     });

@@ -172,7 +172,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(path) = std::env::args().nth(1) {
         let plot = Plot {
             x: Axis::new("stiffness of a seat", "MN/m").log(),
-            y: Axis::new("displacement after one cycle", "mm"),
+            y: Axis::new("displacement left by one cycle", "mm"),
             series,
             ..Plot::default()
         };

@@ -317,7 +317,7 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
             peak_tilt: (part.kind == PartKind::Rack).then_some(fate.until_loss.tilt),
-            // The first body, the ground, is omitted, so the index is one less.
+            // One more, since the first body, the ground, is omitted.
             stress_amplification: run.seats.amplification(at + 1, Span::UntilLoss),
             mean_stress_amplification: run.seats.mean_amplification(at + 1, Span::UntilLoss),
         })

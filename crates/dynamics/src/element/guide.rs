@@ -17,7 +17,7 @@ use crate::state::State;
 /// ```
 ///
 /// The force acts on both bodies at the point of the second body, so momentum is conserved. The guide releases the
-/// point for good once the point is farther than `reach` (m) from the axis, or the force exceeds the strength.
+/// point permanently once the point is farther than `reach` (m) from the axis, or the force exceeds the strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide<S: Space> {
     /// The joined points.

@@ -113,7 +113,7 @@ macro_rules! kinds {
 kinds!(
     /// A strap, which acts in tension only and may yield.
     Strap,
-    /// A rod, which holds two points at a distance.
+    /// A rod, which keeps two points at a distance.
     Rod,
     /// A guide: a spring, a damper and stops along an axis of a body.
     Guide

@@ -1,4 +1,4 @@
-//! Rods: they hold two points at a distance, in tension and compression.
+//! Rods, which keep two points at a distance, in tension and compression.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;

@@ -327,7 +327,7 @@ impl<R: Real> Model<Planar<R>> {
         self.gravity.put(lane, &single.gravity);
         self.substepping.put(lane, &single.substepping);
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
-            // The ball must hold the body of every lane.
+            // The bounding ball must enclose the body of every lane.
             *reach = reach.max(*single);
         }
         for (body, (alike, single)) in self.alike.iter_mut().zip(&single.alike).enumerate() {

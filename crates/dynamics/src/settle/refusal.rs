@@ -51,9 +51,9 @@ pub enum Lack {
          on them"
     )]
     Stiffness {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
         /// The penetration (m).
         depth: f64,
@@ -61,9 +61,9 @@ pub enum Lack {
     /// All contacts of the body slip.
     #[error("it slides on \"{on}\": the friction of {interface} is too low to hold it")]
     Friction {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
     },
     /// The friction law of a contact does not hold the body at rest.
@@ -72,9 +72,9 @@ pub enum Lack {
          hold a body at rest"
     )]
     Stick {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
     },
     /// The body turns over on its support.
@@ -82,7 +82,7 @@ pub enum Lack {
         "it tips or rolls over on \"{on}\", which does not keep it and the bodies on it upright"
     )]
     Balance {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
     },
     /// The body leaves its support.
@@ -100,7 +100,7 @@ pub enum Lack {
     },
 }
 
-/// Detects bodies that leave their place.
+/// Detector of bodies that leave their place.
 pub(super) struct Departure<S: Space> {
     start: Vec<Pose<S>>,
     /// The bodies, the lowest first.

@@ -80,7 +80,7 @@ impl Cradle {
             .collect()
     }
 
-    /// Returns a thin uniform arc along the boundary.
+    /// Returns the section of a thin uniform arc along the boundary.
     pub(super) fn section(&self) -> Section {
         let half = self.half_angle();
         let centroid = Vec2::new(0.0, -self.radius * self.sin / half);

@@ -122,9 +122,9 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
     /// Returns, for a point inside the core, the nearest piece on which the point can bear as part of another body's
     /// boundary; elsewhere returns `nearest`.
     ///
-    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush
-    /// on an equal box lies on the side of the lower one and below its top. The directions in which the boundary of
-    /// the other body faces at that point decide.
+    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush on
+    /// an equal box lies on a side of the lower box and below its top. The directions in which the boundary of the
+    /// other body faces at that point decide.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest

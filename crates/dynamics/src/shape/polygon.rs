@@ -344,7 +344,7 @@ impl Polygon {
         nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
     }
 
-    /// Returns the mean of the outward normals at a point (m) of the boundary.
+    /// Returns the outward unit normal at a point (m) of the boundary, at a sharp corner the mean of both sides.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         if self.corner_radius > 0.0 {
             return self.gap(point).normal;

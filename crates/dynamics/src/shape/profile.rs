@@ -89,7 +89,7 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns the nearer of the stave and the head that a point of another body, inside the core, can bear on: see
+    /// Returns the nearer of stave and head on which a point of another body inside the core can bear; see
     /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(

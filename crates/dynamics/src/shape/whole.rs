@@ -69,7 +69,7 @@ pub struct Patch<S: Space> {
     pub spread: Option<Spread<S>>,
 }
 
-/// Points that bear like parallel springs, with friction at their center of pressure.
+/// Points that act like parallel springs, with friction at their center of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Points<S: Space> {
     /// The points.
@@ -95,7 +95,7 @@ pub struct Bearing<S: Space> {
 
 /// Extent of a patch, whose pressure depends on the depth δ of its deepest point and the depth δ₀ of its middle.
 ///
-/// A line bears like two springs, at its deepest point and at the mirror image of that point beyond the middle, which
+/// A line acts like two springs, at its deepest point and at the mirror image of that point beyond the middle, which
 /// has the depth `2 δ₀ − δ`. A face has two more springs in the middle. The energy
 ///
 /// ```text

@@ -180,7 +180,7 @@ impl Set<'_> {
         self.rotation.apply(Vec3::new(1.0, 0.0, 0.0))
     }
 
-    /// Returns the nearest point (m) of the core to one outside of it.
+    /// Returns the point (m) of the core that is nearest to a point outside of the core.
     fn project(&self, point: Vec3) -> Vec3 {
         let gap = self.barrel.gap(self.rotation.unapply(point - self.center));
         let depth = (gap.distance + self.barrel.rounding).max(0.0);

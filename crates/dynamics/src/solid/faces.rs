@@ -31,7 +31,7 @@ pub(super) struct Vertex {
 /// The shared polygon of two blocks.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
-    /// Share of the contact that the polygon bears: 1 where a face of either block meets the other, 0 where an edge
+    /// Share of the contact that the polygon carries: 1 where a face of either block meets the other, 0 where an edge
     /// crosses an edge.
     pub(super) flat: f64,
     /// Unit vectors along the face of the target, or along those of both.
@@ -173,10 +173,10 @@ pub(super) fn shared_by_both(
 /// points out of the target at the closest points.
 ///
 /// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
-/// corner of the polygon bears like one spring per right angle by which the polygon turns at the corner, so the whole
-/// polygon always bears like four springs. A corner of a block on the face of the other block is one spring; where
-/// edges of twisted blocks cross, two corners of the polygon take the place of one. The result is continuous in the
-/// pose, since the turn of a convex boundary is, and exactly flush faces need no special case.
+/// corner of the polygon acts like one spring per right angle by which the polygon turns at the corner, so the whole
+/// polygon always acts like four springs. A corner of a block on the face of the other block is one spring; where edges
+/// of twisted blocks cross, two corners of the polygon take the place of one. The result is continuous in the pose,
+/// since the turn of a convex boundary is, and exactly flush faces need no special case.
 fn shared(
     contactor: &Block,
     target: &Block,

@@ -33,7 +33,7 @@ pub(super) fn smooth(u: f64) -> f64 {
     u * u * (3.0 - u - u)
 }
 
-/// Returns the weights of a patch that bears like `springs` springs and extends `length` (m) from its middle, for two
+/// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
 /// solids inclined to each other by an angle with the given squared sine.
 ///
 /// The shorter the patch, the smaller the permitted angle: the part of an inclined tube in front of a head does not

@@ -132,10 +132,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Adds the forces of points that bear side by side, whose sticks start at `first` in the list of elements.
+    /// Adds the forces of points that act like parallel springs, whose sticks start at `first` in the list of elements.
     ///
     /// Friction acts about the center of pressure, at the root-mean-square distance of the points. So it transfers the
-    /// same moment as friction at the points, and its sticks persist whichever points bear.
+    /// same moment as friction at the points, and its sticks persist when other points touch.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -261,7 +261,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Returns the lanes in which more than the deepest point bears, from the distance (m) of the deepest point.
+    /// Returns the lanes in which more than the deepest point is in contact, from the distance (m) of the deepest
+    /// point.
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);

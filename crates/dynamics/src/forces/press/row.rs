@@ -1,4 +1,4 @@
-//! Rows of nodes that bear as one seat.
+//! Rows of nodes that act as one seat.
 //!
 //! The depth of the seat is that of its deepest node. The laws are evaluated at this depth, and their forces are
 //! divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
@@ -20,7 +20,7 @@ pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) ->
     gap
 }
 
-/// A row of nodes that bears as one seat.
+/// A row of nodes that acts as one seat.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Row<R> {
     /// The depth (m) of the deepest node.
@@ -40,7 +40,7 @@ impl<R: Real> Row<R> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the forces of a node of a row that bears as one seat.
+    /// Adds the forces of a node of a row that acts as one seat.
     #[inline(always)]
     pub(super) fn of_row(
         &mut self,
