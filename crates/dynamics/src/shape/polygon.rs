@@ -61,9 +61,9 @@ pub enum PolygonError {
     NotConvex {
         /// The corner, counted from 1.
         corner: usize,
-        /// Its abscissa (m).
+        /// Horizontal coordinate of the corner (m).
         x: f64,
-        /// Its height (m).
+        /// Height of the corner (m).
         z: f64,
     },
     /// The corners go around more than once.

@@ -323,8 +323,10 @@ fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part below
-/// a level (m above the axis) within a radius up to an end (m).
+/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part of a
+/// body of revolution below a level (m above the axis).
+///
+/// `radius` returns the radius (m) at a position along the axis, up to `end` (m) on both sides of the middle.
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
     let section = |x: f64| {
         let r = radius(x);

@@ -194,8 +194,8 @@ impl<R: Real> Space for Spatial<R> {
     fn tangent_plane(rotation: Rotation3<R>, normal: Vec3<R>) -> Vec3<R> {
         rotation.apply(normal)
     }
-    /// Turns the vector by the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: a vector
-    /// in the old plane keeps its length, and the result is always in the new plane.
+    /// Rotates the vector by the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n ·
+    /// n′)`: a vector in the old plane keeps its length, and the result is always in the new plane.
     #[inline(always)]
     fn carry(tangent: Vec3<R>, from: Vec3<R>, to: Vec3<R>) -> Vec3<R> {
         // For opposite normals the two planes coincide, so the tangent lies in both.
