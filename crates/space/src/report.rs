@@ -83,12 +83,11 @@ pub fn document(answer: &Answer) -> Document {
                 Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
             ]);
             let table = interface_table(
-                "Force on the upper body, or on the one that is named first, largest in size of all steps until the \
-                 first loss of seat, and of all steps of the run, falls included; horizontal forces whatever their \
-                 direction.",
+                "Force on the upper body, or on the body that is named first: the largest magnitude until the first loss of \
+                 seat, and over the whole run, falls included. Horizontal forces are those in any direction.",
                 &summary.interfaces,
             );
-            blocks.extend([heading("What the seats bore"), Block::Table(table)]);
+            blocks.extend([heading("Forces at the seats"), Block::Table(table)]);
         }
         for device in &summary.devices.0 {
             let table = device_table(device);
@@ -120,7 +119,7 @@ fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges are those of 5 to 95 % of the variants. The direction of the first body is the one in \
+            "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
              which it left its seat. The direction of a barrel that fell{} leads from its place at rest to its place at the \
              end of the variant.",
             spread.counted("the first loss")

@@ -163,7 +163,7 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     if let Some(energy) = &summary.energy {
         row(
             "energy balance",
-            format!("closes to {:.0e} of the energy that went through", energy.residual_ratio),
+            format!("residual {:.0e} of the energy that went through", energy.residual_ratio),
         );
     }
     let Summary { run: done, .. } = summary;

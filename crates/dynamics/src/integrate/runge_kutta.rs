@@ -39,7 +39,7 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 
 /// The rates of one stage.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
+#[expect(clippy::struct_field_names, reason = "the name that is used everywhere else")]
 struct Rates<S: Space> {
     /// Velocity of every body, and the rate of its rotation vector since the start of the step ([`Space::turn_rate`]).
     velocities: Vec<Twist<S>>,

@@ -199,7 +199,7 @@ macro_rules! lanewise {
         @variants $name:ident, ($bundle:ty), ($single:ty),
         { $($variant:ident $({ $($field:ident),* })? $(($inner:ident))?),* $(,)? }
     ) => {
-        #[allow(unreachable_code, reason = "a variant may hold what the plane has none of")]
+        #[allow(unreachable_code, reason = "a variant may have an empty type in the plane")]
         impl<R: $crate::real::Real> $crate::lanes::Lanewise for $bundle {
             type Single = $single;
             fn in_all(single: &Self::Single) -> Self {
@@ -209,7 +209,7 @@ macro_rules! lanewise {
                         $(($crate::lanes::Lanewise::in_all($inner)))?,)*
                 }
             }
-            #[allow(irrefutable_let_patterns, reason = "an enum may have one variant only")]
+            #[allow(irrefutable_let_patterns, reason = "an enum may have only one variant")]
             fn put(&mut self, lane: usize, single: &Self::Single) {
                 match self {
                     $($name::$variant $({ $($field),* })? $(($inner))? => {

@@ -47,7 +47,7 @@ pub enum Lack {
     Support,
     /// The support of the body is too soft.
     #[error(
-        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for what lies \
+        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for the load \
          on them"
     )]
     Stiffness {

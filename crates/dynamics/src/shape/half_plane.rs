@@ -10,7 +10,7 @@ pub struct HalfPlane;
 
 impl HalfPlane {
     #[inline(always)]
-    #[expect(clippy::unused_self, reason = "every shape answers through a method")]
+    #[expect(clippy::unused_self, reason = "every shape has this method")]
     pub(super) fn gap<R: Real>(self, point: Vec2<R>) -> Gap<Planar<R>> {
         Gap { distance: point.z, normal: Vec2::new(R::zero(), R::splat(1.0)) }
     }

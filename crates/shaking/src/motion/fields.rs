@@ -126,7 +126,7 @@ table! {
     pub static SCALE = "scale";
     /// Factor; a negative factor reverses the motion.
     factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
-        Default::Derived("1 where nothing else scales the motion");
+        Default::Derived("1 unless another field scales the motion");
     /// Peak horizontal acceleration to reach.
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
     /// Peak horizontal velocity to reach.
