@@ -1,6 +1,6 @@
-//! A force element between two bodies: a weight falls into a strap, and is caught at the elongation given by its
-//! energy.
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+//! A force element between two bodies: a weight falls into a strap, which stops it at the elongation that follows from
+//! the energy.
+#![expect(clippy::print_stdout, reason = "an example prints")]
 
 use std::ops::ControlFlow;
 
@@ -38,6 +38,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     drop(watch);
     let still = mass * gravity / stiffness;
     let stretch = still + (still * still + 2.0 * still * fall).sqrt();
-    println!("caught at {lowest:.4} m; by its energy at {:.4} m", -0.5 - fall - stretch);
+    println!("stopped at {lowest:.4} m; expected from the energy: {:.4} m", -0.5 - fall - stretch);
     Ok(())
 }

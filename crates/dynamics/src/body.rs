@@ -34,36 +34,35 @@ pub struct Node<S: Space> {
     pub position: S::Vector,
     /// Tributary length of boundary (m).
     pub tributary_length: S::Real,
-    /// Outward unit normal of the boundary there, in the body frame, at a corner the mean of both sides; `None` if
-    /// contact is possible from every direction.
+    /// Outward unit normal of the boundary at the node, in the body frame; at a corner, the mean of both sides. `None`
+    /// if contact is possible from every direction.
     pub outward: Option<S::Vector>,
 }
 
 /// A round piece of a convex boundary: a corner, sharp or rounded, or an arc.
 ///
-/// It touches a target with its deepest point, in the direction of the nearest point of the target, so contact is
-/// exact wherever it occurs. A convex boundary is a chain of straight sides and round pieces, and two of them touch
-/// where a round piece of one meets a side or a round piece of the other: every contact belongs to one round piece,
-/// and is counted once.
+/// A round piece touches a target with its deepest point, so contact is exact wherever it occurs. A convex boundary is
+/// a chain of straight sides and round pieces. Two such boundaries touch where a round piece of one meets a side or a
+/// round piece of the other, so every contact belongs to one round piece and is counted once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Round<S: Space> {
     /// Center (m) in the body frame, from the center of mass.
     pub center: S::Vector,
     /// Radius (m); zero for a sharp corner.
     pub radius: S::Real,
-    /// Unit vectors in the body frame that bound its outward normals `d`: `d · limit ≤ 0` for both. A zero vector is
-    /// no bound.
+    /// Unit vectors in the body frame that bound the outward normals `d` of the piece: `d · limit ≤ 0` for both. A zero
+    /// vector sets no bound.
     pub limits: [S::Vector; 2],
-    /// The same limits where an arc adjoins; `None` where the boundary continues straight. Past a straight end a
-    /// corner still bears against a side: two corners of a block carry it on a floor, whichever is deeper.
+    /// The limits at which an arc adjoins; `None` where the boundary continues straight. Past a straight end a corner
+    /// still bears against a side: both lower corners of a block carry it on a floor, whichever is deeper.
     pub arc_limits: [Option<S::Vector>; 2],
     /// `true` if normals exactly at the limit of an arc belong to this piece and not to its neighbor.
     pub takes_limit: bool,
-    /// The straight sides adjoining the ends of an arc, as unit normal and distance (m) from the center of mass: a
-    /// corner that is nearer to such a side is in contact with the side.
+    /// The straight sides adjoining the ends of an arc, as unit normal and distance (m) from the center of mass. A
+    /// corner of another body that is nearer to such a side than to the arc touches the side.
     pub sides: [Option<(S::Vector, S::Real)>; 2],
-    /// Penetration (m) beyond which the nearest point lies behind the body and there is no contact: the center of an
-    /// arc may lie far beyond its body.
+    /// Penetration (m) beyond which there is no contact, since the nearest point then lies behind the body: the center
+    /// of an arc may lie far beyond its body.
     pub greatest_depth: S::Real,
     /// Tributary length of boundary (m) of its contact.
     pub tributary_length: S::Real,
@@ -71,8 +70,8 @@ pub struct Round<S: Space> {
 
 /// A flat piece of boundary that carries nodes, as a plane in the body frame.
 ///
-/// Where nodes and the exact test would both find a contact, the plane decides: a round body whose center is in front
-/// of it is handled by the nodes, one whose center is behind it by the exact test. For a body that is not round, whose
+/// Where nodes and the exact test would both find a contact, the plane decides: a round body with its center in front
+/// of the plane is tested by the nodes, one with its center behind the plane by the exact test. For other bodies, whose
 /// edges may extend past the face, the direction of the contact decides as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face<S: Space> {
@@ -80,20 +79,20 @@ pub struct Face<S: Space> {
     pub point: S::Vector,
     /// Unit normal out of the body.
     pub outward: S::Vector,
-    /// Cosine of the angle from `outward` up to which a contact's outward normal belongs to the face; below -1 if
-    /// every direction does.
+    /// Cosine of the largest angle between `outward` and the outward normal of a contact that belongs to the face;
+    /// below -1 if every direction does.
     pub widest: S::Real,
 }
 
 /// Contact points of a boundary.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nodes<S: Space> {
-    /// Nodes fixed to the body, as in the paper.
+    /// Nodes fixed to the body, as in Candia, de la Llera and Almazán (2008).
     Fixed(Vec<Node<S>>),
     /// The round pieces of a convex boundary.
     Rounds(Vec<Round<S>>),
-    /// The deepest node of a round boundary in the target: it moves along the boundary as the body rolls, so rolling
-    /// is smooth.
+    /// A single node at the point of a round boundary that is deepest in the target. The node moves along the boundary
+    /// as the body rolls, so rolling is smooth.
     Rolling {
         /// Center of the circle (m) in the body frame, from the center of mass.
         center: S::Vector,
@@ -102,7 +101,7 @@ pub enum Nodes<S: Space> {
         /// Tributary length of boundary (m) of the node.
         tributary_length: S::Real,
     },
-    /// A convex body of space, which touches with its deepest points.
+    /// A convex solid in space, which touches with its deepest points.
     Whole(S::Whole),
 }
 
@@ -123,7 +122,7 @@ impl<S: Space> Nodes<S> {
 pub struct Body<S: Space> {
     /// Name in messages and results; unique in a model.
     pub name: String,
-    /// Source of its motion.
+    /// Whether the body moves under forces or with the ground.
     pub motion: Motion,
     /// Mass (kg).
     pub mass: S::Real,
@@ -139,11 +138,12 @@ pub struct Body<S: Space> {
     pub surfaces: Vec<Placed<S>>,
     /// Contact nodes.
     pub nodes: Vec<Nodes<S>>,
-    /// Flat pieces that carry nodes where others are tested exactly.
+    /// Flat pieces of boundary that carry nodes; see [`Face`].
     pub faces: Vec<Face<S>>,
 }
 
-/// Body data that every step reads, without boundaries: those of thousands of bodies stay in the cache.
+/// Body data that every step reads, stored apart from the boundaries so that the data of thousands of bodies stays in
+/// the cache.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inert<S: Space> {
     pub(crate) motion: Motion,
@@ -161,7 +161,7 @@ impl<S: Space> Inert<S> {
 }
 
 impl Body<Planar> {
-    /// Returns the ground: a half-plane below its origin, turned by an angle (rad).
+    /// Creates the ground: a half-plane below its origin, inclined by an angle (rad).
     pub fn ground(orientation: f64) -> Self {
         let floor = Placed {
             surface: Shape::HalfPlane(HalfPlane),
@@ -169,14 +169,14 @@ impl Body<Planar> {
             rotation: Rotation2::identity(),
         };
         let pose = Pose { position: Vec2::default(), orientation };
-        // No force moves it, so its mass is irrelevant.
+        // The ground moves as prescribed, so its mass is irrelevant.
         let body = Self::free("ground", 1.0, 1.0, pose);
         Self { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
     }
 }
 
 impl<S: Space> Body<S> {
-    /// Returns a free body at rest, without boundaries, of a mass (kg) and a moment of inertia (kg·m²).
+    /// Creates a free body at rest, without boundaries, from its mass (kg) and its moment of inertia (kg·m²).
     pub fn free(
         name: impl Into<String>,
         mass: S::Real,
@@ -197,7 +197,7 @@ impl<S: Space> Body<S> {
         }
     }
 
-    /// Returns `true` if it has an unbounded surface.
+    /// Returns `true` if the body has an unbounded surface.
     pub fn is_unbounded(&self) -> bool {
         self.surfaces.iter().any(|placed| placed.surface.reach().is_infinite())
     }
@@ -208,7 +208,7 @@ impl<S: Space> Body<S> {
         let length = |v: S::Vector| v.dot(v).sqrt().largest_lane();
         let nodes = self.nodes.iter().flat_map(|nodes| match nodes {
             Nodes::Fixed(nodes) => nodes.iter().map(|n| length(n.position)).collect::<Vec<_>>(),
-            // An arc may reach far beyond the body; its surface is the bound.
+            // The circle of an arc may extend far beyond the body, so the surface gives the radius.
             Nodes::Rounds(_) => Vec::new(),
             Nodes::Rolling { center, radius, .. } => {
                 vec![length(*center) + radius.largest_lane()]

@@ -1,9 +1,8 @@
 //! List of the contact elements that could touch soon, with their memory.
 //!
-//! A contact element is a node of a contactor and the surface of a target. Of all elements of a model only those
-//! within reach are in the list; it is rebuilt before any body can have moved so far that a missing element touches.
-//! The list affects speed alone: forces are those of testing every node in every step, in the same order, with the
-//! same bits.
+//! A contact element is a node of a contactor and the surface of a target. The list has only the elements within reach;
+//! it is rebuilt before any body can have moved far enough for a missing element to touch. The list affects speed
+//! alone: forces are bit-identical to those of testing every node in every step.
 
 use crate::body::{Body, BodyId, Motion, Nodes, Round};
 use crate::contact::Stick;
@@ -14,17 +13,18 @@ use crate::real::{Mask, Real};
 use crate::shape::{Surface, Whole};
 use crate::space::{Linear, Planar, Pose, Space, Twist};
 
-/// Prediction of substeps must be bit-identical whatever else is in the list, so no element outside of it may be
-/// nearer than the displacement of bodies within the lookahead, plus this slack (m) for changes of velocity.
+/// Slack (m) for changes of velocity within the lookahead. The prediction of substeps must not depend on the list, so
+/// no missing element may be nearer than the displacements within the lookahead plus this slack.
 const LOOKAHEAD_SLACK: f64 = 1e-3;
 
-/// Displacement (m) that is allowed to every body before the list is rebuilt.
+/// Least displacement (m) that is allowed to every body before the list is rebuilt.
 const LEAST_ALLOWANCE: f64 = 0.015;
 
-/// Time (s) for which a moving body may continue, so that falling bodies do not require a new list every other step.
+/// Time (s) for which the list shall stay valid while bodies keep their speeds, so that falling bodies do not require a
+/// new list every other step.
 const HORIZON: f64 = 0.012;
 
-/// Maximum allowed displacement (m) of a body: long lists are expensive, too.
+/// Maximum displacement (m) that is allowed to a body before the list is rebuilt, since long lists are expensive, too.
 const MOST_ALLOWANCE: f64 = 0.15;
 
 /// The elements of one contact pair.
@@ -42,8 +42,8 @@ pub(crate) struct Group {
     pub(crate) end: usize,
 }
 
-/// Additional distance (m), beyond the predicted displacements in a step, from which a group is skipped: forces may
-/// change velocities within the step.
+/// Gap (m), in addition to the predicted displacements in a step, above which a group is skipped; forces may change
+/// velocities within the step.
 const ASLEEP_SLACK: f64 = 2.0 * LOOKAHEAD_SLACK;
 
 /// The contact elements within reach, in the order in which their forces are summed.
@@ -54,20 +54,20 @@ pub struct ContactElements<S: Space> {
     pub(crate) nodes: Vec<u32>,
     /// Position (m) of every element's node in the body frame of its contactor.
     pub(crate) positions: Vec<S::Vector>,
-    /// Factor of the constants of its law: 1 for constants per node, the tributary length (m) for constants per
-    /// length.
+    /// Factor of the constants of every element's law: 1 for constants per node, the tributary length (m) for constants
+    /// per length.
     pub(crate) weights: Vec<S::Real>,
     /// Memory of every element.
     pub(crate) sticks: Vec<Stick<S>>,
     /// Smallest gap (m) of the elements of every group when the list was built.
     apart: Vec<S::Real>,
-    /// Bound of the displacement (m) of every body since then, at the end of the current step; infinite outside of a
-    /// step.
+    /// Upper bound of the displacement (m) of every body from the build of the list to the end of the current step;
+    /// infinite outside of a step.
     travels: Vec<S::Real>,
     /// Poses at which the list was built.
     built_for: Vec<Pose<S>>,
-    /// Allowed displacement (m) of every body since then: the list has all elements whose gap is at most the sum of
-    /// those of both bodies.
+    /// Displacement (m) that is allowed to every body until the list is rebuilt: the list has all elements whose gap
+    /// was at most the sum of the displacements allowed to their two bodies.
     allowances: Vec<f64>,
     /// `true` if the list has all elements of the model.
     exhaustive: bool,
@@ -102,7 +102,7 @@ impl<S: Space> ContactElements<S> {
     }
 
     /// Returns `true` if no element of a group can come within a gap (m) during the current step in any lane, so that
-    /// it need not be tested.
+    /// the group need not be tested.
     #[inline(always)]
     pub(crate) fn sleeps(&self, group: usize, gap: S::Real) -> bool {
         let [a, b] = self.groups[group].bodies;
@@ -110,7 +110,7 @@ impl<S: Space> ContactElements<S> {
         (travel + (gap + S::Real::splat(ASLEEP_SLACK))).lt(self.apart[group]).all()
     }
 
-    /// Ends the step: bodies may be moved anywhere, and no group is skipped.
+    /// Ends the step: until the next one begins, bodies may be moved anywhere, so no group is skipped.
     pub(crate) fn end_step(&mut self) {
         self.travels.fill(S::Real::splat(f64::INFINITY));
     }
@@ -120,14 +120,14 @@ impl<S: Space> ContactElements<S> {
         self.sticks[element]
     }
 
-    /// Keeps every element in the list from now on: the reference that the list is tested against.
+    /// Keeps every element in the list from now on; tests use this as the reference of the shorter list.
     pub fn make_exhaustive(&mut self, model: &Model<S>, poses: &[Pose<S>]) {
         self.exhaustive = true;
         self.rebuild(model, poses, &vec![Twist::default(); poses.len()]);
     }
 
-    /// Rebuilds the list if a body may have moved so far, or may move so far within `dt` (s), that an element outside
-    /// of it could touch; then returns the origins of [`ContactElements::rebuild`].
+    /// Rebuilds the list if a missing element could touch now or within `dt` (s); returns the origins of
+    /// [`ContactElements::rebuild`] if it did.
     pub(crate) fn refresh(
         &mut self,
         model: &Model<S>,
@@ -189,7 +189,7 @@ impl<S: Space> ContactElements<S> {
 
     /// Lists the elements within the margin and transfers their memory.
     ///
-    /// Returns the origins: for every element of the new list, its index in the old one.
+    /// Returns the origins: for every element of the new list, its index in the old list.
     pub(crate) fn rebuild(
         &mut self,
         model: &Model<S>,
@@ -238,13 +238,14 @@ impl<S: Space> ContactElements<S> {
         origins
     }
 
-    /// Returns the pairs of bodies whose balls come within their margins, in the order of the model: by a sweep along
-    /// the first axis, so that the cost of a row of bodies is not quadratic.
+    /// Returns the pairs of bodies whose bounding balls come within their margins, in the order of the model.
+    ///
+    /// Bodies are swept along the first axis, so that the cost for a row of bodies is not quadratic.
     fn pairs_in_reach(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<usize> {
         if self.exhaustive {
             return model.pairs.numbers().collect();
         }
-        // Lanes may have different ground motions: extents are relative to each lane's own.
+        // Lanes may have different ground motions, so extents are relative to the ground of each lane.
         let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
         let carried = ground.map_or_else(S::Vector::default, |ground| poses[ground].position);
         let ball = |(i, body): (usize, &Body<S>)| {
@@ -271,7 +272,7 @@ impl<S: Space> ContactElements<S> {
                 #[inline(always)]
                 || {
                     for (_, other) in &open {
-                        // Most bodies above each other in a heap are far apart.
+                        // In a heap, most bodies that lie above each other are far apart.
                         let apart = poses[body].position - poses[*other].position;
                         let touch = S::Real::splat(balls[body] + balls[*other]);
                         if !(touch * touch).lt(apart.dot(apart)).all() {
@@ -287,7 +288,7 @@ impl<S: Space> ContactElements<S> {
         couples.into_iter().flatten().collect()
     }
 
-    /// Returns the distance (m) of a ball about a point from a surface, if within a margin (m) in any lane.
+    /// Returns the distance (m) of a ball about a point from a surface; `None` if it exceeds a margin (m) in all lanes.
     #[inline(always)]
     fn near(
         &self,
@@ -301,8 +302,10 @@ impl<S: Space> ContactElements<S> {
         near.then_some(distance)
     }
 
-    /// Returns `true` if a surface stays so deep within a round piece in all lanes that there is no contact
-    /// ([`Round::greatest_depth`]): the center of an arc may lie far beyond its body, and moves farther than it.
+    /// Returns `true` if a surface stays deeper than [`Round::greatest_depth`] within a round piece in all lanes, so
+    /// that there is no contact.
+    ///
+    /// The center of an arc may lie far beyond its body, and then moves farther than the body.
     #[inline(always)]
     fn behind(
         &self,
@@ -314,7 +317,8 @@ impl<S: Space> ContactElements<S> {
         frame: &PairFrame<S>,
     ) -> bool {
         let one = S::Real::splat(1.0);
-        // Allowances bound the displacement of any point within the reach of a body; farther ones turn further.
+        // Allowances bound the displacement of all points within the reach of a body; points beyond it move farther as
+        // the body turns.
         let travel = |body: usize, arm: S::Vector| {
             let turning = arm.dot(arm).sqrt() / S::Real::splat(model.reach[body].max(1e-9));
             S::Real::splat(self.allowances[body]) * (one + turning)
@@ -325,7 +329,7 @@ impl<S: Space> ContactElements<S> {
         !self.exhaustive && (round.greatest_depth + travels).lt(depth).all()
     }
 
-    /// Lists the elements of a pair within reach; returns their least gap (m) in every lane.
+    /// Adds the elements of a pair that are within reach to the list; returns their least gap (m) in every lane.
     #[inline(always)]
     fn list_pair(&mut self, model: &Model<S>, pair: &ContactPair, frame: &PairFrame<S>) -> S::Real {
         let mut least = S::Real::splat(f64::INFINITY);
@@ -399,7 +403,7 @@ impl<S: Space> ContactElements<S> {
                 if self.near(surface, frame.to_surface(center), radius, margin).is_none() {
                     return least;
                 }
-                // Slender bodies may be far from others within their ball.
+                // A slender body may be far away although its bounding ball is near.
                 whole.meet(surface, frame.contactor, frame.relative, |patch| {
                     least = least.min(patch.deepest.gap.distance);
                 });
@@ -417,8 +421,8 @@ impl<S: Space> ContactElements<S> {
 }
 
 impl<R: Real> ContactElements<Planar<R>> {
-    /// Copies the memory of a single state's elements into one lane, and their slip rates into that of `slip_rates`;
-    /// elements missing in the single state have no memory.
+    /// Copies the stick memory and the slip rates of a single state into one lane; elements that the single state lacks
+    /// get none.
     pub(crate) fn put_memory(
         &mut self,
         lane: usize,
@@ -440,7 +444,7 @@ impl<R: Real> ContactElements<Planar<R>> {
         }
     }
 
-    /// Returns the memory of the elements that touch in a lane, as a list to be rebuilt for a single state.
+    /// Returns the memory of the elements that touch in one lane, as a list that must be rebuilt for a single state.
     pub(crate) fn of_lane(&self, lane: usize, touching: &[R::Mask]) -> ContactElements<Planar> {
         let stick = |(stick, touching): (&Stick<Planar<R>>, &R::Mask)| {
             if touching.lane(lane) { stick.of_lane(lane) } else { Stick::default() }
@@ -451,8 +455,9 @@ impl<R: Real> ContactElements<Planar<R>> {
     }
 }
 
-/// Returns the displacement (m) that each body is allowed before the list is stale, from its speed: in the worst
-/// lane, and relative to the ground, which moves all bodies together.
+/// Returns the displacement (m) that is allowed to each body before the list is stale.
+///
+/// It grows with the speed of the body in the fastest lane, relative to the ground, which moves all bodies together.
 fn allowances<S: Space>(model: &Model<S>, twists: &[Twist<S>]) -> Vec<f64> {
     let ground = model.bodies.iter().position(|body| body.motion == Motion::Prescribed);
     let carrier = ground.map_or_else(S::Vector::default, |ground| twists[ground].linear);

@@ -22,55 +22,56 @@ pub struct EnergySummary {
     pub stick: f64,
     /// Energy lost in the dampers of contacts and elements, by yielding, and with broken elements.
     pub damped: f64,
-    /// Energy lost to friction (sliding and the damping of sticks).
+    /// Energy lost to friction: by sliding, and by the damping of sticks.
     pub friction: f64,
     /// Energy lost to viscous damping of bodies.
     pub viscous: f64,
     /// Work of the ground on the bodies.
     pub ground_work: f64,
-    /// Stored and lost energy, less the initial energy and the work of the ground; zero in exact arithmetic and time.
+    /// Stored and lost energy, less the initial energy and the work of the ground; zero for an exact integration.
     pub residual: f64,
-    /// Absolute flow of energy through the system so far: the work of the ground plus the initially available energy
-    /// (motion and springs at the start, and the deepest drop); the scale of the residual.
+    /// Energy that went through the system so far: the absolute work of the ground, plus the energy that was available
+    /// at the start (motion, springs, and the deepest drop). It is the scale of the residual.
     pub throughput: f64,
 }
 
 impl EnergySummary {
-    /// Returns the residual over the throughput.
+    /// Returns the absolute residual as a fraction of the throughput.
     pub fn residual_ratio(&self) -> f64 {
         if self.throughput > 0.0 { (self.residual / self.throughput).abs() } else { 0.0 }
     }
 }
 
-/// Sums energies over the accepted steps of a run; one entry per lane.
+/// Energy balance of every lane, summed over the accepted steps of a run.
 ///
-/// A work is the mean of the forces at the two ends of a step, times the displacement of the bodies in it, summed
-/// over the bodies: the discrete balance of the central difference method. Velocity Verlet satisfies it to the last
-/// digit, but for the difference between the velocities at the ends and in the middle of a step, which does not
-/// accumulate: a linear spring returns its energy, and the works of dampers, friction and the ground are counted as
-/// done, however abruptly they set in and whatever velocity they were predicted from.
-/// The residual is the error of the integration itself: springs that engage or release within a step, nonlinear laws
-/// and geometry. Stored energies are functions of the state alone and independent of this, so a force that is not the
-/// derivative of its energy, or differs between the motion and the balance, leaves a residual, too.
+/// The work of a force in a step is the mean of the force at the two ends of the step times the displacement of its
+/// body: the discrete balance of the central difference method. Velocity Verlet satisfies this balance to rounding,
+/// except for the difference between the velocities at the ends and in the middle of a step, which does not accumulate.
+/// So a linear spring returns all its energy, and the works of dampers, friction and the ground are exact, however
+/// abruptly these forces set in.
+///
+/// The residual is the error of the integration itself: springs that engage or release within a step, nonlinear laws,
+/// and geometry. Stored energies are computed from the state alone, so a force that is not the derivative of its
+/// energy, or that differs between the motion and the balance, leaves a residual, too.
 #[derive(Clone, Debug)]
 pub struct EnergyLedger<S: Space> {
     initial: S::Real,
     potential_start: S::Real,
     stick_start: S::Real,
     works: Works<S::Real>,
-    /// Poses of the bodies at the last entry.
+    /// Poses of the bodies at the last accepted step.
     poses: Vec<Pose<S>>,
-    /// Dissipative forces on the bodies at the last entry.
+    /// Dissipative forces on the bodies at the last accepted step.
     losses: Vec<Losses<S>>,
     viscous: Vec<Wrench<S>>,
-    /// Contact forces on the bodies at the last entry.
+    /// Forces of contacts and elements on the bodies at the last accepted step.
     wrenches: Vec<Wrench<S>>,
-    /// Memory of the force elements at the last entry.
+    /// Memory of the force elements at the last accepted step.
     memory: Vec<Memory<S>>,
-    /// Spring forces of the force elements at the last entry (N).
+    /// Spring forces of the force elements at the last accepted step (N).
     springs: Vec<S::Real>,
     stored: Stored<S::Real>,
-    /// Absolute work of the ground plus the largest drop of potential energy.
+    /// Sum of the absolute works of the ground.
     ground_flow: S::Real,
     deepest: S::Real,
 }
@@ -139,7 +140,7 @@ impl<S: Space> EnergyLedger<S> {
                 step.ground -=
                     self.wrenches[i].plus(scratch.wrenches[i]).power(displacement) * half;
             }
-            // Start of the next entry, while in the cache.
+            // Saved for the next step here, while the data is in the cache.
             self.poses[i] = state.poses[i];
             self.losses[i] = *new;
             self.wrenches[i] = scratch.wrenches[i];
@@ -172,7 +173,7 @@ impl<S: Space> EnergyLedger<S> {
         let Stored { kinetic, potential, elastic, stick } = self.stored;
         let now = kinetic + potential + elastic;
         let lost = self.works.damped + self.works.friction + self.works.viscous;
-        // The work of friction is that on sticks and sliding together, so it includes the stick energy.
+        // The work of friction is that on sticks and of sliding together, so it includes the energy stored in sticks.
         let residual = now + lost - self.works.ground - self.initial;
         let throughput = self.ground_flow + (self.initial - self.deepest);
         EnergySummary {

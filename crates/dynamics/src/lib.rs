@@ -1,7 +1,7 @@
-//! Rigid bodies joined by penalty contact, integrated in time.
+//! Dynamics of rigid bodies with penalty contact, in a plane and in space.
 //!
-//! This crate has bodies, boundaries and contact; it does no input or output, reads no clock, starts no thread, and
-//! logs nothing.
+//! The crate contains the physics only: it does no input or output, reads no clock, starts no threads and writes no
+//! log.
 //!
 //! # A step
 //!
@@ -18,19 +18,20 @@
 //!
 //! # Signs
 //!
-//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians.
-//!   In space `y` points away and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
+//! - `x` points right, `z` up, angles grow from `x` toward `z`; all units are SI, angles radians. In space `y` points
+//!   away from the viewer and rotations are right-handed, so an angle of the plane is a rotation about `-y`.
 //! - A gap's distance is negative when penetrating; penetration is never negative.
 //! - Penetration rate is positive while approaching.
 //! - Normals point out of the target.
-//! - Slip is that of the contactor relative to the target; on a level floor, positive to the right.
-//! - A friction force is given along the slip; the opposite acts on the contactor.
+//! - Slip is the motion of the contactor relative to the target; on a level floor it is positive to the right.
+//! - A friction force is given along the slip; the opposite force acts on the contactor.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::inline_always,
-    reason = "bundles of lanes are fast only where their code is inlined into the scope of a vector unit"
+    reason = "bundles are fast only if their code is inlined into the function that enables the vector unit"
 )]
 
 pub mod body;

@@ -1,4 +1,4 @@
-//! The only gateway to transcendental functions: the same bits on every machine.
+//! Transcendental functions that return the same bits on every machine; the crate uses no others.
 
 use crate::real::{Mask, Real};
 
@@ -51,8 +51,8 @@ pub fn sin_cos<R: Real>(angle: R) -> (R, R) {
 
 /// Returns `sin x / x` and `cos x` from the square of `x` (rad²).
 ///
-/// Below 0.1 rad, as for the rotation of a step, by their series, whose first omitted terms are below 1e-17: without
-/// a square root, a division or a reduction.
+/// Below 0.1 rad, which covers the rotation in one time step, both are evaluated by series whose first omitted terms
+/// are below 1e-17, without a square root, a division or a range reduction.
 #[inline(always)]
 pub fn sinc_cos<R: Real>(square: R) -> (R, R) {
     let one = R::splat(1.0);

@@ -1,4 +1,4 @@
-//! Constant data of a run: bodies, interfaces, and contact pairs.
+//! The model: bodies, interfaces, contact pairs and force elements, which are constant during a run.
 
 use std::collections::BTreeMap;
 
@@ -26,61 +26,66 @@ pub struct ContactPair {
     pub surface: usize,
     /// The law between them.
     pub interface: InterfaceId,
-    /// Side of a face on which its contacts count.
+    /// Filter of the contacts by their position relative to a face.
     pub counts: Counts,
 }
 
-/// Side of a face on which the contacts of a pair count, so that none is counted twice where a face has nodes for one
-/// body and is tested exactly by another pair.
+/// Filter that assigns each contact near a face to exactly one pair.
 ///
-/// A contact belongs to the face if the other body's center of mass lies before it and the angle between the
-/// contact's normal and the face's is within [`Face::widest`](crate::body::Face::widest).
+/// One pair may test a face by its nodes and another pair test it exactly. Without the filter, a contact found by both
+/// would be counted twice.
+///
+/// A contact belongs to the face if the other body's center of mass lies in front of the face and the angle between the
+/// normals of contact and face is within [`Face::widest`](crate::body::Face::widest).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Counts {
-    /// Everywhere.
+    /// All contacts count.
     #[default]
     Everywhere,
-    /// Contacts with the target that belong to this face of the contactor.
+    /// Only contacts that belong to this face of the contactor count.
     BeforeFace(usize),
-    /// Contacts with the target that do not belong to this face of the contactor.
+    /// Only contacts that do not belong to this face of the contactor count.
     BehindFace(usize),
-    /// Contacts with the contactor that do not belong to this face of the target.
+    /// Only contacts that do not belong to this face of the target count.
     BehindFaceOfTarget(usize),
 }
 
-/// Gap (m) within which impacts between bodies of stacks are predicted.
+/// Gap (m) below which impacts between bodies of a stack are predicted.
 pub const FORESEEN: f64 = 0.01;
 
-/// Subdivision of time steps during impacts: their laws are the stiffest, but only while they are deep.
+/// Subdivision of time steps during impacts.
+///
+/// Impact laws are the stiffest laws of a model, but only at large penetration, so steps are divided only then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Substepping<R> {
     /// Number of substeps of a time step while an impact requires it; an integer, one or more.
     pub substeps: R,
-    /// For every interface the penetration (m) that whole time steps resolve; infinite for no limit.
+    /// For every interface, the largest penetration (m) that whole time steps resolve; infinite for no limit.
     pub whole_step_depth: Vec<R>,
     /// Additional penetration (m) beyond [`whole_step_depth`](Self::whole_step_depth) that whole steps resolve for a
-    /// contact at rest: stability allows more depth than the accuracy of an impact.
+    /// contact at rest: stability allows a larger depth than the accuracy of an impact does.
     pub resting_allowance: R,
-    /// Gap (m) within which impacts are predicted; faster ones are predicted later. [`FORESEEN`] suits stacks.
+    /// Gap (m) below which impacts are predicted; an impact that closes a larger gap within the lookahead is detected
+    /// late. [`FORESEEN`] suits stacks.
     pub foreseen_gap: R,
-    /// Further rules for fast contacts of whole bodies, if any.
+    /// Additional rules for fast contacts of whole bodies; `None` to disable them.
     pub fast: Option<Fast<R>>,
 }
 
-/// Substepping of contacts of whole bodies that are too fast for the other rules of [`Substepping`].
+/// Additional substepping rules for fast contacts of whole bodies ([`Nodes::Whole`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fast<R> {
-    /// Displacement (m) of a contact in a whole step above which it engages or releases its spring and damper too
-    /// abruptly.
+    /// Normal displacement (m) of a contact in a whole step above which the step is divided, since spring and damper
+    /// would engage or release too abruptly.
     pub whole_step_way: R,
-    /// Approach speed (m/s) above which an impact is hard: substeps are half as long until no impact is left.
+    /// Approach speed (m/s) above which an impact counts as hard; substeps are then halved until no impact remains.
     pub hard: R,
 }
 
-/// Returns the pairs of two bodies, the lower ID first.
+/// Function that returns the contact pairs of two bodies, given with the lower ID first.
 pub type Meet<'a, S> = dyn Fn(&[Body<S>], [BodyId; 2]) -> Vec<ContactPair> + 'a;
 
-/// Bodies, interfaces and pairs; constant during a run and shared between threads.
+/// Bodies, interfaces, contact pairs and force elements; constant during a run and shared between threads.
 #[derive(Clone, Debug)]
 pub struct Model<S: Space> {
     pub(crate) bodies: Vec<Body<S>>,
@@ -91,13 +96,13 @@ pub struct Model<S: Space> {
     pub(crate) elements: Vec<Element<S>>,
     pub(crate) gravity: S::Vector,
     pub(crate) reach: Vec<f64>,
-    /// For every body the first one with equal boundaries, which are read there, so that a thousand equal blocks take
-    /// the memory of one.
+    /// For every body, the first body with equal boundaries. Boundaries are read from that body, so that a thousand
+    /// equal blocks occupy the cache of one.
     pub(crate) alike: Vec<BodyId>,
     pub(crate) substepping: Substepping<S::Real>,
 }
 
-/// Reason why bodies and pairs do not form a model.
+/// Error of an invalid model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// Two bodies have the same name.
@@ -170,17 +175,18 @@ impl<S: Space> Model<S> {
         Self::of_pairs(bodies, interfaces, Pairs::listed(pairs), gravity)
     }
 
-    /// Creates a model as [`Model::new`], where the pairs of two bodies depend only on their kinds, numbered from 0:
-    /// `meet` returns the pairs of two bodies, the lower ID first, and must return the same for any others of their
-    /// kinds.
+    /// Creates a model as [`Model::new`] does, with contact pairs that depend only on the kinds of the bodies.
     ///
-    /// So thousands of bodies need no list of all their pairs, which is quadratic.
+    /// `kinds` has the kind of every body, numbered from 0. `meet` returns the pairs of two bodies, given with the
+    /// lower ID first, and must return equivalent pairs for any other two bodies of the same kinds.
+    ///
+    /// No list of all pairs is stored, since its length would be quadratic in the number of bodies.
     ///
     /// # Errors
     /// As [`Model::new`].
     ///
     /// # Panics
-    /// If there is not one kind for each body.
+    /// If the number of kinds differs from the number of bodies.
     pub fn of_kinds(
         bodies: Vec<Body<S>>,
         interfaces: Vec<Interface<S>>,
@@ -265,10 +271,10 @@ impl<S: Space> Model<S> {
         Ok(Self { bodies, inert, interfaces, pairs, elements, gravity, reach, alike, substepping })
     }
 
-    /// Enables substeps during impacts; without this no step is divided.
+    /// Enables substeps during impacts; a new model divides no step.
     ///
     /// # Panics
-    /// If there is not one penetration for each interface.
+    /// If the number of penetrations differs from the number of interfaces.
     pub fn set_substepping(&mut self, substepping: Substepping<S::Real>) {
         assert_eq!(
             substepping.whole_step_depth.len(),
@@ -283,11 +289,13 @@ impl<S: Space> Model<S> {
         &self.substepping
     }
 
-    /// Sets the force elements, replacing those before, in the order in which their forces are summed. A state of the
-    /// model must have one entry of `memory` for each.
+    /// Sets the force elements, replacing all earlier ones.
+    ///
+    /// Forces are summed in the order of the elements. A state of the model needs one entry of `memory` for each
+    /// element.
     ///
     /// # Errors
-    /// If an element ties a body to itself or to a missing one, or a constant is invalid.
+    /// If an element joins a body to itself or to a missing body, or has an invalid constant.
     pub fn fasten(&mut self, elements: Vec<Element<S>>) -> Result<(), ModelError> {
         for element in &elements {
             if let Some(problem) = element.problem(self.bodies.len()) {
@@ -320,8 +328,8 @@ impl<S: Space> Model<S> {
         self.pairs.get(number)
     }
 
-    /// Calls `report` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
-    /// meet.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
+    /// target.
     pub fn each_meeting(&self, report: &mut TellMeeting<'_>) {
         self.pairs.each(report);
     }
@@ -351,7 +359,7 @@ impl<S: Space> Model<S> {
         self.inert.iter().any(|body| body.damped)
     }
 
-    /// Returns the body that holds the boundaries of a body.
+    /// Returns the body from which the boundaries of a body are read.
     #[inline(always)]
     pub(crate) fn bounded(&self, body: BodyId) -> &Body<S> {
         &self.bodies[self.alike[body]]
@@ -363,7 +371,7 @@ impl<S: Space> Model<S> {
     }
 }
 
-/// Returns for every body the first one with equal boundaries, which has the same reach.
+/// Returns, for every body, the first body with equal boundaries and equal reach.
 fn alike<S: Space>(bodies: &[Body<S>], reach: &[f64]) -> Vec<BodyId> {
     let mut firsts: BTreeMap<u64, Vec<BodyId>> = BTreeMap::new();
     let first = |(id, body): (BodyId, &Body<S>)| {

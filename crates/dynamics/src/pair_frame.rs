@@ -1,32 +1,32 @@
-//! Relative position of two bodies in the frame of a surface, and the side on which their contacts count.
+//! Relative pose of two bodies in the frame of a surface, and the filter of their contacts by a face.
 
 use crate::model::{ContactPair, Counts, Model};
 use crate::real::{Mask, Real};
 use crate::space::{Linear, Pose, Space};
 
-/// Relative position of two bodies in the frame of the target's surface.
+/// Relative pose of two bodies in the frame of the target's surface.
 ///
-/// Contacts of a pair are computed in this frame, and their sum is rotated back once.
+/// The contacts of a pair are computed in this frame, and only their sum is rotated to the inertial frame.
 #[derive(Clone, Debug)]
 pub(crate) struct PairFrame<S: Space> {
-    /// From the surface's frame to the inertial frame.
+    /// Rotation from the surface's frame to the inertial frame.
     pub(crate) rotation: S::Rotation,
-    /// From the contactor's body frame to the surface's frame.
+    /// Rotation from the contactor's body frame to the surface's frame.
     pub(crate) relative: S::Rotation,
     /// Center of mass of the contactor (m) in the surface's frame.
     pub(crate) contactor: S::Vector,
     /// Center of mass of the target (m) in the surface's frame.
     pub(crate) target: S::Vector,
-    /// From the frame of the target's body to that of its surface.
+    /// Rotation from the surface's frame to the target's body frame.
     placed: S::Rotation,
 }
 
-/// Decides whether contacts belong to a face with nodes, and whether they count for this pair.
+/// Filter of the contacts of a pair by a face, as required by [`Counts`].
 #[derive(Clone, Copy)]
 pub(crate) struct AtFace<S: Space> {
-    /// The lanes in which the other body lies before the face.
+    /// Lanes in which the other body's center of mass lies in front of the face.
     before: <S::Real as Real>::Mask,
-    /// The face's outward normal as a contact normal in the frame of the target's surface.
+    /// Outward normal of the face, with the sign of a contact normal, in the frame of the target's surface.
     out: S::Vector,
     /// [`Face::widest`](crate::body::Face::widest).
     widest: S::Real,
@@ -78,8 +78,8 @@ impl<S: Space> PairFrame<S> {
         }
     }
 
-    /// Returns the distance (m) of the other body's center of mass before the face that decides for a pair; `None` if
-    /// its contacts count everywhere.
+    /// Returns the distance (m) of the other body's center of mass in front of the face that filters a pair; `None` for
+    /// [`Counts::Everywhere`].
     #[inline(always)]
     pub(crate) fn before(&self, model: &Model<S>, pair: &ContactPair) -> Option<S::Real> {
         let apart = self.target - self.contactor;
@@ -95,7 +95,7 @@ impl<S: Space> PairFrame<S> {
         Some((other - face.point).dot(face.outward))
     }
 
-    /// Returns the decision of the face of a pair; `None` if its contacts count everywhere.
+    /// Returns the contact filter of a pair; `None` for [`Counts::Everywhere`].
     #[inline(always)]
     pub(crate) fn at_face(&self, model: &Model<S>, pair: &ContactPair) -> Option<AtFace<S>> {
         let before = S::Real::zero().lt(self.before(model, pair)?);

@@ -1,29 +1,29 @@
-//! Contact pairs of a model: listed one by one, or by the kinds of the bodies.
+//! Contact pairs of a model, listed one by one or generated from the kinds of the bodies.
 
 use std::ops::Range;
 
 use crate::body::BodyId;
 use crate::model::ContactPair;
 
-/// The contact pairs of a model, in the order in which their forces are summed: two bodies at a time.
+/// Contact pairs of a model, grouped by their two bodies, in the order in which forces are summed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Pairs {
-    /// One by one.
+    /// Every pair is stored.
     Listed {
         /// The pairs.
         pairs: Vec<ContactPair>,
-        /// The pairs of two bodies, one after the other.
+        /// The range of pairs of every two bodies that touch, in order.
         couples: Vec<Couple>,
     },
-    /// The pairs of two bodies depend on their kinds: so thousands of bodies need no list of all their pairs, which
-    /// is quadratic.
+    /// The pairs of two bodies depend only on their kinds, so no list of all pairs is stored, whose length would be
+    /// quadratic in the number of bodies.
     OfKinds {
         /// The kind of every body.
         kinds: Vec<usize>,
-        /// The pairs of two bodies, by the kind of the body with the lower ID and then by that of the other; the
-        /// former is body 0 here, the latter body 1.
+        /// The pairs of two bodies, indexed by the kind of the body with the lower ID and then by the kind of the other
+        /// body. In these pairs the former has the ID 0 and the latter the ID 1.
         meetings: Vec<Vec<Vec<ContactPair>>>,
-        /// Stride of the pair numbers per two bodies.
+        /// Number of pair numbers reserved for every two bodies.
         most: usize,
     },
 }
@@ -60,8 +60,7 @@ impl Pairs {
         Self::Listed { pairs, couples }
     }
 
-    /// Creates the pairs of bodies of these kinds, numbered from 0; `meet` returns those of two bodies, the lower ID
-    /// first, and the same for any others of their kinds.
+    /// Creates the pairs of bodies from their kinds and `meet`; see [`Model::of_kinds`](crate::model::Model::of_kinds).
     pub(crate) fn of_kinds(
         kinds: Vec<usize>,
         meet: &dyn Fn([BodyId; 2]) -> Vec<ContactPair>,
@@ -112,7 +111,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the numbers of the pairs of two bodies, the lower ID first.
+    /// Returns the numbers of the pairs of two bodies, given with the lower ID first.
     pub(crate) fn of_couple(&self, bodies: [BodyId; 2]) -> Range<usize> {
         match self {
             Self::Listed { couples, .. } => couples
@@ -135,8 +134,8 @@ impl Pairs {
         (0..listed).chain(couples.flat_map(|couple| self.of_couple(couple)))
     }
 
-    /// Calls `report` for each kind of pair, with the candidate contactors and the candidate targets, any of which may
-    /// meet.
+    /// Calls `report` once for each kind of pair, with all bodies that may be its contactor and all that may be its
+    /// target.
     pub(crate) fn each(&self, report: &mut TellMeeting<'_>) {
         match self {
             Self::Listed { pairs, .. } => {
@@ -152,7 +151,7 @@ impl Pairs {
                 for (lower, row) in meetings.iter().enumerate() {
                     for (higher, pairs) in row.iter().enumerate() {
                         for pair in pairs {
-                            // Two different bodies, even of one kind.
+                            // First and last member, so that the two bodies differ even if they are of one kind.
                             let bodies =
                                 [members[lower][0], members[higher][members[higher].len() - 1]];
                             let of = [&members[lower], &members[higher]];

@@ -1,10 +1,9 @@
 //! The scalar of the physics: one `f64`, or many in lockstep.
 //!
-//! Every force, shape and integrator is written once against [`Real`]. With `f64` it is one run; with a bundle of
-//! lanes it is as many runs of one topology side by side.
-//! To keep a lane equal to a single run, bit for bit, a branch on a number becomes a [`Mask`] and a [`Real::select`],
-//! a block may be skipped only when no lane needs it, and no operation may differ between the two (no fused
-//! multiply-add, no platform sine).
+//! Every force, shape and integrator is written once, generic over [`Real`]. With `f64` it computes one run; with a
+//! bundle of lanes it computes as many runs of one topology side by side. To keep a lane equal to a single run, bit for
+//! bit, a branch on a number becomes a [`Mask`] and a [`Real::select`], a block may be skipped only when no lane needs
+//! it, and no operation may differ between the two (no fused multiply-add, no platform sine).
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
@@ -53,9 +52,9 @@ pub trait Real:
     /// Number of lanes.
     const LANES: usize;
 
-    /// Runs work on these numbers, compiled for the unit that computes them.
+    /// Runs `work`, compiled for the vector unit that computes these numbers.
     ///
-    /// All arithmetic of a bundle must be inlined into such a scope: outside of one it is correct but slow.
+    /// All arithmetic on bundles should be inlined into such a scope; elsewhere it is correct but slow.
     #[inline(always)]
     fn scope<T>(work: impl FnOnce() -> T) -> T {
         work()

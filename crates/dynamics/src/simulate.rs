@@ -1,4 +1,4 @@
-//! The run loop: steps, energy balance, observers, and the end of a run.
+//! The run loop: time steps, energy balance, observers, and the end of a run.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +11,7 @@ use crate::real::Real;
 use crate::space::{Linear, Space};
 use crate::state::State;
 
-/// Observer of every accepted step; may stop the run.
+/// Observer of every accepted step, which may stop the run.
 pub trait Observer<S: Space> {
     /// Receives an accepted state and its forces.
     fn observe(
@@ -66,8 +66,8 @@ where
 pub struct Simulation {
     /// The method.
     pub method: Method,
-    /// Time step (s), which impacts divide if the model says so ([`Substepping`]); for an adaptive method, the first
-    /// and the maximum step.
+    /// Time step (s), divided during impacts if the model has [`Substepping`]; for an adaptive method, the first and
+    /// the maximum step.
     pub time_step: f64,
     /// End time (s).
     pub end_time: f64,
@@ -87,8 +87,8 @@ pub enum Finish {
 pub enum RunError {
     /// A number is not finite.
     #[error(
-        "the step failed at t = {time:.6} s: body \"{body}\" left the finite numbers; try a step \
-         below {time_step:.2e} s"
+        "the step failed at t = {time:.6} s: the motion of body \"{body}\" is no longer finite; try a \
+         step below {time_step:.2e} s"
     )]
     NotFinite {
         /// Time (s).
@@ -97,7 +97,7 @@ pub enum RunError {
         body: String,
         /// Time step (s).
         time_step: f64,
-        /// Number of steps accepted before.
+        /// Number of steps accepted before the failure.
         steps: u64,
     },
 }
@@ -105,7 +105,7 @@ pub enum RunError {
 /// Totals of a run.
 #[derive(Clone, Debug)]
 pub struct RunTotals<S: Space> {
-    /// Reason for its end.
+    /// Reason for the end of the run.
     pub finish: Finish,
     /// Number of accepted steps.
     pub steps: u64,
@@ -115,11 +115,11 @@ pub struct RunTotals<S: Space> {
 
 /// Runs `state` to the end time, or until the observer stops it.
 ///
-/// The observer also receives the initial state. With a fixed step the times are whole multiples of it, or of its
+/// The observer also receives the initial state. With a fixed step, times are whole multiples of the step or of its
 /// substeps, counted from the start, so that rounding does not accumulate; the last step is shortened to end on time.
 ///
 /// # Errors
-/// If a pose or twist is not finite; `state` is then that state.
+/// If a pose or twist is not finite; `state` is then the failed state.
 pub fn simulate<S: Space<Real = f64>>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -139,7 +139,7 @@ pub fn simulate<S: Space<Real = f64>>(
     let start = state.time;
     let mut steps = 0_u64;
     let mut next_step = simulation.time_step;
-    // A remainder below this is due to rounding, not a step.
+    // A shorter remainder is due to rounding and is not a step.
     let sliver = 1e-9 * simulation.time_step;
     let mut finish = Finish::EndTime;
     if observer.observe(model, state, scratch, &energy).is_break() {
@@ -171,14 +171,14 @@ pub fn simulate<S: Space<Real = f64>>(
 pub(crate) struct StepTimes<R: Real> {
     /// Number of shortest steps since the start.
     count: R,
-    /// Number of shortest steps in a whole step, and in a short one.
+    /// Number of shortest steps in a whole step and in an ordinary substep.
     whole: R,
     short: R,
     /// The shortest step (s).
     shortest: R,
     time_step: R,
-    /// `true` if an impact in progress was hard: the step length changes before and after an impact only, since a
-    /// change within one would cost energy.
+    /// Lanes in which the current impact is hard. The step length changes only before and after an impact, since a
+    /// change during it would cause an error of energy.
     hard: R::Mask,
 }
 
@@ -200,13 +200,14 @@ impl<R: Real> StepTimes<R> {
         (self.whole, self.short) = (R::splat(1.0), R::splat(1.0));
     }
 
-    /// Returns the time (s) for which impacts are predicted; zero if no step is divided.
+    /// Returns the time (s) ahead for which impacts are predicted; zero if no step is divided.
     pub(crate) fn lookahead(&self) -> R {
         let divided = self.short.lt(self.whole);
         R::select(divided, R::splat(LOOKAHEAD) * self.time_step, R::zero())
     }
 
-    /// Returns the time (s) since the start at which the next step ends, for lanes that need substeps, hard or not.
+    /// Returns the time (s) since the start at which the next step ends, from the lanes that need substeps and the
+    /// lanes with a hard impact.
     #[inline(always)]
     pub(crate) fn next(&mut self, needs_substeps: R::Mask, is_hard: R::Mask) -> R {
         self.hard = needs_substeps & (self.hard | is_hard);
@@ -218,8 +219,10 @@ impl<R: Real> StepTimes<R> {
 
 lanewise!(struct StepTimes<R> { count, whole, short, shortest, time_step } masks { hard });
 
-/// Names the first body of a lane that is not finite, or else the one that moves most: its energy is the first to
-/// overflow.
+/// Returns the error of a lane whose numbers are no longer finite.
+///
+/// The error names the first body whose motion is not finite or, if there is none, the body that moves most, since its
+/// energy overflows first.
 pub(crate) fn lost_body<S: Space>(
     model: &Model<S>,
     state: &State<S>,

@@ -72,7 +72,7 @@ proptest! {
             let there = law.force(depth * (1.0 + d), rate * (1.0 + r)).total;
             prop_assert!((there - here).abs() <= 1e-8 * scale);
         }
-        // Nor does it jump where the rate passes through zero.
+        // The force does not jump either where the rate passes through zero.
         let (in_, out) = (law.force(depth, 1e-12).total, law.force(depth, -1e-12).total);
         prop_assert!((in_ - out).abs() <= 1e-6 * law.force(depth, 0.0).total);
     }
@@ -203,9 +203,9 @@ fn restitution_formulas_give_the_table() {
 
 /// Result of one bounce of a disc.
 struct Bounce {
-    /// Ratio of the speeds (m/s) after and before; `None` if it stays.
+    /// Ratio of the speeds after and before the bounce; `None` if the disc stays on the floor.
     restitution: Option<f64>,
-    /// Deepest penetration (m).
+    /// Largest penetration (m).
     deepest: f64,
     /// Time (s) from touch to separation.
     duration: f64,

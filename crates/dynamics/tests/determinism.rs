@@ -169,8 +169,8 @@ fn a_step_far_too_long_ends_with_the_time_and_the_body() {
         assert_eq!(
             error.to_string(),
             format!(
-                "the step failed at t = {time:.6} s: body \"squeezed\" left the finite numbers; try \
-                 a step below 1.00e-2 s"
+                "the step failed at t = {time:.6} s: the motion of body \"squeezed\" is no \
+                 longer finite; try a step below 1.00e-2 s"
             )
         );
     }

@@ -108,7 +108,7 @@ fn between_stops_a_mass_goes_to_and_fro_in_the_time_that_gap_and_spring_take() {
 
 #[test]
 fn the_damper_of_a_stop_acts_on_approach_only() {
-    // Of the speed-gap law: e = exp(-ζ/√(1−ζ²) atan(√(1−ζ²)/ζ)), from which a rebound without damping follows.
+    // Restitution of the speed-gap law, with a rebound without damping: e = exp(-ζ/√(1−ζ²) atan(√(1−ζ²)/ζ)).
     let (speed, omega, ratio) = (0.4, 50.0, 0.3_f64);
     let stops = Guide {
         gap: 0.02,
@@ -150,7 +150,7 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
     assert!((balance.damped / (0.25 * 0.5 * MASS * speed * speed) - 1.0).abs() < 2e-3);
     assert!(balance.residual_ratio() < 1e-3);
 
-    // Lifted beyond its reach it releases for good, otherwise it holds.
+    // A point that is lifted beyond the reach is released permanently; below it the guide holds.
     for (reach, gone) in [(0.1, true), (0.4, false)] {
         let lifted = broken(Guide { reach, ..spring.clone() }, Vec2::new(speed, 1.0));
         assert_eq!(lifted.0, gone, "reach {reach} m");
@@ -159,7 +159,8 @@ fn a_guide_breaks_above_its_strength_and_lets_go_beyond_its_reach() {
 
 #[test]
 fn a_tie_that_yields_keeps_what_it_gave_and_the_energy_balances() {
-    // Caught after a slack: elastic up to the yield force, then plastic until the energy is absorbed.
+    // A mass is caught after a slack: the tie is elastic up to the yield force, then plastic until the energy is
+    // absorbed.
     let (k, yields_at, slack, speed) = (1e5, 2e3, 0.05, 1.2);
     let tie = Strap {
         link: link([0, 1], [Vec2::new(-1.0, 3.0), Vec2::default()]),

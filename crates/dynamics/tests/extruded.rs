@@ -1,4 +1,4 @@
-//! A plane stack, extruded into space, moves there as in its plane.
+//! A plane stack that is extruded into space moves as it does in the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -25,7 +25,7 @@ const HALF: f64 = 0.62;
 const POST: f64 = 0.02;
 const TOP: f64 = 0.08;
 
-/// Height (m) of the axis of a barrel above that of the beams that carry it.
+/// Height (m) of the axis of a barrel above the axes of the beams that carry it.
 const AXIS: f64 = 0.379;
 
 /// Distance (m) of the planes of contact from the middle.
@@ -124,7 +124,7 @@ fn drawn_out(levels: usize) -> Scene<Spatial> {
             })
             .collect(),
         nodes: tubes.into_iter().map(Nodes::Whole).collect(),
-        // The other moments do not matter while it stays in its plane.
+        // The other moments do not matter while the body stays in its plane.
         ..spatial::free(&name, mass, Vec3::new(20.0, inertia, 25.0), place)
     };
     let mut bodies = vec![spatial::floor()];
@@ -155,7 +155,7 @@ fn drawn_out(levels: usize) -> Scene<Spatial> {
     Scene::of(Model::new(bodies, vec![laws()], pairs, down).unwrap())
 }
 
-/// A motion of the plane in space.
+/// A plane ground motion in space.
 struct Across(Shake);
 
 impl Drive<Spatial> for Across {
@@ -165,8 +165,8 @@ impl Drive<Spatial> for Across {
     }
 }
 
-/// Distance (m) of the two stacks until something fell or the time (s) was over, and distance of the one in space
-/// from its plane; displacement and time of a fall.
+/// Results of a comparison: the largest distance (m) of the two stacks until a fall or the end, the distance (m) of the
+/// spatial stack from its plane, and displacement (m) and time (s) of a fall.
 struct Apart {
     off: f64,
     aside: f64,
@@ -175,8 +175,8 @@ struct Apart {
     fell: bool,
 }
 
-/// Both start from the same positions, unloaded: friction at rest depends on the path to it, and settling takes
-/// another path in space.
+/// Compares the stack in the plane and in space. Both start from the same unloaded positions, since friction at rest
+/// depends on the path to it, and settling takes another path in space.
 fn compare(levels: usize, shake: Shake, most: f64) -> Apart {
     let (mut plane, mut space) = (flat(levels), drawn_out(levels));
     let start: Vec<Vec2> = plane.state.poses.iter().map(|pose| pose.position).collect();

@@ -1,4 +1,4 @@
-//! Equal bodies flush with each other: corners, edges and faces that coincide, or nearly so.
+//! Equal bodies that are flush with each other: corners, edges and faces coincide exactly or nearly.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -61,7 +61,7 @@ fn rests(what: &str, bodies: Vec<Body<Planar>>, seconds: f64) -> Vec<f64> {
     let all = [vec![floor()], bodies].concat();
     let pairs = barrelstack_scenes::scene::all_pairs(&all)
         .into_iter()
-        // Of nodes at corners those of the upper body are tested, as in a scene of ordered kinds.
+        // Corner nodes are tested on the upper body only, as in a scene whose interfaces name the kinds in order.
         .filter(|pair| {
             !matches!(all[pair.contactor].nodes[..], [Nodes::Fixed(_)])
                 || pair.contactor > pair.target
@@ -96,7 +96,7 @@ fn sinks_by_its_springs(what: &str, sunk: &[f64], tolerance: f64) {
 fn a_box_rests_on_an_equal_box_wherever_it_stands() {
     let square = || Shape::Polygon(rectangle(0.5, 0.5));
     for touching in [Touching::Exact, Touching::Corners] {
-        // The corners of the upper box alone bear it, so all of them must be on the lower one.
+        // Only the corners of the upper box carry it, so all of them must be on the lower box.
         let most = if touching == Touching::Corners { 1e-10 } else { 1.0 };
         let wanted = ASIDE.into_iter().filter(|aside| *aside <= most);
         for aside in wanted.flat_map(|aside| [aside, -aside]) {
@@ -109,7 +109,7 @@ fn a_box_rests_on_an_equal_box_wherever_it_stands() {
                         body(square(), touching, aside, 0.75, turn),
                     ];
                     let sunk = rests(&what, bodies, 0.05);
-                    // Beside the middle the loads of both springs differ by this amount.
+                    // At an offset the loads of both springs differ by about this amount.
                     sinks_by_its_springs(&what, &sunk, 1e-9 + 1e-3 * aside.abs());
                 }
             }

@@ -75,7 +75,7 @@ fn what_rests_is_held_by_the_static_coefficient_and_what_slides_by_the_kinetic()
     let expected = GRAVITY * (libm::sin(slope) - 0.3 * libm::cos(slope));
     assert_close("acceleration", end - start, expected, 1e-10); // measured 1.4e-12
 
-    // Thrown uphill it slows down, turns, and is caught by static friction.
+    // A block thrown uphill slows down, reverses, and is held by static friction.
     let mut thrown = sledge(law, slope, -0.5);
     let (_, place) = run(&mut thrown, 3.0, 2e-4);
     let (speed, end) = run(&mut thrown, 5.0, 2e-4);
@@ -220,7 +220,7 @@ proptest! {
         if let FrictionLaw::Coulomb { tangential_stiffness, .. } = law {
             let spring = tangential_stiffness * weight * kept.displacement;
             prop_assert!(spring.abs() <= largest_coefficient(&law) * normal * (1.0 + 1e-12));
-            // It never reverses or grows, and a second commit changes nothing.
+            // The displacement never reverses or grows, and a second commit changes nothing.
             prop_assert!(kept.displacement * stick.displacement >= 0.0);
             prop_assert!(kept.displacement.abs() <= stick.displacement.abs());
             let spring_alone = law.force::<Planar>(kept, 0.0, normal, weight);

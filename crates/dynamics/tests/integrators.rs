@@ -1,4 +1,4 @@
-//! One suite for every method: order, energy, times, tolerance, and impacts.
+//! Tests of every integration method: order, energy, times, tolerance, and impacts.
 
 use std::ops::ControlFlow;
 
@@ -13,8 +13,8 @@ const MASS: f64 = 100.0;
 const STIFFNESS: f64 = 1e6;
 const RADIUS: f64 = 0.35;
 
-/// Returns the order of a method on smooth motion; the adaptive one runs at a fixed step, with a tolerance that is
-/// never exceeded.
+/// Returns the order of a method on smooth motion; the adaptive method takes fixed steps, since its tolerance is never
+/// exceeded.
 fn order(method: Method) -> f64 {
     match method {
         Method::SemiImplicitEuler => 1.0,
@@ -211,7 +211,7 @@ fn a_tighter_tolerance_gives_a_smaller_error() {
     for tolerance in [1e-6, 1e-8, 1e-10] {
         let mut scene = swinging(law);
         let method = Method::BogackiShampine { tolerance };
-        // The first step is far too long: it must be rejected without a trace.
+        // The first step is far too long; it must be rejected without any effect.
         let totals = scene.by(method).run(&Still, 0.05, end).unwrap();
         let error = (scene.state.poses[1].position.z - height).abs();
         println!("tolerance {tolerance:e}: error {error:.1e} in {} steps", totals.steps);
@@ -230,8 +230,7 @@ fn a_tighter_tolerance_gives_a_smaller_error() {
 
 #[test]
 fn a_refused_step_leaves_no_trace() {
-    // From the same start, a first step that is rejected and shortened to some length, and that length given at once,
-    // have the same bits.
+    // A first step that is rejected and shortened gives the same bits as a first step of the shortened length.
     let law = NormalLaw::KelvinVoigt { stiffness: STIFFNESS, damping: 1e3 };
     let method = Method::BogackiShampine { tolerance: 1e-8 };
     let first = |step: f64| {

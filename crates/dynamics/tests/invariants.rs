@@ -55,7 +55,7 @@ proptest! {
             }
             assert!(force.length() < 1e-13 * size, "{force:?}"); // measured 4.5e-16
             assert!(turn.abs() < 1e-13 * size, "{turn}"); // measured 6.1e-16
-            // Pair by pair: force and moment of the contacts are those of both bodies.
+            // For every pair, force and moment of the contacts equal those on both bodies.
             let mut sums = vec![(Vec2::default(), 0.0); model.bodies().len()];
             for contact in &scratch.contacts {
                 touched += 1;
@@ -66,8 +66,8 @@ proptest! {
                 assert!(contact.friction_force.abs() <= limit * (1.0 + 1e-15));
                 let (force, point) = contact_force(&model, state, scratch, contact);
                 let pair = model.pair(contact.pair);
-                // The force acts on both bodies at the target's surface, or if the contact is exact, midway
-                // between that and the contactor's.
+                // The force acts on both bodies at the target's surface or, if the contact is exact, midway between the
+                // surfaces of target and contactor.
                 let surface = &model.bodies()[pair.target].surfaces[pair.surface].surface;
                 let depth = match &model.bodies()[pair.contactor].nodes[pair.nodes] {
                     Nodes::Fixed(_) => 0.0,
@@ -137,7 +137,8 @@ proptest! {
             );
             let sign = [-1.0, 1.0, -1.0, -1.0, 1.0, -1.0];
             for k in 0..6 {
-                // Not to the bit: a mirrored rectangle measures along its sides from their other ends.
+                // The results are not bit-identical, since a mirrored rectangle measures along its sides from the other
+                // ends.
                 let error = (this[k] - sign[k] * other[k]).abs();
                 prop_assert!(error < 4e-12, "{i}, {k}: {error:e}"); // measured 6.0e-14
             }
@@ -147,7 +148,7 @@ proptest! {
     #[test]
     fn a_scene_four_times_as_large_moves_alike_bit_for_bit(seed in any::<u64>()) {
         // Time ×2, mass ×64, forces ×64, equal gravity; all factors are powers of two. The margin of the near list is
-        // in meters and does not scale: it must not affect a bit.
+        // in meters and does not scale: it must not change a single bit.
         let ground = Shake::Swing { amplitude: 0.03, omega: 9.0 };
         let larger_ground = Shake::Swing { amplitude: 4.0 * 0.03, omega: 4.5 };
         for method in [Method::SemiImplicitEuler, Method::VelocityVerlet, Method::RungeKutta4] {
@@ -240,7 +241,7 @@ proptest! {
                 body
             })
             .collect();
-        // The same two bodies meet in the same roles, whatever their numbers.
+        // The contactor and the target of every pair remain the same, whatever the order of the bodies.
         let place = |i: usize| order.iter().position(|&k| k == i).unwrap();
         let pairs: Vec<ContactPair> = all_pairs(&bodies)
             .into_iter()
@@ -309,7 +310,7 @@ fn near_list_is_plain(scene: impl Fn() -> Scene, drive: &impl Drive<Planar>, end
 
 #[test]
 fn the_near_list_sees_a_bar_that_turns_on_the_spot() {
-    // Its center stays and its tip sweeps onto a disc that is not in the first list.
+    // The center of the bar stays in place, and its tip sweeps onto a disc that is not in the first list.
     let scene = || {
         let mut bar = finely_noded_block("bar", (2.0, 0.1), 40.0, 0.1, pose(0.0, 0.0, 0.0));
         bar.twist.angular = 0.5;

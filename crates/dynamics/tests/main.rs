@@ -1,4 +1,4 @@
-//! Properties of the dynamics: symmetries, bits, energy balance, limits of laws, refusals.
+//! Tests of the dynamics: symmetries, bit-identity, energy balance, limits of laws, and errors.
 //!
 //! One program, since each would compile the physics anew.
 

@@ -15,7 +15,7 @@ fn bordeaux() -> Barrel {
     Barrel::new(0.945, 0.2775, 0.345, 0.01).unwrap()
 }
 
-/// Returns a barrel of 225 liters with walls of 25 mm, its heads at the position of the original.
+/// Returns a barrel of 225 liters with walls of 25 mm, and with its heads at the position of the original.
 fn cask() -> Cask {
     Cask { barrel: bordeaux(), wall: 0.025, chime: 0.063, wood: 48.0, density: 982.0 }
 }
@@ -84,7 +84,7 @@ fn a_body_of_revolution_has_its_closed_form() {
     let exact = Vec3::new(half * half / 3.0, 0.25 * radius * radius, 0.25 * radius * radius) * 2.0;
     let off = (diagonal(&bulk) - exact).length();
     assert!(off < 1e-8, "{off:e}"); // measured 1.3e-9, by the bulge
-    // And its moments are the integrals of its sections, by another rule.
+    // The moments equal the integrals over the sections by another quadrature rule.
     let barrel = bordeaux();
     let end = barrel.half_length + barrel.rounding;
     let parts = 400_000;
@@ -127,7 +127,7 @@ fn parts_add_up_to_the_whole_they_make() {
     for (row, exact) in sum.second.iter().zip(whole.second) {
         assert!((*row - exact).length() < 1e-14);
     }
-    // Its principal moments are those of the block, in any order.
+    // The principal moments are those of the block, in any order.
     let (moments, turned) = sum.principal();
     let mut found = [moments.x, moments.y, moments.z];
     let square = half.times(half);
@@ -154,7 +154,7 @@ fn a_barrel_weighs_and_turns_by_its_fill() {
     assert!((frozen.mass - 48.0 - 982.0 * cask.capacity()).abs() < 1e-10);
     assert_eq!(frozen.mass, fluid.mass);
     let moments = |bulk: &Bulk| bulk.principal().0;
-    // Wine does not turn about the axis: only the wood does.
+    // Wine does not rotate about the axis, only the wood does.
     assert!((moments(&fluid).x - moments(&empty).x).abs() < 1e-12);
     // 3.9 and 6.0, 14.1 and 22.6, 4.0 and 8.5 kg m² for parabolic staves and thicker heads further out.
     for (bulk, about, across) in [(&empty, 3.9, 6.0), (&frozen, 14.1, 22.6), (&fluid, 4.0, 8.5)] {
@@ -183,7 +183,7 @@ fn wine_at_rest_in_a_barrel_that_lies_is_at_its_bottom() {
         let wine = cask.wine_at_rest(filled);
         let share = wine.mass / (982.0 * cask.capacity());
         assert!((share - filled).abs() < 1e-9, "{filled}: {share}");
-        // The level below which there are as many cells.
+        // Bisection for the level below which there are as many cells.
         let room = |point: Vec3| {
             let r = (point.y * point.y + point.z * point.z).sqrt();
             let stave = (1.6875_f64 * 1.6875 - point.x * point.x).sqrt() - 1.3425 - 0.025;

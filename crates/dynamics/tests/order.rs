@@ -5,7 +5,7 @@
 use barrelstack_dynamics::Space;
 use barrelstack_scenes::order::{Order, planar_heap, planar_pairs, spatial_heap, spatial_pairs};
 
-/// Asserts that bodies move in the reverse order as in the given one, within a distance (m) over the first second.
+/// Asserts that bodies in reverse order move as in the given order, within a distance (m) over the first second.
 fn same<S: Space<Real = f64>>(scenes: impl IntoIterator<Item = Order<S>>, limit: f64) {
     for scene in scenes {
         let apart = scene.reversal(1e-4, 1.0).unwrap();

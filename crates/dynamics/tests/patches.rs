@@ -1,4 +1,4 @@
-//! Lines and faces that solids share: forces and sticks vary as smoothly as the poses.
+//! Line and face contacts of solids: forces and sticks vary as smoothly as the poses.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -24,27 +24,28 @@ fn tube(half_length: f64) -> Hull {
     Hull::Capsule(Capsule { half_length, radius: 0.02 })
 }
 
-/// Returns a fixed body, about which another is moved.
+/// Returns a fixed body, around which another body is moved.
 fn fixed(hull: Option<Hull>) -> Body<Spatial> {
     let Some(hull) = hull else { return floor() };
     let one = Vec3::new(1.0, 1.0, 1.0);
     Body { motion: Motion::Prescribed, ..solid("target", hull, 1.0, one, Vec3::default()) }
 }
 
-/// A pair of bodies, the second of which is moved.
+/// A fixed body and a moving body.
 struct Couple {
     model: Model<Spatial>,
     state: State<Spatial>,
     scratch: Scratch<Spatial>,
 }
 
-/// Contact at a pose: force and moment as depths (m), and positions and load shares of the sticks.
+/// Contact of the two bodies at a pose: force and moment, expressed as depths (m), and positions and load shares of the
+/// sticks.
 #[derive(Clone, Debug)]
 struct Seen {
     force: Vec3,
     moment: Vec3,
     energy: f64,
-    /// Position of every stick and the force on it, both as lengths (m).
+    /// Position (m) of every stick and its force, expressed as a depth (m).
     sticks: Vec<(Vec3, f64)>,
 }
 
@@ -82,8 +83,8 @@ impl Couple {
 }
 
 impl Seen {
-    /// Returns the difference (m) of two contacts: forces and moments as depths, and positions of sticks weighted by
-    /// load, since an unloaded one has no memory.
+    /// Returns the difference (m) of two contacts: of forces and moments as depths, and of the positions of sticks.
+    /// Positions are weighted by load, since an unloaded stick has no memory.
     fn jump(&self, other: &Self) -> f64 {
         let mut jump =
             (self.force - other.force).length().max((self.moment - other.moment).length());
@@ -160,7 +161,7 @@ fn what_a_standing_barrel_feels_does_not_jump_along_a_thousand_paths() {
     let mut couple = Couple::new(None, bordeaux(), ELASTIC);
     let mut worst = 0.0_f64;
     for path in 0..1000 {
-        // Leans from one side to any other, through upright or past it by a tiny or a large amount.
+        // The barrel leans from one side to another, through the upright pose or past it by a tiny or a large amount.
         let scale = [1e-9, 1e-4, 3e-3, 0.03, 0.5][path % 5];
         let (from, to) = (dice.vector() * scale, dice.vector() * scale);
         let from = if path % 10 < 5 { -to } else { from };
@@ -181,20 +182,20 @@ fn what_a_standing_barrel_feels_does_not_jump_along_a_thousand_paths() {
     assert!(worst < 1e-9, "{worst:e}"); // measured 7e-13
 }
 
-/// A body that lies flat on another and is moved there.
+/// A body that lies flat on another body and is moved on it.
 struct Lying {
     target: Hull,
     hull: Hull,
-    /// Out of the target.
+    /// Normal out of the target.
     outward: Vec3,
-    /// Its orientation, and the point of it (m) about which it is rotated.
+    /// Orientation of the body, and the point of it (m) about which it is rotated.
     base: (Quaternion, Vec3),
     /// Maximum lateral displacement (m) and rotation (rad).
     ways: (Vec3, Vec3),
 }
 
-/// Returns the largest jump (m) along a thousand paths on which a body is rotated out of the patch that it shares
-/// with another, by a tiny or a large amount, and pushed aside, about a millimeter deep.
+/// Returns the largest jump (m) along a thousand paths on which a body, about a millimeter deep, is rotated out of the
+/// patch by a tiny or a large amount, and displaced laterally.
 fn paths_of(lying: &Lying, seed: u64) -> f64 {
     let Lying { target, hull, outward, base, ways } = *lying;
     let mut dice = Dice(seed);
@@ -295,7 +296,7 @@ fn what_a_tube_along_or_across_a_stave_feels_does_not_jump_along_a_thousand_path
     }
 }
 
-/// Returns a plate that is longer than the width of the body on it, which therefore overhangs its ends.
+/// Returns a plate on which another body lies and overhangs the ends of the plate.
 fn plate() -> Hull {
     Hull::Block(Block { half: Vec3::new(0.05, 0.4, 0.4), rounding: 0.02 })
 }
@@ -308,7 +309,7 @@ fn what_a_tube_on_a_plate_feels_does_not_jump_along_a_thousand_paths() {
             hull: tube(0.3),
             outward: Vec3::new(1.0, 0.0, 0.0),
             base: (Quaternion::turn(Vec3::new(0.0, FRAC_PI_2, 0.0)), Vec3::default()),
-            // Not along an edge, where it would lie on a line that begins at once.
+            // The body is not aligned with an edge, where a line contact would begin suddenly.
             ways: (Vec3::new(0.0, 0.2, 0.6), Vec3::new(0.3, 0.1, 1.0)),
         },
         41,
@@ -324,7 +325,7 @@ fn what_a_head_on_a_plate_feels_does_not_jump_along_a_thousand_paths() {
             hull: bordeaux(),
             outward: Vec3::new(1.0, 0.0, 0.0),
             base: (Quaternion::identity(), Vec3::new(-0.4725, 0.0, 0.0)),
-            // With all of the head on the plate: over an edge it leans on a line within its face.
+            // The whole head stays on the plate; over an edge it would lean on a line within its face.
             ways: (Vec3::new(0.0, 0.09, 0.09), Vec3::new(1.0, 0.2, 0.2)),
         },
         43,
@@ -352,8 +353,8 @@ fn what_a_barrel_on_a_tube_by_its_head_feels_is_what_the_tube_feels() {
     assert!(worst < 1e-12, "{worst:e}"); // measured 7e-16
 }
 
-/// Returns the deviation of forces from the slope of the energy, over the force, at a thousand poses in which one
-/// body lies on another, rotated by a tiny or a large amount, up to eight millimeters deep.
+/// Returns the largest relative deviation of forces from the slope of the energy, at a thousand poses in which one body
+/// lies on another, rotated by a tiny or a large amount, up to eight millimeters deep.
 fn off_slope(lying: &Lying, seed: u64) -> f64 {
     let Lying { target, hull, outward, base, ways } = *lying;
     let mut dice = Dice(seed);
@@ -440,7 +441,7 @@ fn what_lies_flat_is_pushed_as_its_energy_falls() {
 
 #[test]
 fn energy_of_what_lies_flat_is_that_of_springs_at_its_ends() {
-    // A tube on an equal one, leaning by less than its depth: both ends bear.
+    // A tube on an equal tube, leaning by less than its depth: both ends are in contact.
     let mut couple = Couple::new(Some(tube(0.5)), tube(0.5), ELASTIC);
     for lean in [0.0, 1e-4, -7e-4] {
         let turn = Quaternion::turn(Vec3::new(0.0, lean, 0.0));
@@ -449,10 +450,10 @@ fn energy_of_what_lies_flat_is_that_of_springs_at_its_ends() {
         let exact: f64 = ends.iter().map(|depth| 0.5 * depth * depth).sum();
         assert!((seen.energy / exact - 1.0).abs() < 2e-5, "{lean}: {}", seen.energy / exact); // measured 1.1e-5
         let moment = 0.5 * (ends[1] - ends[0]);
-        // To first order in the lean.
+        // The exact value is of first order in the lean.
         assert!((seen.moment.y - moment).abs() < 1e-7, "{lean}: {} {moment}", seen.moment.y); // measured 4e-9
     }
-    // A head on an equal one: four points of its rim, in any direction of lean.
+    // A head on an equal head acts on four points of its rim, in any direction of lean.
     let mut couple = Couple::new(Some(bordeaux()), bordeaux(), ELASTIC);
     let radius = 0.269_982_558_045_203;
     for (lean, heading) in [(0.0, 0.0), (1e-3, 0.3), (1e-3, 2.0), (2e-3, 4.0)] {
@@ -488,7 +489,7 @@ fn a_standing_barrel_resists_a_twist_by_the_radius_of_its_head() {
     let gravity = Vec3::new(0.0, 0.0, -9.81);
     let mut scene: Scene<Spatial> =
         Scene::new(vec![floor(), body], interface(law, friction), gravity).unwrap();
-    // Once it slides the moment is μ m g r, and it slows down by that over its moment of inertia.
+    // Once the head slides, the moment is μ m g r, and the barrel slows down by this moment over its moment of inertia.
     scene.run(&barrelstack_dynamics::Still, 1e-5, 0.004).unwrap();
     let before = scene.state.twists[1].angular.z;
     scene.run(&barrelstack_dynamics::Still, 1e-5, 0.012).unwrap();

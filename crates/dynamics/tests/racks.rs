@@ -19,8 +19,8 @@ fn bordeaux() -> Barrel {
     Barrel::new(0.945, 0.2775, 0.345, 0.01).unwrap()
 }
 
-/// Returns a rack for two barrels side by side along `y`: two beams across them on the floor or on the barrels below,
-/// with rails along `x` that form their cradles.
+/// Returns a rack for two barrels side by side along `y`: two beams across the barrels, on the floor or on the barrels
+/// below, and rails along `x` that form the cradles.
 fn rack(name: &str, height: f64, reversed: bool) -> Body<Spatial> {
     let along = Rotation3::identity();
     let across = yaw(FRAC_PI_2).matrix();
@@ -53,7 +53,7 @@ fn barrel(name: &str, y: f64, height: f64) -> Body<Spatial> {
     solid(name, Hull::Barrel(bordeaux()), bulk.mass, bulk.principal().0, place)
 }
 
-/// Returns levels of two barrels on racks.
+/// Returns a stack with a number of levels, each with a rack and two barrels.
 fn stack(levels: usize, reversed: bool) -> Scene<Spatial> {
     let mut bodies = vec![floor()];
     let mut pairs: Vec<ContactPair> = vec![];
@@ -106,7 +106,7 @@ fn a_stack_of_racks_and_barrels_settles_and_its_seats_bear_its_weight() {
         let seats =
             scene.scratch.contacts.iter().filter(|c| scene.model.pair(c.pair).contactor == top);
         assert_eq!(seats.count(), 2);
-        // And it stays.
+        // The stack stays at rest.
         let mut scene = scene;
         let before = scene.state.poses[top].position;
         scene.run(&Still, 1e-4, 1.0).unwrap();
@@ -167,7 +167,7 @@ fn a_barrel_thrown_to_the_other_side_does_the_mirrored_bit_for_bit() {
 /// The reflections at the planes through the origin across `x` and across `y`.
 const REFLECTIONS: [Vec3; 2] = [Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0)];
 
-/// Mirrors a rotation vector: axial components change sign where those of a vector do not.
+/// Mirrors a rotation vector, whose components change sign where those of an ordinary vector do not.
 fn turn_mirrored(spin: Vec3, by: Vec3) -> Vec3 {
     -spin.times(by)
 }
@@ -177,7 +177,7 @@ fn rotation_mirrored(rotation: Rotation3, by: Vec3) -> Rotation3 {
     Rotation3 { rows: [x.times(by) * by.x, y.times(by) * by.y, z.times(by) * by.z] }
 }
 
-/// Mirrors a body, with its solids in their order.
+/// Mirrors a body; its solids keep their order.
 fn mirrored(body: &Body<Spatial>, by: Vec3) -> Body<Spatial> {
     let mut image = body.clone();
     image.pose.position = body.pose.position.times(by);

@@ -1,4 +1,4 @@
-//! Initial motion of a block on shaking ground.
+//! Initial motion of a block on shaking ground, compared with the theory of rigid blocks.
 
 use crate::common::{DOWN, GRAVITY, Scene, block, coulomb, floor, interface, pose};
 use barrelstack_dynamics::NormalLaw;
@@ -60,7 +60,7 @@ fn start(s: f64, beta: f64, friction: f64) -> Start {
 
 #[test]
 fn a_block_starts_to_move_as_friction_and_slenderness_say() {
-    // One percent to either side of every border.
+    // Tests one percent to either side of every border between regimes.
     for s in [0.2, 0.25, 1.0] {
         for share in [0.5, 0.9, 1.25, 1.5, 2.0, 3.0] {
             let beta = share * s;

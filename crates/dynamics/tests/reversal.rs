@@ -1,4 +1,4 @@
-//! Effect of the elastic stick on reversing slip, compared with rigid friction.
+//! Effect of elastic sticks on reversing slip, compared with rigid friction.
 
 #![allow(clippy::print_stdout, reason = "measured values are read with --nocapture")]
 
@@ -58,8 +58,8 @@ fn rigid_slip(drive: &Swing) -> f64 {
     slip
 }
 
-/// Returns the slip (m) of the block on elastic sticks with a total stiffness (N/m) of both its corners, damped by a
-/// fraction of the critical damping.
+/// Returns the slip (m) of the block on elastic sticks, from the total stiffness (N/m) of both corners and the fraction
+/// of critical damping.
 fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     let gravity = gravity_on_slope(SLOPE);
     let normal = NormalLaw::KelvinVoigt { stiffness: 1e7, damping: 3e4 };
@@ -75,7 +75,7 @@ fn elastic_slip(drive: &Swing, stiffness: f64, damped: f64) -> f64 {
     scene.state.poses[1].position.x - start
 }
 
-/// Returns the bias of slip over the root of the yield displacement relative to the amplitude.
+/// Returns the bias of the slip, divided by the square root of the yield displacement over the amplitude.
 fn bias(amplitude: f64, stiffness: f64, damped: f64) -> (f64, f64) {
     let drive = Swing(amplitude);
     let bias = elastic_slip(&drive, stiffness, damped) / rigid_slip(&drive) - 1.0;

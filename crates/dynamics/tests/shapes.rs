@@ -1,4 +1,4 @@
-//! Every shape against its boundary drawn independently: distance, normal, nodes, section, outline.
+//! Every shape compared with an independently computed boundary: distance, normal, nodes, section, and outline.
 
 use crate::common;
 
@@ -13,7 +13,7 @@ use barrelstack_dynamics::space::{Linear, Planar};
 use barrelstack_scenes::tumble::Random;
 use proptest::prelude::*;
 
-/// A shape and its boundary as a fine chain of points, computed without the shape's own code.
+/// A shape, and its boundary as a fine chain of points that is computed without the code of the shape.
 struct Drawn {
     shape: Shape,
     boundary: Vec<Vec2>,

@@ -1,4 +1,4 @@
-//! Solids in space: distances against exact ones, and invariants of any pose.
+//! Solids in space: distances compared with exact distances, and invariants at any pose.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -25,7 +25,7 @@ fn bordeaux() -> Barrel {
 fn along(direction: Vec3) -> Rotation3 {
     let to = direction * (1.0 / direction.length());
     let from = Vec3::new(1.0, 0.0, 0.0);
-    // Half of the rotation, as the quaternion of the full one.
+    // A vector halfway gives the quaternion of the full rotation.
     let half = (from + to) * (1.0 / (from + to).length());
     Quaternion { w: from.dot(half), v: from.cross(half) }.matrix()
 }
@@ -126,7 +126,8 @@ fn as_both(hull: Hull) -> (Solid, Rounded, f64) {
     (hull.surface(), Rounded::centered(hull), grown)
 }
 
-/// Asserts for poses of one solid about another that all searches converge, are optimal, and agree from both sides.
+/// Asserts, for a number of poses of one solid around another, that the search converges, is optimal, and agrees from
+/// both sides.
 fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
     let ((target, target_hull, grown), (other_target, contactor, more)) =
         (as_both(one), as_both(other));
@@ -156,7 +157,7 @@ fn meet_anyhow(one: Hull, other: Hull, poses: u32) {
         bent = bent
             .max((gap.distance - found.distance - more).abs())
             .max((back.distance - found.distance - grown).abs());
-        // Very close to each other's cores the normal is lost in rounding.
+        // If the cores are very close, the normal is lost in rounding.
         if found.distance + grown + more > 1e-3 {
             let off = (gap.normal - found.normal).length();
             let off = off.max((rotation.apply(back.normal) + found.normal).length());
@@ -302,7 +303,7 @@ fn a_barrel_settles_on_its_head_and_stays() {
     let scene = scene.settled(1e-9).unwrap();
     let forces: Vec<f64> = scene.scratch.contacts.iter().map(|c| c.normal_force).collect();
     let weight: f64 = forces.iter().sum();
-    // All of it on the four sticks about the center of pressure, which is the middle of the head.
+    // All friction acts on the four sticks about the center of pressure, which is the middle of the head.
     for force in &forces[1..] {
         assert!((force / weight - 0.25).abs() < 1e-6, "{forces:?}");
     }

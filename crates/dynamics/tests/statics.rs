@@ -1,4 +1,4 @@
-//! Equilibrium under gravity: forces, overhangs, rest, and unstable bodies.
+//! Equilibrium under gravity: forces, overhangs, rest, and bodies that do not stand.
 
 use crate::common;
 
@@ -89,7 +89,7 @@ fn a_rough_cradle_carries_the_weight_by_normal_and_friction_forces() {
             &scene.scratch,
             contact,
         );
-        // The ground is the contactor: the opposite acts on the barrel.
+        // The ground is the contactor, so the opposite force acts on the barrel.
         lift -= force.z;
         thrust += force.x.abs();
         assert!(contact.friction_force.abs() > 1.0, "friction takes part");
@@ -101,7 +101,7 @@ fn a_rough_cradle_carries_the_weight_by_normal_and_friction_forces() {
 /// Returns the harmonic stack: the topmost of `n` bricks overhangs by a share of the largest overhang.
 fn harmonic_stack(n: u32, share: f64) -> Scene {
     let (length, height) = (1.0, 0.2);
-    // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top overhangs the one below by
+    // The lowest of the n bricks lies on a table that ends at x = 0; brick i from the top overhangs the brick below by
     // L/2i.
     let table = Polygon::rectangle(4.0, 1.0, 0.0).unwrap();
     let mut ground =

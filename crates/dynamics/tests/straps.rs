@@ -37,7 +37,7 @@ fn scene(bodies: Vec<Body<Planar>>, straps: Vec<Strap<Planar>>, gravity: Vec2) -
     Scene::of(model)
 }
 
-/// Returns a disc that hangs slack by a height (m), at rest.
+/// Returns a disc at rest, on a strap that is slack by a length (m).
 fn hanging(strap: Strap<Planar>, slack: f64) -> Scene {
     let center = HOOK + Vec2::new(0.0, slack - 1.3);
     let disc = disc("disc", 0.3, MASS, 0.045, center);
@@ -97,7 +97,7 @@ fn a_falling_mass_is_caught_and_thrown_back_to_where_it_came_from() {
 
 #[test]
 fn a_damper_pulls_only_while_the_strap_is_taut_and_never_pushes() {
-    // A damper so strong that it would push the disc down on its return.
+    // The damper is so strong that it would push the disc down on its return.
     let mut scene = hanging(Strap { damping: 2e4, ..hung() }, 0.2);
     let (mut least, mut slack) = (f64::INFINITY, 0);
     let energy = scene
@@ -144,7 +144,7 @@ fn a_strap_tears_above_its_strength_and_the_energy_balances() {
         .energy
         .summary(0);
     let (time, speed) = torn_at.unwrap();
-    // The energy of the fall so far, less that stored in the strap at that time.
+    // The energy of the fall up to the tear, less the energy stored in the strap at that time.
     let given = MASS * GRAVITY * (slack + strength / STIFFNESS);
     let taken = 0.5 * strength * strength / STIFFNESS;
     let exact = -(2.0 * (given - taken) / MASS).sqrt();
@@ -152,9 +152,9 @@ fn a_strap_tears_above_its_strength_and_the_energy_balances() {
     assert!((most / strength - 1.0).abs() < 2e-3); // measured: what a step adds
     assert!((speed / exact - 1.0).abs() < 1e-3); // measured 1.1e-4
     assert!((energy.damped / taken - 1.0).abs() < 4e-3, "{} J of {taken} J", energy.damped);
-    // The step in which it tears still includes half of its pull.
+    // The step in which the strap tears still includes half of its force.
     assert!(energy.residual_ratio() < 1e-4, "{:e}", energy.residual_ratio()); // measured 3.0e-5
-    // Once torn, it never pulls again.
+    // A torn strap never pulls again.
     assert!(scene.state.poses[1].position.z < HOOK.z - 2.0);
     assert_eq!(scene.scratch.loads[0].force, 0.0);
 }

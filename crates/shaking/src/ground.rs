@@ -81,10 +81,10 @@ impl Drive<Planar> for Ground {
     }
 }
 
-/// Reads or generates a motion according to its specification, scaled for a stack of a length scale.
+/// Reads or generates a motion according to its specification, for a stack built at the length scale `similitude`.
 ///
 /// # Errors
-/// If a record cannot be read, lacks the requested component, or cannot be scaled.
+/// If a record cannot be read, lacks a requested component, or cannot be scaled as specified.
 pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError> {
     let mut ground = match &spec.source {
         MotionSource::None => return Ok(Ground::default()),
@@ -96,10 +96,11 @@ pub fn of_spec(spec: &MotionSpec, similitude: f64) -> Result<Ground, GroundError
     Ok(ground)
 }
 
-/// Returns the motion of a loaded record according to its specification, for a stack of a length scale.
+/// Returns the motion of a loaded record according to its specification, for a stack built at the length scale
+/// `similitude`.
 ///
 /// # Errors
-/// If the record lacks a requested component, or cannot be scaled.
+/// If the record lacks a requested component, or cannot be scaled as specified.
 pub fn of_record(
     record: &Record,
     spec: &RecordMotion,
@@ -112,10 +113,10 @@ pub fn of_record(
     Ok(ground)
 }
 
-/// Scales and stretches a motion according to a scenario, for a stack of a length scale.
+/// Scales and stretches a motion according to a scenario, for a stack built at the length scale `run_scale`.
 ///
 /// # Errors
-/// If it cannot be scaled so.
+/// If the motion cannot be scaled as specified.
 pub fn scaled(
     mut motion: GroundMotion,
     spec: &MotionSpec,
@@ -128,12 +129,12 @@ pub fn scaled(
         Scale::Pgv(target) => motion = motion.scale_to(IntensityMeasure::Pgv, target)?,
         Scale::Measure { measure, value, of } => match (horizontals(of), &spec.source) {
             (None, _) => motion = motion.scale_to(measure, value)?,
-            // Scaled when it was read, with both horizontals available.
+            // A record was scaled when it was read, with both horizontals available.
             (Some(_), MotionSource::Record(_)) => {}
             (Some(over), MotionSource::None | MotionSource::Sine(_) | MotionSource::Pulse(_)) => {
                 return Err(MotionError::NotScalable {
                     measure: format!("{measure}, {over} of both horizontals,"),
-                    reason: "only a record has two".to_owned(),
+                    reason: "only a record has two horizontals".to_owned(),
                 });
             }
         },
@@ -170,11 +171,12 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
             let vertical = component_of(record, Some(name))?;
             match record.component(&vertical) {
                 Ok(_) => record.ground_motion(&horizontal, Some(&vertical), &processing)?,
-                // A user's own file, in place of the scenario's record.
+                // The file of a user in place of the record of the scenario.
                 Err(_) if !record.channels.iter().any(Channel::is_vertical) => {
                     let file = &record.file;
-                    let warning =
-                        format!("{file} has no vertical component: it shakes sideways only");
+                    let warning = format!(
+                        "{file} has no vertical component; the ground shakes horizontally only"
+                    );
                     warnings.push(warning);
                     record.ground_motion(&horizontal, None, &processing)?
                 }
@@ -202,8 +204,8 @@ fn shaken_by(record: &Record, spec: &RecordMotion, scale: Scale) -> Result<Groun
     Ok(Ground { motion: Some(motion), warnings })
 }
 
-/// Aligns a horizontal component with the first channel of the separate vertical file, if both state their
-/// start; returns both, with a warning if their combination is questionable.
+/// Aligns a horizontal component in time with the first channel of a separate vertical file, if both state their start;
+/// returns both, with a warning if their combination is questionable.
 fn on_one_clock(
     record: &Record,
     horizontal: &Component,
@@ -222,7 +224,7 @@ fn on_one_clock(
     Ok((first, second, notes.into_iter().collect()))
 }
 
-/// Rejects implausible ground motion: a step of 5 ms written as 5 s, a file of three values.
+/// Rejects implausible ground motion, such as a step of 5 ms written as 5 s, or a file of three values.
 fn require_strong_motion(record: &Record) -> Result<(), MotionError> {
     match record.channels.iter().find_map(Channel::implausible) {
         None => Ok(()),
@@ -243,7 +245,7 @@ fn horizontals(of: MeasuredOn) -> Option<Horizontals> {
     }
 }
 
-/// Scales the motion by a measure of both horizontals of its record, processed alike.
+/// Scales the motion so that a measure of both horizontals of its record, with the same processing, has a value.
 fn scaled_by_both(
     motion: GroundMotion,
     record: &Record,
@@ -256,16 +258,16 @@ fn scaled_by_both(
     let factor = over.scale_factor(measure, &first, &second, value)?;
     let mut scaled = motion.scaled(factor);
     scaled.provenance.push(format!(
-        "that factor brings {measure}, {over} of both horizontals, to {value} {}",
+        "this factor scales {measure}, {over} of both horizontals, to {value} {}",
         measure.unit()
     ));
     Ok(scaled)
 }
 
-/// Returns the requested processing; by default that of the record's stage, with its pads removed.
+/// Returns the requested processing; by default that of the record's stage, without pads.
 ///
-/// Pads are half a minute of stillness before the first arrival, which a stack at rest does not need;
-/// the ends are closed after cutting them, so that velocity and displacement end at zero.
+/// Pads are half a minute of rest before the first arrival, which a settled stack does not need. Once they are removed,
+/// the ends are corrected so that velocity and displacement end at zero.
 fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     match (spec.processing, record.stage) {
         (ProcessingSpec::Default, Stage::Raw) => Processing::compact(),
@@ -273,7 +275,7 @@ fn processing_of(spec: &RecordMotion, record: &Record) -> Processing {
     }
 }
 
-/// Parses the name of a component: first as the channel's own name, then as an azimuth in degrees.
+/// Parses the name of a component: first as the name of a channel, then as an azimuth in degrees.
 fn component_of(record: &Record, name: Option<&str>) -> Result<Component, MotionError> {
     let Some(name) = name else {
         let horizontal = record.channels.iter().any(|channel| !channel.is_vertical());

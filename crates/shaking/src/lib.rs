@@ -4,7 +4,8 @@
 //! [motion] ─ motion ─▶ MotionSpec ─ ground ─▶ Ground, which drives a model
 //! ```
 
-// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod ground;

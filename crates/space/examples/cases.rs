@@ -1,19 +1,22 @@
-//! Cases for another engine: stacks in space as they stand before the motion, and the outcome of each here.
+//! Exports cases for comparison with another physics engine: stacks in space at rest before the motion, and the outcome
+//! that this program computes for each.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example cases -- 50 cases "stack.levels=3+motion.scale.factor=0.5"
 //! ```
 //!
-//! The first argument is the number of cases, the second the output folder, the third a change of `demo-napa`;
-//! several are joined by `+`. The cases are the first variants of those of `evidence`, so shares can be compared.
-//! With `grid` for the number, one variant each of stacks of two to five levels with three coefficients of friction
-//! between barrels and racks, under three factors on the motion is written: 36 cases, which differ in places and masses
-//! alone from what is stated.
-//! `motion-1.json` and the like have the velocity of the ground; `0001.json` and so on have one case each: bodies at rest
-//! with their masses, solids and seats, the pairs of solids that may meet with their laws, the thresholds, and the
-//! outcome: as stated (`outcome`), and with MuJoCo-like seats (`alike`), whose friction holds without an elastic stick
-//! and whose damper acts both ways, with the same restitution.
-//! All values are in SI units; rotations are quaternions `w`, `x`, `y`, `z` from the body to space.
+//! The first argument is the number of cases, the second the output folder, the third a change of `demo-napa`; several
+//! changes are joined by `+`. The cases are the first variants of the example `evidence`, so shares can be compared.
+//!
+//! If the first argument is `grid`, 36 cases are written: stacks of two to five levels, with three coefficients of
+//! friction between barrels and racks, under three factors on the motion. Each case is one variant, which differs from
+//! the stated stack only in positions and masses.
+//!
+//! Files such as `motion-1.json` have the velocity of the ground, files such as `0001.json` one case each: bodies at
+//! rest with their masses, solids and seats; the pairs of solids that may touch, with their laws; the thresholds; and
+//! two outcomes. `outcome` is that of the case as stated. `alike` is that of seats as in MuJoCo, whose friction holds
+//! without an elastic stick and whose damper acts in both directions, with the same restitution. All values are in SI
+//! units; rotations are quaternions `w`, `x`, `y`, `z` from the body frame to the inertial frame.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
@@ -34,14 +37,15 @@ use barrelstack_space::run::{Standing, run_on, stand};
 use barrelstack_space::{Ground, Heading};
 use serde_json::{Value, json};
 
-/// Changes of the demo that all stacks share, as in `evidence`.
+/// Changes of `demo-napa` that all stacks share, as in `evidence`.
 const COMMON: [&str; 3] =
     ["stack.view=spatial", "run.stop_after_collapse='3 s'", "run.duration='16 s'"];
 
 /// Interfaces of seats.
 const SEATS: [&str; 2] = ["barrel-rack", "rack-ground"];
 
-/// MuJoCo-like seats: a stick that yields by a hundredth of the normal spring, and a damper that acts both ways.
+/// Seats as in MuJoCo: a stick that is a hundred times as stiff as the normal spring, and a damper that acts in both
+/// directions.
 const ALIKE: [&str; 3] = [
     "law='kelvin-voigt'",
     "friction.tangential_stiffness_ratio=100",
@@ -83,14 +87,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Writes the variants of the demo with changes as cases, numbered from the first.
+/// Writes the variants of `demo-napa` with changes as cases, numbered from `first`.
 fn write(folder: &Path, first: u32, changes: &[String]) -> Result<(), Box<dyn Error>> {
     let of = |changes: &[String]| -> Result<_, Box<dyn Error>> {
         Ok(planes(&Scenario::builtin("demo-napa", changes)?)?.swap_remove(0))
     };
     let plane = of(changes)?;
     let seats = SEATS.iter().flat_map(|seat| ALIKE.map(|own| format!("interface.{seat}.{own}")));
-    // The law first: a stated restitution then belongs to it.
+    // The law comes first, so that a restitution among the changes applies to it.
     let alike = of(&seats.chain(changes.iter().cloned()).collect::<Vec<_>>())?;
     let ground = Ground::of(&plane.scenario)?;
     let name = format!("motion-{first}.json");
@@ -109,7 +113,7 @@ fn write(folder: &Path, first: u32, changes: &[String]) -> Result<(), Box<dyn Er
     Ok(())
 }
 
-/// Returns the velocity of the ground (m/s) at equal steps.
+/// Returns the velocity of the ground (m/s) at equal time steps.
 fn motion(ground: &Ground) -> Value {
     let times = (0_u32..).map(|at| f64::from(at) * MOTION_STEP);
     let times = times.take_while(|time| *time < ground.end() + MOTION_STEP);
@@ -160,7 +164,7 @@ fn case(number: u32, scenario: &Scenario, standing: &Standing) -> Value {
     })
 }
 
-/// Returns the outcome here, and the computing time (s).
+/// Returns the outcome that this program computes, and the computing time (s).
 fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>> {
     let start = Instant::now();
     let run = run_on(scenario, ground.clone(), &mut |_| ControlFlow::Continue(()))?;
@@ -185,7 +189,7 @@ fn outcome(scenario: &Scenario, ground: &Ground) -> Result<Value, Box<dyn Error>
     }))
 }
 
-/// Returns a solid in the frame of its body, with its axis along its own `x`.
+/// Returns a solid with its position and rotation in the frame of its body; its axis is along its own `x`.
 fn solid(nodes: &Nodes<Spatial>) -> Option<Value> {
     let Nodes::Whole(whole) = nodes else { return None };
     let mut told = match whole.hull {

@@ -1,13 +1,13 @@
-//! Compares the same stacks, motions and imperfections across the barrels, along them, and in space: when is a
-//! verdict of a plane enough, and on which side does it err?
+//! Compares the same stacks, motions and imperfections in the plane across the barrels, in the plane along them, and in
+//! space, to show when a verdict of a plane is enough and on which side it errs.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example evidence -- 200 shares.svg "four levels: stack.levels=4"
 //! ```
 //!
-//! The first argument is the number of cases, the second the output file of the figure, each other one a name and a
-//! change of `demo-napa` that makes a stack of its own; several changes of one stack are joined by `+`. It prints the
-//! rows of the table in `validation/space.md` and draws their shares.
+//! The first argument is the number of cases, the second the output file of the figure. Every further argument defines
+//! a stack by its name and a change of `demo-napa`; several changes are joined by `+`. The example prints the rows of
+//! the table in `validation/space.md` and draws their shares.
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "an example prints")]
 
@@ -29,7 +29,7 @@ use barrelstack_report::{Axis, Figure, FigureKind, Plot, Series, SeriesStyle};
 use barrelstack_space::fate::Heading;
 use barrelstack_space::variants::run_all;
 
-/// Changes of the demo that all stacks share: all run to the same time, and some seconds after a collapse.
+/// Changes of `demo-napa` that all stacks share: all run to the same end time, or to three seconds after a collapse.
 const COMMON: [&str; 3] =
     ["stack.view=spatial", "run.stop_after_collapse='3 s'", "run.duration='16 s'"];
 
@@ -48,11 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         shares.extend(compare(name, changes, &count)?);
     }
     std::fs::write(&figure, drawn(&shares).to_svg())?;
-    println!("{figure}: the shares");
+    println!("the shares are drawn in {figure}");
     Ok(())
 }
 
-/// Share of the cases of a stack in a view that fall: the name, the share, and its interval of 95 %.
+/// Share of the cases that fall, of a stack in a view: the name, the share, and its 95 % interval.
 type Share = (String, f64, Interval);
 
 fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Error>> {
@@ -85,7 +85,7 @@ fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Er
         row(stack, "along", &along[1..], "0 / all"),
         row(stack, "in space", &results[1..], &format!("{aside} / {on}")),
     ];
-    // Cases without a verdict in one of the views are left out of the comparison.
+    // Cases without a verdict in any of the views are left out of the comparison.
     let judged: Vec<_> = across
         .iter()
         .zip(&along)
@@ -118,7 +118,7 @@ fn compare(stack: &str, own: &str, count: &str) -> Result<[Share; 3], Box<dyn Er
     Ok(shares)
 }
 
-/// Draws every share as a dot in the bar of its interval, one below the other.
+/// Returns a figure with every share as a dot in the bar of its interval, one below the other.
 fn drawn(shares: &[Share]) -> Figure {
     let names = shares.iter().map(|(name, ..)| name.clone()).collect();
     let of = |place: usize, label: &str, x: Vec<f64>, style: SeriesStyle| {
@@ -135,11 +135,12 @@ fn drawn(shares: &[Share]) -> Figure {
     });
     let x = Axis { range: Some([0.0, 1.0]), ..Axis::new("share of variants that fall", "") };
     let plot = Plot { x, y: Axis::named(names), series: series.collect(), ..Plot::default() };
-    let caption = "The same stacks, motions and imperfections, seen across the barrels, along them, and in space.";
+    let caption =
+        "The same stacks, motions and imperfections across the barrels, along them, and in space.";
     Figure { id: "shares".into(), caption: caption.into(), kind: FigureKind::Plot(plot) }
 }
 
-/// Returns the cases of a stack in a plane, under one component.
+/// Returns the results of the variants of a stack in a plane, under one component of the motion.
 fn in_plane(
     scenario: &Scenario,
     view: View,
@@ -150,8 +151,8 @@ fn in_plane(
     if let Scene::Stack { stack, .. } = &mut plane.scene {
         *stack = stack.in_plane(view);
     }
-    let found =
-        run(&planes(&plane)?, &|_, _| ControlFlow::Continue(()))?.ok_or("nobody stops it")?;
+    let found = run(&planes(&plane)?, &|_, _| ControlFlow::Continue(()))?
+        .ok_or("the variants were interrupted")?;
     Ok(found.into_iter().next().map(|one| one.results).unwrap_or_default())
 }
 

@@ -1,8 +1,8 @@
-//! Walk of a rack in one cycle of shaking, over the stiffness of its seats: the table and the figure of
-//! `validation/rack-walk.md`.
+//! Computes the walk of a rack in one cycle of shaking as a function of the stiffness of its seats: the tables and the
+//! figure of `validation/rack-walk.md`.
 //!
 //! `cargo run --release --package barrelstack-space --example rack_walk FIGURE.svg`
-#![expect(clippy::print_stdout, reason = "a program for people at a terminal")]
+#![expect(clippy::print_stdout, reason = "an example prints")]
 
 #[path = "../tests/two_seats/mod.rs"]
 mod two_seats;
@@ -14,11 +14,11 @@ use barrelstack::scenario::Scene;
 use barrelstack_report::{Axis, Figure, Plot, Series, SeriesStyle};
 use two_seats::{Cycle, GRAVITY, TwoSeats, newmark};
 
-/// Stiffness of the catalog (N/m) of a rail on a crown, and of a contact element of the paper.
+/// Stiffness (N/m) of a rail on a crown in the catalog, and of a contact element of Candia et al. (2008).
 const CATALOG: f64 = 3e6;
 const PAPER: f64 = 9.8e5;
 
-/// Variants, which differ in places and masses alone.
+/// Number of variants, which differ only in positions and masses.
 const VARIANTS: u32 = 6;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -36,8 +36,8 @@ impl Shown {
     ];
 }
 
-/// Returns the walk (m) of the upper rack of two levels on the lower one after a cycle, without sign, and off the
-/// barrels as not a number: mean over variants.
+/// Returns the absolute walk (m) of the upper of two racks relative to the lower one after a cycle, as the mean over
+/// variants.
 fn walk(shown: Shown, stiffness: f64, friction: f64, cycle: Cycle) -> Result<f64, Box<dyn Error>> {
     let (.., view) = Shown::ALL.into_iter().find(|(one, ..)| *one == shown).ok_or("a view")?;
     let mut changes = vec![
@@ -93,12 +93,12 @@ fn walk(shown: Shown, stiffness: f64, friction: f64, cycle: Cycle) -> Result<f64
     Ok(sum / f64::from(VARIANTS))
 }
 
-/// The smallest model of the upper level: a barrel with its share of a rack on two rails.
+/// Returns the smallest model of the upper level: a barrel with its share of a rack on two rails.
 fn block(stiffness: f64, friction: f64) -> TwoSeats {
     let (mass, height) = (290.0, 0.53);
-    // A damping ratio of 0.156, as the catalog's restitution of 0.8 gives a quarter of a barrel.
+    // A damping ratio of 0.156, which follows from the catalog's restitution of 0.8 for a quarter of a barrel.
     let damping = 2.0 * 0.156 * (70.0 * stiffness).sqrt();
-    // A full barrel that does not turn with its wine, about a middle that lies as high as the barrel does.
+    // Moment of inertia of a full barrel whose wine does not rotate with it, about an axis at the height of the barrel.
     let inertia = 40.0;
     TwoSeats { mass, inertia, height, half_spacing: 0.27, stiffness, damping, friction, stick: 2.0 }
 }
@@ -176,7 +176,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             series,
             ..Plot::default()
         };
-        let caption = "Displacement of the upper rack on the lower one that one cycle of 0.4 g and 0.8 s leaves, over the stiffness of the seats.";
+        let caption = "Displacement of the upper rack on the lower one after one cycle of 0.4 g and 0.8 s, as a function of the stiffness of the seats.";
         std::fs::write(path, Figure::new("rack-walk", caption, plot).to_svg())?;
     }
     Ok(())

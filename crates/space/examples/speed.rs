@@ -1,4 +1,4 @@
-//! Measures the speed of a stack in space on one core, relative to real time.
+//! Measures how fast a stack in space is computed on one core, relative to real time.
 //!
 //! ```text
 //! cargo run --release -p barrelstack-space --example speed -- stack.levels=4
@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seconds = start.elapsed().as_secs_f64();
     let work = run.work;
     println!(
-        "{}: {:?}, {:.1} s of motion in {seconds:.2} s: {:.1} times real time; {} steps of {:.3} ms or a part of it, \
-         {:.0} contact elements a step, {:.0} ns each; balance {:.1e}; settled in {:?} steps",
+        "{}: {:?}, {:.1} s of motion in {seconds:.2} s: {:.1} times real time; {} steps of at most {:.3} ms, \
+         {:.0} contact elements per step, {:.0} ns each; energy residual {:.1e}; settled in {:?} steps",
         scenario.title,
         run.outcome,
         run.end_time,

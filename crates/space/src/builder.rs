@@ -25,23 +25,23 @@ pub(crate) struct Builder<'a> {
     /// One part for every body, in the same order.
     pub(crate) parts: Vec<Part>,
     pub(crate) laws: Laws,
-    /// Elements that are fitted to the stack at rest.
+    /// Elements that will be fitted to the stack at rest.
     pub(crate) loose: Vec<Loose>,
-    /// Elements without which the stack does not stand, each with its device.
+    /// Elements that the stack needs to stand, each with its device.
     pub(crate) held: Vec<(Element<Spatial>, &'static Words)>,
     /// Contact pairs of the bearings of platforms on the ground.
     pub(crate) bearings: Vec<ContactPair>,
-    /// Height (m) by which the bodies on the ground were raised.
+    /// Height (m) by which the stack was raised, such as by isolators.
     pub(crate) raised: f64,
 }
 
-/// Contact laws, and the indices of those of devices.
+/// Contact laws, and the indices of the laws of devices.
 pub(crate) struct Laws {
-    /// At the indices of [`StackPair::ALL`], then those of devices in their order.
+    /// All laws: those of [`StackPair::ALL`] at their indices, followed by those of devices.
     pub(crate) all: Vec<Interface<Spatial>>,
-    /// The law of barrels in their cradles.
+    /// Law of barrels in their cradles.
     cradle: InterfaceId,
-    /// The law of the bearings of platforms, one at each corner; `None` without platforms.
+    /// Law of one bearing of a platform, which has one at each corner; `None` without platforms.
     pub(crate) bearing: Option<InterfaceId>,
 }
 
@@ -54,7 +54,7 @@ impl Laws {
         };
         let pad = spec.devices.pad.law();
         let cradle = pad.map_or(StackPair::BarrelRack as usize, |law| add("pad", law));
-        // An end has two corners.
+        // The law of an end of a platform is shared by two corners.
         let isolator = Some(spec.devices.isolator).filter(Isolators::is_on);
         let bearing = isolator.map(|isolator| add("isolator-ground", isolator.law(0.5)));
         Self { all, cradle, bearing }
@@ -81,7 +81,7 @@ impl<'a> Builder<'a> {
         reach_along(&self.spec.rack, self.spec.barrel.length + self.spec.gap)
     }
 
-    /// Adds a body; returns its ID.
+    /// Adds a body and returns its ID.
     pub(crate) fn add(&mut self, body: Body<Spatial>, part: Part) -> BodyId {
         self.bodies.push(body);
         self.parts.push(part);
@@ -96,7 +96,7 @@ impl<'a> Builder<'a> {
         self.raised = height;
     }
 
-    /// Adds all levels, racks and their barrels from below.
+    /// Adds all racks and their barrels, level by level from below.
     pub(crate) fn build(&mut self) -> Result<(), AssembleError> {
         let Self { spec, barrel, .. } = *self;
         let (racks, rows) = (spec.racks_per_level(), spec.racks_along());
@@ -122,8 +122,8 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds one rack with its barrels, with the middle of its underside at a position (m); returns the IDs of the
-    /// barrels.
+    /// Adds a rack with its barrels and returns the IDs of the barrels; the middle of the rack's underside is at a
+    /// position (m).
     fn add_rack(
         &mut self,
         (level, column, row): (u32, u32, u32),
@@ -143,7 +143,7 @@ impl<'a> Builder<'a> {
         else {
             return Err(AssembleError::NotInSpace {
                 field: "stack.rack.cradle",
-                reason: "in space cradles are pairs of supports: set stack.rack.cradle.type to \"supports\", or \
+                reason: "in space a cradle must be a pair of supports: set stack.rack.cradle.type to \"supports\", or \
                          stack.view to \"both\""
                     .into(),
             });
@@ -159,7 +159,7 @@ impl<'a> Builder<'a> {
         let id = self.bodies.len();
         let count = list.len();
         let mut seats = Seats { carries: vec![None; count], lies_on: vec![None; count] };
-        // Barrels below are ordered by place along the rack, then by column.
+        // The barrels below are ordered by their position along the rack, then by column.
         let columns = rack.barrels;
         for (deep, tube) in beams {
             let of_beam = supports
@@ -170,7 +170,7 @@ impl<'a> Builder<'a> {
             seats.lies_on[tube] = Some(of_beam.collect());
         }
         for ((column, deep), tube) in posts {
-            // A rack is its own mirror image, so its tubes stay; the barrels change sides.
+            // A rack is its own mirror image, so its tubes stay in place, but its barrels change sides.
             let column = if spec.mirror { columns - 1 - column } else { column };
             seats.carries[tube] = Some(id + 1 + (deep * columns + column) as usize);
         }
@@ -247,14 +247,16 @@ impl<'a> Builder<'a> {
         self.add(body, part)
     }
 
-    /// Returns a position (m), mirrored if the stack is.
+    /// Returns a position (m), mirrored if the stack is mirrored.
     pub(crate) fn mirrored(&self, place: Vec3) -> Vec3 {
         let side = if self.spec.mirror { -1.0 } else { 1.0 };
         Vec3::new(side * place.x, place.y, place.z)
     }
 
-    /// Returns all boundary pairs that can meet, each with its law: two bodies that the stack joins meet at seats,
-    /// all their other boundaries, and any other two bodies, meet in impacts only.
+    /// Returns all boundary pairs that can touch, each with its law.
+    ///
+    /// Two bodies that rest on each other touch by the law of their seat. All other boundaries of these bodies, and all
+    /// other bodies, touch in impacts only.
     pub(crate) fn pairs(&self) -> Vec<ContactPair> {
         let mut list = Vec::new();
         let count = self.bodies.len();
@@ -285,13 +287,13 @@ impl<'a> Builder<'a> {
         list
     }
 
-    /// Returns the number of solids of a body: of its first surfaces and node sets.
+    /// Returns the number of solids of a body that touch other bodies: its first surfaces and node sets.
     fn solids(&self, body: BodyId) -> usize {
-        // Dishes in the ground are for bearings alone.
+        // The other surfaces of the ground are dishes, which touch only bearings.
         if body == Stack::GROUND { 1 } else { self.bodies[body].surfaces.len() }
     }
 
-    /// Adds all solids of a body with all of another, each by the law of the first body's solid.
+    /// Adds the pairs of all solids of two bodies, each with the law of the contactor's solid.
     fn meet(
         &self,
         list: &mut Vec<ContactPair>,
@@ -317,7 +319,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the pair of a rack and a platform; a rack stands on its platform as on the ground.
+    /// Returns the kind of contact of a rack with a platform; a rack stands on its own platform as on the ground.
     fn on_platform(&self, rack: BodyId, tube: usize, device: BodyId) -> StackPair {
         let part = &self.parts[rack];
         match part.seats.lies_on.get(tube) {
@@ -338,7 +340,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns the overrides of one place, later entries last.
+/// Returns the overrides of one body, in the order in which they apply.
 fn changes_of(
     spec: &StackSpec,
     body: StackBody,

@@ -1,4 +1,4 @@
-//! Checks a scenario in space without shaking it: is it sound, and does it stand?
+//! Check of a scenario in space without shaking it: whether it is valid, and whether its stack stands.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::check::{AtRest, Checked};
@@ -8,7 +8,7 @@ use barrelstack::{RunFailure, Scenario};
 use crate::ground::Ground;
 use crate::run::{Standing, affordable, stand};
 
-/// Runs everything that precedes the shaking.
+/// Checks a scenario: reads its motion, builds its stack and settles it, but does not shake it.
 ///
 /// ```
 /// use barrelstack::Scenario;

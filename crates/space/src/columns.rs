@@ -1,4 +1,4 @@
-//! Additional columns of tables of cases in space: directions of falls.
+//! Additional columns of tables of cases in space, with the directions of falls.
 
 use barrelstack::ensemble;
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
@@ -6,25 +6,34 @@ use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Val
 use crate::fate::Heading;
 use crate::variants::Case;
 
-/// The direction of the first body, and the number of fallen barrels in each direction.
+/// Name, kind and meaning of the columns: the direction of the first body, and the number of fallen barrels in each
+/// direction.
 const COLUMNS: [(&str, ValueKind, &str); 5] = [
     (
         "heading",
         ValueKind::Text,
-        "in which direction the first body left its seat: right or left across the barrels, away or near along them",
+        "direction in which the first body left its seat: right or left across the barrels, away or near along them",
     ),
     (
         "debris_right",
         ValueKind::Integer,
-        "fallen barrels that came to lie to the right of where they stood, more than along the barrels",
+        "fallen barrels that came to lie to the right of their place at rest, more than along the barrels",
     ),
-    ("debris_left", ValueKind::Integer, "the same to the left"),
+    (
+        "debris_left",
+        ValueKind::Integer,
+        "fallen barrels that came to lie to the left of their place at rest, more than along the barrels",
+    ),
     (
         "debris_away",
         ValueKind::Integer,
         "fallen barrels that came to lie away along the barrels, more than across them",
     ),
-    ("debris_near", ValueKind::Integer, "the same in the opposite direction along the barrels"),
+    (
+        "debris_near",
+        ValueKind::Integer,
+        "fallen barrels that came to lie near along the barrels, more than across them",
+    ),
 ];
 
 /// Returns the specifications of the columns, in the order of [`values`].
@@ -32,13 +41,15 @@ pub fn specs() -> impl Iterator<Item = ColumnSpec> {
     COLUMNS.iter().map(|(name, kind, _)| ColumnSpec::new(name, "", Role::Outcome, *kind))
 }
 
-/// Returns the description of a column; `None` if it is not one of these.
+/// Returns the meaning of a column; `None` if the column is not one of this module.
 pub fn meaning(name: &str) -> Option<&'static str> {
     COLUMNS.iter().find(|(known, ..)| *known == name).map(|(.., meaning)| *meaning)
 }
 
-/// Returns the values of a case, from the direction of the first body, if one left its seat, and those of fallen
-/// barrels; `None` for a case without a verdict.
+/// Returns the values of a case, in the order of [`specs`].
+///
+/// `headings` has the direction of the first body, if one left its seat, and the directions of the fallen barrels; it
+/// is `None` for a case without a verdict.
 pub fn values(
     headings: Option<(Option<Heading>, &[Heading])>,
 ) -> impl Iterator<Item = Option<Value>> {
@@ -51,8 +62,8 @@ pub fn values(
     std::iter::once(first).chain(Heading::ALL.into_iter().map(lie))
 }
 
-/// Returns a table of a stack as stated, number 0, and its variants: the columns of a plane, and those of directions.
-/// Cases that were interrupted have no row.
+/// Returns the table of a stack as stated, number 0, and its variants, with the columns of a plane and those of this
+/// module. Interrupted cases have no row.
 pub fn variants(cases: &[Case]) -> Vec<Column> {
     let mut all = ensemble::variants(cases.iter().map(|case| &case.result));
     let ended = cases.iter().filter(|case| !case.result.is_interrupted());

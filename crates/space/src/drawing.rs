@@ -1,7 +1,7 @@
-//! A run in space as plane scenes: across the barrels, along them, and from above.
+//! Plane drawings of a run in space: across the barrels, along them, and from above.
 //!
-//! A scene has bodies of fixed outlines that move in its plane. The outline of a solid body depends only on the view
-//! direction in the body frame, so a body becomes one drawing for every direction that occurs, in steps of a few
+//! A plane scene has bodies with fixed outlines that move in its plane. The outline of a solid body depends only on the
+//! view direction in the body frame. So a body has one drawing for every direction that occurs, in steps of a few
 //! degrees, and each frame shows one of them.
 
 mod deep;
@@ -34,7 +34,7 @@ use crate::words::leaves;
 pub enum Sight {
     /// Toward the heads of the barrels: `x` to the right, `z` up.
     Across,
-    /// Toward their sides: `y` to the right, `z` up.
+    /// Toward the sides of the barrels: `y` to the right, `z` up.
     Along,
     /// From above: `x` to the right, `y` up the page.
     Above,
@@ -44,7 +44,7 @@ impl Sight {
     /// All view directions.
     pub const ALL: [Self; 3] = [Self::Across, Self::Along, Self::Above];
 
-    /// Returns the direction of view as a phrase: "along the barrels".
+    /// Returns the view direction in words, such as "along the barrels".
     pub fn words(self, stack: &Stack) -> &'static str {
         match self {
             Self::Across if stack.is_free() => "from the front",
@@ -55,7 +55,7 @@ impl Sight {
         }
     }
 
-    /// Returns `true` if events in a direction are labeled in this view; each is labeled in one.
+    /// Returns `true` if events with a heading are labeled in this view; each event is labeled in one view.
     fn shows(self, heading: Heading) -> bool {
         match self {
             Self::Across => heading.is_across(),
@@ -64,7 +64,7 @@ impl Sight {
         }
     }
 
-    /// Returns the right and up axes of the page; both with the direction toward the viewer are right-handed.
+    /// Returns the axes of the page to the right and up, which are right-handed with the direction toward the viewer.
     fn page(self) -> [Vec3; 2] {
         let [x, y, z] =
             [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
@@ -79,7 +79,7 @@ impl Sight {
 /// Maximum frame rate of a picture (1/s).
 const RATE: f64 = 20.0;
 
-/// Returns the scene of a run from a direction.
+/// Returns the drawing of a run in a view direction.
 pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
     let [right, up] = sight.page();
     let toward = right.cross(up);
@@ -137,14 +137,14 @@ pub fn scene(run: &Run, sight: Sight) -> Arc<Scene> {
         events: events(run, &first, sight),
         moment: moment(run, &first)
             .filter(|_| run.heading.is_some_and(|heading| sight.shows(heading))),
-        // All views are of one run, which is turned in the place of the first.
+        // The page shows the three-dimensional scene in place of the first view.
         depth: (sight == Sight::Across).then(|| deep::depth(run, &frames)),
         ..Scene::default()
     })
 }
 
-/// A strap or a tie, between two invisible bodies at its ends: the drawing of a solid body depends on its rotation,
-/// and has no fixed position for a point of the body.
+/// A strap or a tie, drawn between two invisible bodies at its ends, since the drawing of a solid body depends on its
+/// rotation and has no fixed position for a point of the body.
 struct Band<'a> {
     link: &'a Link<Spatial>,
     drawn: Tie,
@@ -161,10 +161,10 @@ impl Band<'_> {
     }
 }
 
-/// Minimum distance (m) of the ends on the page: a band in end view is not drawn.
+/// Minimum distance (m) of the ends of a band on the page; a band in end view is not drawn.
 const END_ON: f64 = 0.01;
 
-/// Returns the straps and ties, whose ends follow a number of drawings; without those in end view.
+/// Returns the straps and ties that are not in end view. The bodies at their ends follow the first `drawings` bodies.
 fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     let straps = run.devices().filter_map(|((element, _), fate)| match element {
         Element::Strap(strap) => Some((&strap.link, fate)),
@@ -185,7 +185,7 @@ fn bands(run: &Run, sight: Sight, drawings: usize) -> Vec<Band<'_>> {
     bands
 }
 
-/// Returns `true` if a body is a barrel alone, with its center of mass on its axis.
+/// Returns `true` if a body is a single barrel with its center of mass on its axis.
 fn is_barrel(body: &Body<Spatial>) -> bool {
     let [Placed { surface: Solid::Barrel(_), offset, .. }] = body.surfaces.as_slice() else {
         return false;
@@ -193,7 +193,7 @@ fn is_barrel(body: &Body<Spatial>) -> bool {
     offset.y == 0.0 && offset.z == 0.0
 }
 
-/// Returns the frames of a run that a picture shows.
+/// Returns the frames of a run that a drawing shows.
 fn shown(run: &Run) -> Vec<usize> {
     let mut next = 0.0;
     let mut shown = Vec::new();
@@ -218,8 +218,10 @@ fn slope(run: &Run) -> f64 {
     }
 }
 
-/// Returns the floor: a line longer than any picture is wide; none from above, and from the side where it slopes.
-/// Walls, ceilings and dishes of devices are included.
+/// Returns the ground: the floor, as a line longer than any picture is wide, and the walls, ceilings and dishes of
+/// devices.
+///
+/// The floor has no line in the view from above, nor in the view along the barrels if the ground slopes.
 fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     let line = Polyline::open(vec![[-100.0, 0.0], [100.0, 0.0]]);
     let shown = sight == Sight::Across || (sight == Sight::Along && slope == 0.0);
@@ -231,8 +233,8 @@ fn ground(run: &Run, sight: Sight, slope: f64) -> SceneBody {
     SceneBody::new("ground", Role::Ground, outlines)
 }
 
-/// Returns invisible points that pad the viewport: around a stack from above, where nothing below it bounds the
-/// picture, and around all paths of a free scene.
+/// Returns invisible points that enlarge the picture: around a stack from above, where no floor bounds the picture, and
+/// around all paths of a free scene.
 fn yard(run: &Run, sight: Sight) -> SceneBody {
     let corners = if run.stack.is_free() {
         bounds(run, sight)
@@ -269,7 +271,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
         let falls_with_it = |time: f64| barrel && fate.fell_at.is_some_and(|fell| fell <= time);
         let left = fate.left_seat.filter(|(at, ..)| !falls_with_it(*at));
         if let Some((time, loss, heading)) = left.filter(|(.., heading)| sight.shows(*heading)) {
-            // The pane shows whether it is along the barrels or across them.
+            // The view itself shows whether that is along the barrels or across them.
             let text = format!("{}, {}", leaves(&part.name, loss), heading.name());
             events.push(Event { time, body: Some(first[body]), kind: EventKind::LossOfSeat, text });
         }
@@ -279,7 +281,7 @@ fn events(run: &Run, first: &[usize], sight: Sight) -> Vec<Event> {
             events.push(Event { time, body: Some(first[body]), kind: EventKind::Fall, text });
         }
     }
-    // Failures of devices have no direction, and are labeled once.
+    // Failures of devices have no direction, so they are labeled in one view only.
     if sight == Sight::Across {
         for ((element, words), fate) in run.devices() {
             if let Some(time) = fate.broken_at {

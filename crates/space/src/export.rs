@@ -12,7 +12,7 @@ use crate::report::document;
 use crate::run::Run;
 use crate::variants::Answer;
 
-/// Returns the files of an answer with their names, the report last.
+/// Returns the output files of an answer with their names.
 pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
     let mut files = vec![
         ("summary.json", answer.summary.to_json() + "\n"),
@@ -31,7 +31,7 @@ pub fn files(answer: &Answer, resolved: &str) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// Writes all poses: time (s), and of every body its position (m) and the quaternion of its rotation.
+/// Returns the table of all poses: time (s), and the position (m) and rotation (a quaternion) of every body.
 fn frames_csv(run: &Run) -> String {
     let mut text = String::from("time (s)");
     for part in &run.stack.parts {
@@ -52,7 +52,7 @@ fn frames_csv(run: &Run) -> String {
     text
 }
 
-/// Writes the case as stated, number 0, and its variants, one row each.
+/// Returns the table of the case as stated, number 0, and its variants, with one row each.
 fn variants_csv(answer: &Answer) -> String {
     let mut text = String::from(
         "variant,outcome,mode,first_loss (s),first_body,heading,first_fall (s),barrels_fallen,debris_right,debris_left,\

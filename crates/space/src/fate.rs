@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use crate::stack::Stack;
 
-/// Direction of a motion, from above and from the position of a viewer before the heads of the barrels, with `x` to
-/// the right and `y` away.
+/// Horizontal direction of a motion, for a viewer in front of the heads of the barrels: `x` is to the right and `y`
+/// away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Heading {
@@ -40,7 +40,7 @@ impl Heading {
         }
     }
 
-    /// Returns `true` if it is across the barrels, not along them.
+    /// Returns `true` for a direction across the barrels, and `false` for one along them.
     pub fn is_across(self) -> bool {
         matches!(self, Self::Right | Self::Left)
     }
@@ -61,32 +61,33 @@ impl Heading {
 pub struct Fate {
     /// Position at rest (m), relative to the ground.
     pub rest: Vec3,
-    /// Time (s), kind and direction of its loss of seat.
+    /// Time (s), kind and direction of the loss of seat.
     pub left_seat: Option<(f64, Loss, Heading)>,
-    /// Time (s) at which it had fallen by the threshold.
+    /// Time (s) at which the body had dropped by the threshold of a fall.
     pub fell_at: Option<f64>,
-    /// Largest drop (m) below its place at rest.
+    /// Largest drop (m) below the position at rest.
     pub drop: f64,
-    /// Largest force (N) on it after it had fallen.
+    /// Largest force (N) on the body after its fall.
     pub fall_force: f64,
-    /// Displacement (m) relative to the ground and to its place at rest.
+    /// Displacement (m) from the position at rest, relative to the ground.
     pub moved: Vec3,
-    /// Displacement (m) at the collapse; at the end if there was none.
+    /// Displacement (m) at the collapse; at the end of the run without a collapse.
     pub moved_at_collapse: Vec3,
-    /// Displacement (m) across and along relative to its supports, averaged over them, at the end.
+    /// Displacement (m) across and along the barrels relative to the supports, averaged over them, at the end of the
+    /// run.
     pub residual_slip: [f64; 2],
-    /// Largest displacement (m) across and along relative to its supports, averaged over them, before the collapse;
-    /// at different instants.
+    /// Largest displacements (m) across and along the barrels relative to the supports, averaged over them, before the
+    /// collapse; the two may be of different instants.
     pub peak_slip: [f64; 2],
-    /// Largest rise (m) above its place at rest, before the collapse.
+    /// Largest rise (m) above the position at rest before the collapse.
     pub peak_uplift: f64,
-    /// Largest motions before the collapse.
+    /// Largest displacement, slip and tilt before the collapse.
     pub until_loss: PeakMotion,
-    /// Largest motions over the whole run, falls included.
+    /// Largest displacement, slip and tilt over the whole run, falls included.
     pub whole_run: PeakMotion,
 }
 
-/// Largest motions of a body in any step; displacements are horizontal, in any direction, each at one instant.
+/// Largest displacement, slip and tilt of a body in any step; displacements are horizontal, in any direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakMotion {
     /// Largest displacement (m) relative to the ground.
@@ -105,14 +106,14 @@ impl PeakMotion {
     }
 }
 
-/// Follows all bodies of a run; needs every accepted step.
+/// Recorder of the fates of all bodies during a run; must receive every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<'a> {
     stack: &'a Stack,
     thresholds: Thresholds,
     /// Rotations of all bodies at rest.
     upright: Vec<Rotation3>,
-    /// Upward direction at rest in every body, in its own frame.
+    /// Direction in the frame of every body that points up at rest.
     upward: Vec<Vec3>,
     /// Rotations of all bodies in the current state.
     turned: Vec<Rotation3>,
@@ -124,7 +125,7 @@ pub struct Fates<'a> {
 }
 
 impl<'a> Fates<'a> {
-    /// Creates the fates of a stack at rest.
+    /// Creates the recorder for a stack at rest.
     pub fn new(stack: &'a Stack, state: &State<Spatial>, thresholds: Thresholds) -> Self {
         let ground = state.poses[Stack::GROUND].position;
         let fate = |pose: &barrelstack_dynamics::Pose<Spatial>| Fate {
@@ -225,7 +226,7 @@ impl<'a> Fates<'a> {
         }
     }
 
-    /// Returns kind and direction of a loss of seat, if a body has left its seat now.
+    /// Returns kind and direction of the loss of seat if a body has left its seat in the current state.
     fn lost(&self, i: BodyId, slips: &[Vec3]) -> Option<(Loss, Heading)> {
         let part = &self.stack.parts[i];
         let fate = &self.all[i];
@@ -237,7 +238,7 @@ impl<'a> Fates<'a> {
         if part.kind == PartKind::Barrel {
             let most = self.thresholds.seat_loss_ratio * part.size;
             if slip.dot(slip) > most * most {
-                // Relative to the ground, not in the frame of a rack that may be tilted.
+                // The direction is relative to the ground, since the rack may be tilted.
                 let displacement =
                     part.carrier.map_or(fate.moved, |rack| fate.moved - self.all[rack].moved);
                 return Some((Loss::Displaced, Heading::of(displacement)));
@@ -274,9 +275,10 @@ impl<'a> Fates<'a> {
         self.turned[i].apply(self.upward[i])
     }
 
-    /// Computes the displacements (m) of a body relative to its supports: of a barrel in the frame of its rack, of a
-    /// rack on each of the barrels below in its own frame, of others relative to the ground; in the orientation at
-    /// rest.
+    /// Computes the displacements (m) of a body relative to its supports, along the axes at rest.
+    ///
+    /// A barrel has one displacement, in the frame of its rack. A rack has one for each barrel below, in the frame of
+    /// the rack. Other bodies have one, relative to the ground.
     fn slips(&self, state: &State<Spatial>, i: BodyId, slips: &mut Vec<Vec3>) {
         slips.clear();
         let part = &self.stack.parts[i];
@@ -302,7 +304,7 @@ fn mean(slips: &[Vec3]) -> Vec3 {
     slips.iter().fold(Vec3::default(), |sum, slip| sum + *slip) * (1.0 / slips.len() as f64)
 }
 
-/// Returns the horizontal part.
+/// Returns the horizontal part of a vector.
 fn level(vector: Vec3) -> Vec3 {
     Vec3::new(vector.x, vector.y, 0.0)
 }

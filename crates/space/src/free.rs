@@ -1,4 +1,4 @@
-//! Assembles a free scene in space: bodies, and contact pairs with their laws.
+//! Assembly of a free scene in space: bodies, and contact pairs with their laws.
 
 use barrelstack::RunFailure;
 use barrelstack::assemble::{AssembleError, PartKind, laws_of_free};
@@ -15,8 +15,7 @@ use crate::step::{critical_of_interface, time_step};
 /// Builds a free scene, without settling it.
 pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stack, RunFailure> {
     if scenario.run.similitude != 1.0 {
-        let reason =
-            "scaled scenes are known in a plane, not yet in space: set run.similitude to 1".into();
+        let reason = "scaled scenes are supported only in a plane: set run.similitude to 1".into();
         return Err(AssembleError::NotInSpace { field: "run.similitude", reason }.into());
     }
     let mut floor = ground();
@@ -46,7 +45,7 @@ pub(crate) fn assemble(scenario: &Scenario, scene: &SpatialScene) -> Result<Stac
     })
 }
 
-/// Returns all pairs of solids of two bodies that an interface names, each once.
+/// Returns the contact pairs of all solids of any two bodies with an interface, each pair once.
 fn pairs(scene: &SpatialScene, bodies: &[Body<Spatial>]) -> Vec<ContactPair> {
     let mut list = Vec::new();
     for one in 0..bodies.len() {
@@ -77,7 +76,7 @@ fn is_unbounded(body: &Body<Spatial>) -> bool {
     body.surfaces.iter().any(|placed| placed.surface == Solid::HalfSpace)
 }
 
-/// Returns the interface of two bodies, and `true` if it names the second of them first.
+/// Returns the interface of two bodies, and `true` if the interface names the second body first.
 fn law_of(scene: &SpatialScene, [one, other]: [BodyId; 2]) -> Option<(usize, bool)> {
     let label = |id: BodyId| match id.checked_sub(1) {
         Some(at) => (scene.bodies[at].kind(), scene.bodies[at].group.as_deref()),

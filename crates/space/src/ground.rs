@@ -10,11 +10,11 @@ const SQUARE: f64 = 5.0;
 /// Ground motion of a stack in space.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// The component of the scenario, with the vertical one if any.
+    /// The horizontal component of the scenario, and the vertical component if there is one.
     pub first: barrelstack::Ground,
     /// The other horizontal component; `None` if the motion has only one.
     pub second: Option<barrelstack::Ground>,
-    /// Cosine and sine of the counterclockwise rotation of the stack.
+    /// Cosine and sine of the angle by which the stack is rotated counterclockwise.
     turn: [f64; 2],
     /// 1 if the second component points a quarter turn counterclockwise from the first, -1 if clockwise.
     hand: f64,
@@ -23,8 +23,8 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Returns the ground motion of a scenario: rotated by its azimuth (rad), with its component across the barrels
-    /// and the other one along them.
+    /// Returns the ground motion of a scenario, rotated by the azimuth of its stack. At an azimuth of zero, the
+    /// component of the scenario acts across the barrels, and the other horizontal component along them.
     ///
     /// # Errors
     /// If the motion cannot be read, or cannot be scaled as the scenario requires.
@@ -32,7 +32,8 @@ impl Ground {
         Ok(Self::of_spec(&scenario.motion, scenario.run.similitude)?.under(scenario))
     }
 
-    /// Returns a motion for a stack of a length scale, not rotated: its component acts across the barrels.
+    /// Returns a motion that is not rotated, for a stack built at the length scale `similitude`: the specified
+    /// component acts across the barrels.
     ///
     /// # Errors
     /// As [`Ground::of`].
@@ -44,19 +45,19 @@ impl Ground {
         let recorded = matches!(motion.source, MotionSource::Record(_));
         if recorded && second.is_none() {
             warnings.push(
-                "the record has one horizontal component: nothing shakes the ground at a right angle to it"
+                "the record has only one horizontal component: the ground does not move at a right angle to it"
                     .to_owned(),
             );
         }
         let turned = turn_to_other(motion)?.filter(|_| second.is_some());
         match turned {
             None if second.is_some() => warnings.push(
-                "the record does not say how its horizontal components lie to each other: the second one is taken to \
-                 point a quarter turn against the clock from the first"
+                "the record does not state the directions of its horizontal components: the second is assumed to point \
+                 a quarter turn counterclockwise from the first"
                     .to_owned(),
             ),
             Some(turn) if (turn % 180.0 - 90.0).abs() > SQUARE => warnings.push(format!(
-                "the horizontal components of the record are {turn:.0} degrees apart, and are taken for a quarter turn"
+                "the horizontal components of the record are {turn:.0} degrees apart, but are used as if they were a quarter turn apart"
             )),
             Some(_) | None => {}
         }
@@ -64,7 +65,7 @@ impl Ground {
         Ok(Self { first, second, turn: [1.0, 0.0], hand, warnings })
     }
 
-    /// Rotates the motion to the stack of a scenario, by its azimuth.
+    /// Returns the motion rotated by the azimuth of the stack of a scenario.
     #[must_use]
     pub fn under(self, scenario: &Scenario) -> Self {
         let azimuth = scenario.stack().and_then(|stack| stack.space).map_or(0.0, |s| s.azimuth);
@@ -87,23 +88,24 @@ impl Ground {
         self.first.motion_end().map(|_| self.end())
     }
 
-    /// Returns the time (s) from which the ground is still: the end of its motion, or the start.
+    /// Returns the time (s) from which the ground is still: the end of the motion, or zero without motion.
     pub fn end(&self) -> f64 {
         self.each(barrelstack::Ground::end)
     }
 
-    /// Returns the time (s) from which none of its accelerations exceeds a limit (m/s²).
+    /// Returns the time (s) from which no acceleration exceeds a limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         self.each(|ground| ground.calm_from(limit))
     }
 
-    /// Returns source and processing of its components, one sentence each.
+    /// Returns source and processing of all components, one sentence each.
     pub fn provenance(&self) -> Vec<String> {
         let grounds = [Some(&self.first), self.second.as_ref()];
         let motions = grounds.into_iter().flatten().filter_map(|ground| ground.motion.as_ref());
         let mut steps: Vec<String> = Vec::new();
         for step in motions.flat_map(|motion| &motion.provenance) {
-            // Both are of one record, and the vertical component goes with the first.
+            // Both horizontal components are of one record, so steps repeat; the vertical component is part of the
+            // first.
             if !steps.contains(step) {
                 steps.push(step.clone());
             }
@@ -116,7 +118,7 @@ impl Ground {
     }
 }
 
-/// Ground that moves across the barrels of a stack, and vertically.
+/// Uses a plane motion in space: its horizontal component acts across the barrels.
 impl From<barrelstack::Ground> for Ground {
     fn from(first: barrelstack::Ground) -> Self {
         let warnings = first.warnings.clone();

@@ -1,10 +1,10 @@
-//! Features of a stack that are supported in space; others are rejected at their field.
+//! Check that space supports all features of a stack; others are rejected with the name of their field.
 
 use barrelstack::assemble::{AssembleError, CHIME_RADIUS, TUBE_CORNER};
 use barrelstack::scenario::{Basis, Fill, RackKind, Scenario, SeatContact, StackSpec};
 use barrelstack_dynamics::solid::Barrel;
 
-/// Rejects unsupported features; returns the barrel.
+/// Returns the barrel of a stack, or rejects a feature that is not supported in space.
 pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, AssembleError> {
     let refuse = |field, reason: String| Err(AssembleError::NotInSpace { field, reason });
     let rack = &spec.rack;
@@ -12,8 +12,8 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
         return refuse(
             "stack.rack",
             format!(
-                "stack.rack = \"{}\" has {}; known in space are racks that lie on the barrels below with straight \
-                 tubes: take \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
+                "stack.rack = \"{}\" has {}; space supports only racks that lie on the barrels below with straight \
+                 tubes: choose \"two-barrel\" or \"four-barrel\", or set stack.view to \"both\"",
                 rack.base,
                 if rack.kind == RackKind::OnBarrels { "feet" } else { "posts" }
             ),
@@ -22,7 +22,7 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
     if rack.incline != 0.0 {
         return refuse(
             "stack.rack.incline",
-            "rails that raise one end of every barrel are known in a plane, not yet in space: set \
+            "rails that raise one end of every barrel are supported only in a plane: set \
              stack.rack.incline to 0, or stack.view to \"both\""
                 .into(),
         );
@@ -32,8 +32,8 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
     if rack.contact != SeatContact::Rails && bases.iter().any(|basis| *basis != Basis::Seat) {
         return refuse(
             "stack.rack.contact",
-            "in space a rack has two beams, each a contact element of its own wherever it touches, and constants that are \
-             not stated per seat hold for another division: set stack.rack.contact to \"rails\", the basis of \
+            "in space each of the two beams of a rack has a single contact element wherever it touches, so contact constants \
+             must be stated per seat: set stack.rack.contact to \"rails\", the basis of \
              interface.rack-ground and interface.barrel-rack to \"seat\", or stack.view to \"both\""
                 .into(),
         );
@@ -42,7 +42,7 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
     if fills.into_iter().any(|fill| fill == Fill::Part) {
         return refuse(
             "stack.barrel.fill",
-            "wine that sloshes is known in a plane, not yet in space: set stack.barrel.fill to \"full-fluid\", \
+            "sloshing wine is supported only in a plane: set stack.barrel.fill to \"full-fluid\", \
              \"full-frozen\" or \"empty\", or stack.view to \"both\""
                 .into(),
         );
@@ -50,7 +50,7 @@ pub(crate) fn known(scenario: &Scenario, spec: &StackSpec) -> Result<Barrel, Ass
     if scenario.run.similitude != 1.0 {
         return refuse(
             "run.similitude",
-            "scaled stacks are known in a plane, not yet in space: set run.similitude to 1".into(),
+            "scaled stacks are supported only in a plane: set run.similitude to 1".into(),
         );
     }
     let tube = (0.5 * rack.beam_height - TUBE_CORNER).max(0.0);

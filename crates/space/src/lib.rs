@@ -1,4 +1,4 @@
-//! Stacks of barrels and free scenes in space, under all three components of a motion.
+//! Stacks of barrels and free scenes in space, shaken by all three components of a motion.
 //!
 //! ```text
 //! Scenario ─ stack::assemble ─▶ Stack { Model, parts }
@@ -7,10 +7,11 @@
 //!               settle ─▶ simulate, watched ─▶ Run ─▶ Summary (JSON), files, page
 //! ```
 //!
-//! Across the barrels is `x`, along them `y`, and `z` is up; columns count along `x`, rows along `y`.
-//! A run differs from that of the plane in geometry only: the laws, steps, thresholds and words are the same.
+//! `x` is across the barrels, `y` along them, and `z` up; columns are counted along `x`, rows along `y`. A run in space
+//! differs from a run in the plane in geometry only: the laws, time steps, thresholds and words are the same.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results are bit-identical on every machine, so the transcendental functions of the platform are disallowed
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod builder;

@@ -1,4 +1,4 @@
-//! Triangle meshes of bodies in space, and a run of them for viewers.
+//! Triangle meshes of the bodies of a run in space, for three-dimensional viewers.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -8,15 +8,15 @@ use barrelstack_report::{Role, SolidBody, Solids};
 
 use crate::run::Run;
 
-/// Number of corners per quarter circle, for balls and barrels, and for tubes, of which racks have many: all corners
-/// are written for every frame.
+/// Number of mesh steps per quarter circle: `FINE` for balls and barrels, `COARSE` for tubes. Racks have many tubes,
+/// and all points are written for every frame.
 const FINE: u32 = 6;
 const COARSE: u32 = 3;
 
 /// Points of a surface (m) and its triangles, counterclockwise from outside.
 type Mesh = (Vec<Vec3>, Vec<[usize; 3]>);
 
-/// Returns the bodies of a run between two times (s), as triangles.
+/// Returns the bodies of a run as triangle meshes, with their frames between two times (s).
 pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     let floor = floor(run);
     let parts = run.stack.parts.iter().zip(run.stack.model.bodies());
@@ -47,8 +47,8 @@ pub fn solids(run: &Run, [from, to]: [f64; 2]) -> Solids {
     }
 }
 
-/// Returns half the side (m) of the square that represents a half-space: viewers fit their first picture to all of
-/// it.
+/// Returns half the side (m) of the square that represents a half-space. It is kept small, since viewers fit their
+/// first picture to the whole square.
 fn floor(run: &Run) -> f64 {
     let far = |pose: &[f64; 7]| pose[..3].iter().fold(0.0_f64, |far, x| far.max(x.abs()));
     let sizes = run.stack.model.bodies().iter().map(Body::reach);
@@ -56,13 +56,13 @@ fn floor(run: &Run) -> f64 {
     run.frames.poses.iter().flatten().map(far).fold(0.0, f64::max) + 2.0 * reach
 }
 
-/// Returns the surface of a body in its frame, with half-spaces as squares of half a side (m).
+/// Returns the mesh of a body in its frame, with half-spaces as squares; `floor` is half their side (m).
 fn surface(body: &Body<Spatial>, floor: f64) -> Mesh {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for placed in &body.surfaces {
         let (own, faces) = match &placed.surface {
             Solid::HalfSpace => square(floor),
-            // It lies in the ground.
+            // Not shown, since it lies in the ground.
             Solid::Dish(_) => Mesh::default(),
             Solid::Ball(ball) => revolved(&rounded(0.0, ball.radius, FINE), FINE),
             Solid::Capsule(tube) => {
@@ -105,7 +105,7 @@ fn square(half: f64) -> Mesh {
     (corners, vec![[0, 1, 2], [0, 2, 3]])
 }
 
-/// Returns a block of half sides (m), with sharp edges.
+/// Returns the mesh of a block with sharp edges, from half its sides (m).
 fn cuboid(half: Vec3) -> Mesh {
     let corner = |at: u32| {
         let side = |bit: u32| if at & bit == 0 { -1.0 } else { 1.0 };
@@ -117,8 +117,8 @@ fn cuboid(half: Vec3) -> Mesh {
     ((0..8).map(corner).collect(), triangles.collect())
 }
 
-/// Returns the profile of a tube with round ends, as position along the axis and distance from it (m), from pole to
-/// pole, with a number of steps per quarter circle.
+/// Returns the profile of a tube with round ends, from pole to pole, as positions along the axis and distances from it
+/// (m); `quarter` is the number of steps per quarter circle.
 fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     let step = FRAC_PI_2 / f64::from(quarter);
     let end = |side: f64, at: u32| {
@@ -134,8 +134,8 @@ fn rounded(half_length: f64, radius: f64, quarter: u32) -> Vec<[f64; 2]> {
     profile
 }
 
-/// Returns the surface of revolution of a profile, from pole to pole, about `x`, with a number of steps per quarter
-/// turn.
+/// Returns the mesh of the surface of revolution of a profile from pole to pole about `x`; `quarter` is the number of
+/// steps per quarter turn.
 fn revolved(profile: &[[f64; 2]], quarter: u32) -> Mesh {
     debug_assert!(profile.len() >= 3, "a profile between two poles");
     let around = 4 * quarter as usize;
@@ -171,13 +171,13 @@ mod tests {
 
     use super::*;
 
-    /// Returns the volume (m³) that a closed surface encloses; negative if it is inside out.
+    /// Returns the volume (m³) that a closed mesh encloses; negative if the mesh is inside out.
     fn volume((points, triangles): &Mesh) -> f64 {
         let corner = |[a, b, c]: &[usize; 3]| points[*a].dot(points[*b].cross(points[*c])) / 6.0;
         triangles.iter().map(corner).sum()
     }
 
-    /// Returns `true` if every edge of a surface belongs to two triangles, with opposite directions.
+    /// Returns `true` if every edge of a mesh belongs to two triangles, with opposite directions.
     fn is_closed((_, triangles): &Mesh) -> bool {
         let mut edges: Vec<(usize, usize)> =
             triangles.iter().flat_map(|[a, b, c]| [(*a, *b), (*b, *c), (*c, *a)]).collect();

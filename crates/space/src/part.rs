@@ -12,15 +12,15 @@ pub struct Part {
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
-    /// Level, 1 at the bottom; 0 for a body that belongs to no stack.
+    /// Level, 1 at the bottom; 0 for a body outside of a stack.
     pub level: u32,
-    /// Column, 1 at the left: of barrels, or of racks for a rack.
+    /// Column, 1 at the left; racks are counted separately from barrels.
     pub column: u32,
-    /// Row, 1 nearest: of barrels, or of racks for a rack.
+    /// Row, 1 nearest; racks are counted separately from barrels.
     pub row: u32,
-    /// For a barrel the rack that carries it.
+    /// For a barrel, the rack that carries it; for a rack on isolators, its platform; for a tuned mass, its rack.
     pub carrier: Option<BodyId>,
-    /// For a rack above the first level, the barrels it lies on.
+    /// For a rack above the first level, the barrels on which it lies.
     pub supports: Vec<BodyId>,
     /// Characteristic size (m) of the body: for a barrel the radius above the beams, for a rack half its width.
     pub size: f64,
@@ -35,14 +35,15 @@ pub struct Part {
 /// Seats of the tubes of a rack.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Seats {
-    /// For every tube the barrel that it carries.
+    /// For every tube, the barrel that it carries.
     pub(crate) carries: Vec<Option<BodyId>>,
-    /// For every tube the barrels on which it lies; empty on the ground, `None` if it bears on nothing.
+    /// For every tube, the barrels on which it lies; empty for a tube on the ground, `None` for a tube that bears on
+    /// nothing.
     pub(crate) lies_on: Vec<Option<Vec<BodyId>>>,
 }
 
 impl Part {
-    /// Creates a part that belongs to no stack.
+    /// Creates the description of a body outside of a stack.
     pub(crate) fn alone(name: &str, kind: PartKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -60,7 +61,7 @@ impl Part {
     }
 }
 
-/// Returns the ground: everything below a horizontal plane through the origin.
+/// Creates the ground: everything below a horizontal plane through the origin.
 pub(crate) fn ground() -> Body<Spatial> {
     let floor = Placed {
         surface: Solid::HalfSpace,
@@ -68,7 +69,7 @@ pub(crate) fn ground() -> Body<Spatial> {
         rotation: Rotation3::identity(),
     };
     let pose = Pose { position: Vec3::default(), orientation: Quaternion::identity() };
-    // No force moves it, so its mass is irrelevant.
+    // The ground moves as prescribed, so its mass is irrelevant.
     let body = Body::free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), pose);
     Body { motion: Motion::Prescribed, surfaces: vec![floor], ..body }
 }

@@ -1,4 +1,4 @@
-//! A rack as a frame of tubes, from the middle of its underside.
+//! Racks as frames of tubes, with the origin in the middle of their underside.
 //!
 //! ```text
 //!   along the barrels (y)                          across them (x)
@@ -8,9 +8,9 @@
 //!          o──────o      two beams, joined        ════╩═╩══════╩═╩════
 //! ```
 //!
-//! The plane across the barrels defines beams, cradles and their heights, that along them the positions of the beams;
-//! tubes are as wide as high. The connection of the beams is an assumption: two tubes on top of their ends, so that
-//! only the beams rest on the support.
+//! Beams, cradles and their heights are those of the plane model across the barrels, the positions of the beams those
+//! of the plane model along them; tubes are as wide as they are high. The connection of the beams is an assumption: two
+//! tubes on top of their ends, so that only the beams rest on the support.
 
 use barrelstack::assemble::{BAR_RADIUS, TUBE_CORNER};
 use barrelstack::device::Chocks;
@@ -20,19 +20,20 @@ use barrelstack_dynamics::{Quaternion, Rotation3, Vec3, math};
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Tubes of a rack, with their functions.
+/// Tubes of a rack, and what each of them carries.
 #[derive(Clone, Debug)]
 pub(crate) struct Tubes {
-    /// The tubes, with masses (kg) that add up to that of the rack; chocks, which are last, have none.
+    /// The tubes, with masses (kg) that add up to the mass of the rack. Chocks come last and have no mass.
     pub(crate) parts: Vec<Part>,
-    /// Place along the rack of the barrels that a beam carries and lies on, and the index of the beam, which rests on
-    /// the support.
+    /// For every beam, the position along the rack of the barrels that it carries and lies on, and the index of its
+    /// tube.
     pub(crate) beams: Vec<(u32, usize)>,
-    /// Column and place along the rack of a carried barrel, and the index of its post.
+    /// For every post, the column and the position along the rack of the barrel that it carries, and the index of its
+    /// tube.
     pub(crate) posts: Vec<((u32, u32), usize)>,
 }
 
-/// Heights (m) that result from rack and barrel.
+/// Heights (m) that result from the dimensions of rack and barrel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Heights {
     /// Height of the axis of a carried barrel above the underside of its rack.
@@ -41,8 +42,8 @@ pub(crate) struct Heights {
     pub(crate) underside: f64,
 }
 
-/// Returns the radius (m) of the surface at a distance (m) from the stave of a barrel, at a position (m) along its
-/// axis.
+/// Returns the radius (m) of the surface at a distance (m) outside of the stave of a barrel, at a position (m) along
+/// its axis.
 fn around(barrel: &Barrel, distance: f64, along: f64) -> f64 {
     let arc = barrel.stave_radius + barrel.rounding + distance;
     (arc * arc - along * along).sqrt() - barrel.stave_offset
@@ -58,8 +59,8 @@ impl Heights {
     }
 }
 
-/// Returns the tubes of a rack whose barrels lie `apart` (m) one behind the other, its chocks last; `None` if its
-/// cradle is not a pair of supports.
+/// Returns the tubes of a rack, with chocks last; `None` if its cradle is not a pair of supports. `apart` is the
+/// distance (m) of barrels that lie one behind the other.
 pub(crate) fn tubes(
     rack: &Rack,
     barrel: &Barrel,
@@ -74,7 +75,7 @@ pub(crate) fn tubes(
     let middle = |at: u32, count: u32| f64::from(at) - 0.5 * f64::from(count - 1);
     let (mut beams, mut posts) = (Vec::new(), Vec::new());
     let (mut list, mut horns) = (Vec::new(), Vec::new());
-    // A tube on a beam beside a barrel that ends at an angle and a distance from it.
+    // An upright tube on a beam beside a barrel; its upper end lies at an angle about the barrel and a gap from it.
     let beside = |[place, y]: [f64; 2], side: f64, angle: f64, gap: f64| {
         let (sin, cos) = math::sin_cos(angle);
         let away = around(barrel, BAR_RADIUS + gap, rack.rail_half_spacing);
@@ -104,7 +105,7 @@ pub(crate) fn tubes(
         let at = Vec3::new(side * half, 0.0, rack.beam_height);
         list.push(Tube::along_y(reach, BAR_RADIUS, at));
     }
-    // Tubes have one wall thickness: mass is proportional to length and circumference.
+    // All tubes have the same wall thickness, so mass is proportional to length and circumference.
     let weight = |tube: &Tube| (2.0 * tube.half_length + tube.radius) * tube.radius;
     let whole: f64 = list.iter().map(weight).sum();
     let weighs = list.iter().map(|tube| tube.part(rack.mass * weight(tube) / whole));

@@ -1,4 +1,4 @@
-//! Report of a run in space: verdict, three synchronized views, moments, numbers.
+//! Report of a run in space: the verdict, three synchronized views, the collapse sequence, and tables.
 
 use barrelstack::outcome::Outcome;
 use barrelstack::report::{WORDS, demand_table, device_table, interface_table, legend, unknowns};
@@ -14,7 +14,7 @@ use crate::summary::Summary;
 use crate::variants::Answer;
 use crate::words::{headline, rows, sentences, tone};
 
-/// Returns the whole report of an answer as a document, independent of the output format.
+/// Returns the report of an answer as a document, independent of the output format.
 pub fn document(answer: &Answer) -> Document {
     let Answer { run, summary, .. } = answer;
     let scenes = Sight::ALL.map(|sight| (sight, scene(run, sight)));
@@ -34,8 +34,8 @@ pub fn document(answer: &Answer) -> Document {
     let mut blocks = vec![Block::Players(Players {
         id: "players".into(),
         caption: format!(
-            "One run, in a view that can be turned, or flat from three sides at the same time and scale. In the flat \
-             views bodies cover each other as they stood at rest.{}",
+            "One run, in a view that can be turned, or in three flat views at the same time and scale. In the flat views, \
+             bodies are drawn in the order of their depth at rest.{}",
             legend(&scenes[0].1)
         ),
         panes: scenes.iter().map(pane).collect(),
@@ -78,7 +78,7 @@ pub fn document(answer: &Answer) -> Document {
         .rows
         .extend(rows(run, summary).into_iter().map(|(a, b)| vec![Cell::text(a), Cell::text(b)]));
     blocks.push(Block::Table(numbers));
-    // Numbers of a run that broke down look like results but are invalid.
+    // The numbers of a failed run look like results but are invalid.
     if !matches!(run.outcome, Outcome::Invalid { .. }) {
         blocks.push(heading("What became of every body"));
         blocks.push(Block::Table(if free { ends(summary) } else { fates(run) }));
@@ -88,12 +88,11 @@ pub fn document(answer: &Answer) -> Document {
                 Block::Table(demand_table(&summary.demands, &summary.demands_whole_run)),
             ]);
             let table = interface_table(
-                "Force on the upper body, or on the one that is named first, largest in size of all steps until the \
-                 first loss of seat, and of all steps of the run, falls included; horizontal forces whatever their \
-                 direction.",
+                "Force on the upper body, or on the body that is named first: the largest magnitude until the first loss of \
+                 seat, and over the whole run, falls included. Horizontal forces are those in any direction.",
                 &summary.interfaces,
             );
-            blocks.extend([heading("What the seats bore"), Block::Table(table)]);
+            blocks.extend([heading("Forces at the seats"), Block::Table(table)]);
         }
         for device in &summary.devices.0 {
             let table = device_table(device);
@@ -120,14 +119,14 @@ pub fn document(answer: &Answer) -> Document {
     }
 }
 
-/// Returns the statistics of all variants as a table.
+/// Returns the statistics of all variants as a table; `None` without variants.
 fn variants(summary: &Summary) -> Option<Table> {
     let (spread, directions) = (summary.ensemble.as_ref()?, summary.directions.as_ref()?);
     let mut table = Table::new(
         format!(
-            "Ranges are those of 5 to 95 % of the variants. The direction of the first body is that in which it \
-             left its seat; that of a barrel which fell{} leads from its place at rest to its place when its variant \
-             ended.",
+            "Ranges cover 5 to 95 % of the variants. The direction of the first body is the one in \
+             which it left its seat. The direction of a barrel that fell{} leads from its place at rest to its place at the \
+             end of the variant.",
             spread.counted("the first loss")
         ),
         &[("", ""), ("in space", "")],
@@ -199,7 +198,7 @@ fn fates(run: &Run) -> Table {
     let time = |at: Option<f64>| Cell::measured(at, 2);
     let length = |value: f64| Cell::Measured(100.0 * value, 1);
     Table::of(
-        "Slips are those against what a body stands on, while the stack stood; displacements are those at the end.",
+        "Slips are relative to the supports of a body, before the first loss of seat; displacements are those at the end.",
         run.stack.parts.iter().zip(&run.fates).skip(1),
         &[
             ("body", "", &|(part, _)| Cell::text(&part.name)),
@@ -218,19 +217,19 @@ fn fates(run: &Run) -> Table {
     )
 }
 
-/// Returns the fates of the bodies of a free scene.
+/// Returns the final state and the largest displacements of the bodies of a free scene.
 fn ends(summary: &Summary) -> Table {
     let measured = |value: f64| Cell::Measured(value, 4);
     let length = |[x, y, z]: [f64; 3]| measured((x * x + y * y + z * z).sqrt());
     Table::of(
-        "Ways are those from where a body was at rest, over the ground.",
+        "Displacements are relative to the ground, from the position at the start.",
         &summary.bodies,
         &[
             ("body", "", &|body| Cell::text(&body.name)),
             ("moved along x", "m", &|body| measured(body.moved[0])),
             ("y", "m", &|body| measured(body.moved[1])),
             ("z", "m", &|body| measured(body.moved[2])),
-            ("largest way over the ground", "m", &|body| measured(body.peak_displacement)),
+            ("largest horizontal displacement", "m", &|body| measured(body.peak_displacement)),
             ("largest rise", "m", &|body| measured(body.peak_uplift)),
             ("speed at the end", "m/s", &|body| length(body.velocity)),
             ("spin at the end", "rad/s", &|body| length(body.spin)),

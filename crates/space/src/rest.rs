@@ -1,5 +1,5 @@
-//! Rest criterion in space, as in the plane: the ground is still, or calm after a collapse, and no motion is fast
-//! enough to change the outcome.
+//! Rest criterion in space, as in the plane: a run ends when the ground is still (or, after a collapse, calm) and no
+//! body is fast enough to change the outcome.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::scenario::Scenario;
@@ -9,7 +9,7 @@ use barrelstack_dynamics::{BodyId, Linear as _, Space as _, Spatial, State, Vec3
 use crate::ground::Ground;
 use crate::stack::Stack;
 
-/// Detects rest of all bodies.
+/// Detector of the rest of all bodies.
 pub(crate) struct Rest<'a> {
     stack: &'a Stack,
     /// Times (s) from which the ground is still, and calm; infinite if the run does not end by rest.
@@ -29,7 +29,8 @@ impl<'a> Rest<'a> {
         Self { stack, still_from, calm_from, slow: gravity * CLIMB, moved: 0.0 }
     }
 
-    /// Records an accepted state, and whether the stack has collapsed; returns `true` if all have come to rest.
+    /// Records an accepted state; returns `true` if all bodies have come to rest. `collapsed` is `true` after a loss of
+    /// seat.
     pub(crate) fn observe(&mut self, state: &State<Spatial>, collapsed: bool) -> bool {
         let from = if collapsed { self.calm_from } else { self.still_from };
         let moves = state.time < from
@@ -49,7 +50,7 @@ impl<'a> Rest<'a> {
         self.slow < 0.5 * velocity.dot(velocity) + turning / of.mass
     }
 
-    /// Returns `true` if a body is a barrel on the floor that reaches nothing any more.
+    /// Returns `true` if a body is a barrel on the floor that rolls away from all other bodies.
     fn rolls_away(&self, state: &State<Spatial>, own: BodyId) -> bool {
         let part = &self.stack.parts[own];
         if part.kind != PartKind::Barrel {

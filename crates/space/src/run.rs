@@ -1,4 +1,4 @@
-//! One run of a scenario in space, and its result.
+//! A run of a scenario in space, and its result.
 
 use std::ops::ControlFlow;
 
@@ -34,7 +34,7 @@ pub struct Standing {
     pub state: State<Spatial>,
     /// The forces at rest.
     pub scratch: Scratch<Spatial>,
-    /// Result of settling; `None` where the scenario starts without.
+    /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
 }
 
@@ -43,9 +43,10 @@ pub struct Standing {
 pub struct Frames {
     /// Times (s).
     pub times: Vec<f64>,
-    /// For every frame and body, position (m) and quaternion `w`, `x`, `y`, `z`.
+    /// For every frame and body, the position of the center of mass (m) and the quaternion `w`, `x`, `y`, `z` of the
+    /// rotation.
     pub poses: Vec<Vec<[f64; 7]>>,
-    /// For every frame and body, velocity of its center of mass (m/s) and spin (rad/s).
+    /// For every frame and body, the velocity of the center of mass (m/s) and the spin (rad/s).
     pub twists: Vec<Vec<[f64; 6]>>,
 }
 
@@ -74,17 +75,17 @@ pub struct Run {
     pub frames: Frames,
     /// The final state.
     pub last: State<Spatial>,
-    /// Energy balance at the end; `None` if numbers were lost.
+    /// Energy balance at the end; `None` if the numbers are no longer finite.
     pub energy: Option<EnergySummary>,
-    /// Result of settling; `None` where the scenario starts without.
+    /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
     /// Integration settings.
     pub simulation: Simulation,
-    /// Work counters.
+    /// Numbers of steps and evaluations.
     pub work: Work,
-    /// Time (s) that the run reached.
+    /// Time (s) at which the run ended.
     pub end_time: f64,
-    /// Reason for its end.
+    /// Reason for the end of the run.
     pub ending: Ending,
     /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
@@ -103,7 +104,7 @@ pub struct Run {
 /// ```
 ///
 /// # Errors
-/// If it cannot be built, or does not stand.
+/// If the stack cannot be built, or does not stand.
 pub fn stand(scenario: &Scenario) -> Result<Standing, RunFailure> {
     at_rest(scenario, Stack::of(scenario)?)
 }
@@ -121,7 +122,7 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
         settled = Some(rest(&stack, &mut state, &mut scratch)?);
     }
     let strained = stack.fasten(&mut state).map_err(AssembleError::from)?;
-    // Elements under load press the stack together.
+    // Elements under load press the stack together, so it settles again.
     if let Some(before) = settled.filter(|_| strained) {
         let found = rest(&stack, &mut state, &mut scratch)?;
         settled = Some(Settled { steps: before.steps + found.steps, ..found });
@@ -133,7 +134,7 @@ fn at_rest(scenario: &Scenario, mut stack: Stack) -> Result<Standing, RunFailure
     Ok(Standing { stack, state, scratch, settled })
 }
 
-/// Rejects bodies that overlap before anything has moved.
+/// Rejects a stack whose bodies overlap as built.
 fn check_overlap(stack: &Stack, scratch: &Scratch<Spatial>) -> Result<(), AssembleError> {
     let depth = |contact: &&Contact<Spatial>| contact.penetration;
     let deepest = scratch.contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
@@ -163,7 +164,7 @@ pub fn run(scenario: &Scenario) -> Result<Run, RunFailure> {
     run_on(scenario, ground, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Returns the latest end (s) of a run; rejects one that would not end in a day, or not fit into memory.
+/// Returns the latest end (s) of a run; rejects a run that would not finish within a day, or not fit into memory.
 pub(crate) fn affordable(
     scenario: &Scenario,
     stack: &Stack,
@@ -171,14 +172,16 @@ pub(crate) fn affordable(
 ) -> Result<f64, RunFailure> {
     let end_time = end_time(scenario, ground.motion_end(), 1.0)?;
     check_length(end_time, stack.step)?;
-    // A frame has position, quaternion, velocity and spin of every body.
+    // A frame has 13 numbers of every body: position, quaternion, velocity and spin.
     let frames = end_time * scenario.record.frame_rate + 1.0;
     check_kept((frames, stack.parts.len(), 13), (0.0, 0))?;
     Ok(end_time)
 }
 
-/// Runs a scenario in space on a given ground with an observer, which receives the progress at least every 0.05 s of
-/// simulated time and may stop it; the results until then are returned.
+/// Runs a scenario in space under a given ground motion.
+///
+/// The observer receives the progress at least every 0.05 s of simulated time, and may stop the run; the results until
+/// then are returned.
 ///
 /// # Errors
 /// If the stack cannot be built in space, or does not stand.
@@ -251,7 +254,7 @@ pub fn run_on(
 }
 
 impl Run {
-    /// Returns every element of a device with its words and its fate.
+    /// Returns every element of the devices, with the words of its device and its fate.
     pub(crate) fn devices(
         &self,
     ) -> impl Iterator<Item = ((&Element<Spatial>, &'static Words), &ElementFate)> + Clone {
@@ -271,13 +274,15 @@ impl Run {
     }
 }
 
-/// Walk of a rack along the barrels before it tilts, over its reach, above which it counts as sliding: a convention.
+/// Walk of a rack along the barrels before it tilts, as a fraction of its reach, above which it counts as sliding: a
+/// convention.
 const SLID_BEFORE_IT_TILTED: f64 = 0.5;
 
-/// Judges as in the plane, by the first body that left its seat, except for sliding.
+/// Returns the outcome of a run, which depends on the first body that left its seat, as in the plane; only sliding
+/// differs.
 ///
-/// A rack slides off along the barrels if its beam has passed their ends, or if it tilts in that direction after more
-/// than half of its reach: a round beam comes down over the chime before its middle has passed it.
+/// A rack slides off along the barrels if its beam has passed their ends, or if it tilts in that direction after a walk
+/// of more than half of its reach: a round beam comes down over the chime before the middle of the beam has passed it.
 fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     let Some((time, first)) = fates.collapse() else {
         return if stack.is_free() { Outcome::NotJudged } else { Outcome::Stable };
@@ -294,7 +299,7 @@ fn judge(stack: &Stack, fates: &Fates<'_>) -> Outcome {
     collapse(time, (&part.name, part.kind, part.level), slid, stack.levels)
 }
 
-/// Maximum number of steps between two polls whether to stop.
+/// Maximum number of steps between two calls of the observer.
 const PATIENCE: u32 = 16;
 
 /// Combined observer of a run.
@@ -343,7 +348,7 @@ impl Observer<Spatial> for Watch<'_> {
             };
             self.frames.twists.push(state.twists.iter().map(twist).collect());
         }
-        // Steps of many bodies take long.
+        // Steps of many bodies take long, so their number is limited as well.
         self.steps += 1;
         if time >= self.next_look || self.steps == PATIENCE {
             (self.next_look, self.steps) = (time + PROGRESS, 0);

@@ -1,4 +1,4 @@
-//! Forces of seats in space, and of their contacts: at rest, and at their largest.
+//! Forces of seats and their contacts in space: at rest, and the largest during the run.
 
 use barrelstack::demand::Span;
 use barrelstack::watch::{Joint, Joints, leans_on};
@@ -26,17 +26,17 @@ impl Press {
     }
 }
 
-/// Follows the forces of joints and contacts of a run; needs every accepted step.
+/// Recorder of the forces of joints and contacts of a run; must receive every accepted step.
 #[derive(Clone, Debug)]
 pub struct Seats {
-    /// Every barrel on its rack, every rack on its supports, and other bodies that have met; horizontal forces are
-    /// magnitudes.
+    /// Joints: every barrel on its rack, every rack on its supports, and other bodies that have touched; horizontal
+    /// forces are magnitudes.
     pub joints: Joints,
-    /// The forces (N) on the upper bodies of the joints in the current step.
+    /// Forces (N) on the upper bodies of the joints in the current step.
     forces: Vec<Vec3>,
-    /// One for every contact element of every pair, pair after pair.
+    /// Forces of every contact element of every pair, pair after pair.
     presses: Vec<Press>,
-    /// In the order of the model; empty for a free scene.
+    /// Contact pairs in the order of the model; empty for a free scene.
     pairs: Vec<Pair>,
 }
 
@@ -44,14 +44,14 @@ pub struct Seats {
 #[derive(Clone, Debug)]
 struct Pair {
     bodies: [BodyId; 2],
-    /// Index of its first contact element.
+    /// Index of the first contact element of the pair.
     first: usize,
-    /// Index of its joint, once its bodies have met, and `true` if the contactor is the upper body.
+    /// Index of the joint of the two bodies, once they have touched, and `true` if the contactor is the upper body.
     joint: Option<(usize, bool)>,
 }
 
 impl Seats {
-    /// Starts with the forces at rest.
+    /// Creates the recorder with the forces at rest.
     pub fn new(stack: &Stack, time: f64, scratch: &Scratch<Spatial>) -> Self {
         let below = stack.parts.iter();
         let below = below.map(|part| leans_on(part.kind, part.carrier, &part.supports));
@@ -115,15 +115,18 @@ impl Seats {
         own.flat_map(|(pair, end)| &self.presses[pair.first..end])
     }
 
-    /// Returns the largest contact force on a body in a span of the run over the largest at rest, which equals that
-    /// of stresses, since every element has the same tributary length; `None` without load at rest.
+    /// Returns the largest contact force on a body in a span of the run over the largest at rest; `None` without load
+    /// at rest.
+    ///
+    /// This ratio is also that of the stresses, since every contact element has the same tributary length.
     pub fn amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let most = |of: &dyn Fn(&Press) -> f64| self.of(body).map(of).fold(0.0, f64::max);
         let at_rest = most(&|press| press.at_rest);
         (at_rest > 0.0).then(|| most(&|press| press.peak_in(span)) / at_rest)
     }
 
-    /// Returns the ratio of the sums over the elements loaded at rest, likewise.
+    /// Returns the sum of the largest contact forces on a body in a span of the run over the sum at rest, for the
+    /// contact elements loaded at rest; `None` without load at rest.
     pub fn mean_amplification(&self, body: BodyId, span: Span) -> Option<f64> {
         let sum = |of: &dyn Fn(&Press) -> f64| {
             self.of(body).filter(|press| press.at_rest > 0.0).map(of).sum::<f64>()

@@ -1,4 +1,4 @@
-//! Assembles the stack of a scenario in space.
+//! Assembly of the stack or the free scene of a scenario in space.
 
 use std::collections::BTreeMap;
 
@@ -16,14 +16,15 @@ use crate::known::known;
 pub use crate::part::Part;
 use crate::rack::Heights;
 
-/// A stack in space, or the bodies of a free scene there.
+/// A stack in space, or the bodies of a free scene in space.
 #[derive(Clone, Debug)]
 pub struct Stack {
     /// The model.
     pub model: Model<Spatial>,
     /// One part for every body, in the same order; the ground comes first.
     pub parts: Vec<Part>,
-    /// Time step (s), the smaller of those of the same stack across its barrels and along them; impacts divide it.
+    /// Time step (s), divided during impacts; for a stack, the smaller of the steps of its plane models across and
+    /// along the barrels.
     pub step: f64,
     /// Height (m) from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
@@ -31,12 +32,12 @@ pub struct Stack {
     pub levels: u32,
     /// Radius (m) of a barrel at its widest, on which it lies on the ground; zero for a free scene.
     pub bilge_radius: f64,
-    /// Displacement (m) of a rack on the barrels below, across and along them, beyond which it is no longer
-    /// supported, as in the plane of each.
+    /// Displacements (m) of a rack on the barrels below, across and along them, beyond which it is no longer supported;
+    /// as in the respective plane.
     pub reach: [f64; 2],
-    /// Vertical force (N) that the staves of a barrel bear between its racks; zero for a free scene.
+    /// Vertical force (N) that the staves of a barrel can bear between two racks; zero for a free scene.
     pub stave_capacity: f64,
-    /// Elements of devices that are fitted once the stack is at rest.
+    /// Elements of devices that will be fitted once the stack is at rest.
     pub(crate) loose: Vec<Loose>,
     /// The device of every element of the model.
     pub(crate) devices: Vec<&'static Words>,
@@ -46,7 +47,7 @@ impl Stack {
     /// The body driven by the ground motion.
     pub const GROUND: BodyId = 0;
 
-    /// Returns `true` if it is a free scene, which has no seats.
+    /// Returns `true` for a free scene, which has no seats.
     pub fn is_free(&self) -> bool {
         self.levels == 0
     }
@@ -70,7 +71,8 @@ impl Stack {
     /// ```
     ///
     /// # Errors
-    /// If the scenario has a feature that is not supported in space, with its field, or the stack cannot be built.
+    /// If the scenario has a feature that is not supported in space (the error names its field), or if the stack cannot
+    /// be built.
     pub fn of(scenario: &Scenario) -> Result<Self, RunFailure> {
         if let Scene::Spatial(scene) = &scenario.scene {
             return crate::free::assemble(scenario, scene);
@@ -110,20 +112,19 @@ impl Stack {
     }
 }
 
-/// Returns the stack of a scenario that has one in space.
+/// Returns the specification of the stack of a scenario; fails if there is none in space.
 fn stack_of(scenario: &Scenario) -> Result<&StackSpec, AssembleError> {
     match &scenario.scene {
         Scene::Stack { stack, .. } if stack.space.is_some() => Ok(stack),
         Scene::Stack { .. } | Scene::Free(_) | Scene::Spatial(_) => Err(AssembleError::NotInSpace {
             field: "stack.view",
-            reason: "this works in space, and the scenario does not look at a stack there: set stack.view to \
-                     \"spatial\""
+            reason: "this needs a stack in space, but the scenario has none: set stack.view to \"spatial\""
                 .into(),
         }),
     }
 }
 
-/// Returns the scenario with its stack as a plane shows it.
+/// Returns the scenario with its stack as a plane model in a view.
 pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     let mut plane = scenario.clone();
     if let Scene::Stack { stack, .. } = &mut plane.scene {
@@ -132,19 +133,19 @@ pub(crate) fn in_plane(scenario: &Scenario, view: View) -> Scenario {
     plane
 }
 
-/// Fast contacts in space, where barrels hit the floor on their rims and light racks are thrown about on their own
-/// barrels.
+/// Substepping for fast contacts in space, where barrels hit the floor with their rims and light racks bounce on their
+/// own barrels.
 const FAST: Fast<f64> = Fast { whole_step_way: 5e-4, hard: 1.0 };
 
-/// Time stepping of a stack, and reach of its racks: as in its planes.
+/// Time stepping of a stack and reach of its racks, from its plane models.
 struct Pace {
     /// The time step (s).
     step: f64,
     /// Number of substeps during impacts.
     substeps: f64,
-    /// Penetration (m) that whole steps resolve, by the name of the law.
+    /// Largest penetration (m) that whole steps resolve, by the name of the law.
     depths: BTreeMap<String, f64>,
-    /// [`Substepping::resting_allowance`], the smaller one of the planes.
+    /// [`Substepping::resting_allowance`]: the smallest of the plane models.
     resting_allowance: f64,
     /// Reach (m) of a rack on the barrels below, across and along them.
     reach: [f64; 2],
@@ -166,7 +167,8 @@ impl Pace {
                 if divided.substeps > 1.0 {
                     shortest = shortest.min(own / divided.substeps);
                 }
-                // The planes number their laws differently where one shows several seats as one.
+                // By name, since the plane models number their laws differently where one of them shows several seats
+                // as one.
                 for (law, own) in plane.model.interfaces().iter().zip(&divided.whole_step_depth) {
                     let depth = depths.entry(law.name.clone()).or_insert(f64::INFINITY);
                     *depth = depth.min(*own);
@@ -193,8 +195,8 @@ impl Pace {
     }
 }
 
-/// Returns the plane sections of a stack, each with its own overrides: across the barrels through every row, along
-/// them through every column.
+/// Returns plane models of a stack, each with the overrides of its section: across the barrels one for every row, along
+/// them one for every column. Without overrides of single columns or rows one model is enough.
 fn cuts(scenario: &Scenario, spec: &StackSpec, view: View) -> Vec<Scenario> {
     let rack = &spec.rack;
     let (count, per_rack) = match view {

@@ -1,4 +1,4 @@
-//! Time step of a free scene in space, from its contacts and its spins.
+//! Time step of a free scene in space, from its contacts and initial spins.
 
 use barrelstack::RunFailure;
 use barrelstack::scenario::{Method, Scenario};
@@ -15,13 +15,13 @@ const DAMPING_SHARE: f64 = 0.33;
 /// Penetration (m) at which nonlinear laws are linearized, as in the plane.
 const REFERENCE: f64 = 0.01;
 
-/// Maximum step (s) if nothing requires a shorter one.
+/// Maximum step (s), used if nothing requires a shorter one.
 const LONGEST: f64 = 1e-3;
 
-/// Maximum rotation (rad) per step of bodies with an initial spin: a tumbling block then keeps its energy to 3e-9.
+/// Maximum rotation (rad) of a body in a step at its initial spin; a tumbling block then keeps its energy to 3e-9.
 const TURN: f64 = 5e-3;
 
-/// Returns the step (s) that a scenario sets, or the one that its contacts and spins suggest.
+/// Returns the time step (s) that a scenario states, or by default one that follows from its contacts and spins.
 pub(crate) fn time_step(scenario: &Scenario, model: &Model<Spatial>) -> Result<f64, RunFailure> {
     let rate = fastest(model, |pair| {
         let law = &model.interfaces()[pair.interface];
@@ -58,10 +58,10 @@ fn adapts(method: Method) -> bool {
     matches!(method, Method::BogackiShampine { .. })
 }
 
-/// Returns the largest rate due to a constant of the contacts of a pair on a free body, in translation and with the
-/// longest lever.
+/// Returns the largest ratio of a contact constant (stiffness or damping) to the mass that it acts on, over all pairs
+/// and their free bodies; the mass includes the rotation at the longest lever.
 ///
-/// A body may be held from below and above, so each counts twice.
+/// A body may be held from below and above, so every constant counts twice.
 fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f64 {
     let mut most = 0.0_f64;
     for pair in model.pairs() {
@@ -74,7 +74,7 @@ fn fastest(model: &Model<Spatial>, constant: impl Fn(&ContactPair) -> f64) -> f6
     most
 }
 
-/// Returns the number of contacts of a solid that bear at once.
+/// Returns the number of contacts of a solid that can bear at the same time.
 fn contacts(nodes: &Nodes<Spatial>) -> f64 {
     match nodes {
         Nodes::Whole(whole) => match whole.hull {

@@ -1,4 +1,4 @@
-//! Summary of a run in space: one JSON document, the same numbers in print.
+//! Summary of a run in space as one JSON document, with the same numbers as the printed results.
 
 use barrelstack::assemble::PartKind;
 use barrelstack::demand::{Demands, Span};
@@ -16,42 +16,42 @@ use crate::run::Run;
 use crate::variants::{Case, demands};
 
 described! {
-    /// The summary of a run in space. Lengths in m, times in s, angles in rad; `x` is across the barrels, `y` along
-    /// them, `z` up; null where it did not happen or does not apply.
+    /// The summary of a run in space. Lengths are in m, times in s, angles in rad; `x` is across the barrels, `y` along
+    /// them, `z` up. A value is null where an event did not happen or does not apply.
     #[derive(Clone, Debug)]
     pub struct Summary {
         /// Name and version of this layout.
         pub schema: &'static str ["space/1"],
-        /// The scenario's title.
+        /// Title of the scenario.
         pub title: String,
-        /// Which variant of the stack this is; 0 as it is stated.
+        /// Number of the variant that was run; 0 for the stack as stated.
         pub variant: u32,
-        /// Statistics of all variants; null where none were run.
+        /// Statistics of all variants; null where no variants were run.
         pub ensemble: Option<Spread>,
-        /// Number of its runs that were done; null unless they were stopped before all were.
+        /// Number of runs that finished; null unless the variants were stopped early.
         pub unfinished: Option<Unfinished>,
-        /// Changes that would have kept the stack up; null where it stands, or none was searched.
+        /// Changes that would have kept the stack up; null where it stands, or no change was searched for.
         pub remedy: Option<Remedy>,
-        /// In which directions they fall; null where none were run.
+        /// Directions in which variants fall; null where no variants were run.
         pub directions: Option<Directions>,
         /// Outcome of the run.
         pub outcome: OutcomeInSpace,
-        /// Every body but the ground; none where the run is invalid.
+        /// All bodies except the ground; empty where the run is invalid.
         pub bodies: Vec<BodyInSpace>,
         /// Demands on the stack until the first loss of seat.
         pub demands: Demands,
         /// Demands on the stack over the whole run, falls included.
         pub demands_whole_run: Demands,
-        /// Forces between all bodies that have pressed on each other; none where the run is invalid.
+        /// Forces between all bodies that pressed on each other; empty where the run is invalid.
         pub interfaces: Vec<JointSummary>,
-        /// Force of every element of the devices, where there are any.
+        /// Force of every element of the devices, if there are any.
         #[serde(flatten)]
         pub devices: Devices,
-        /// The energy balance; null where numbers were lost.
+        /// The energy balance; null where the numbers are no longer finite.
         pub energy: Option<EnergyBalance>,
-        /// The component of the scenario, and the vertical one.
+        /// The horizontal component of the scenario, and the vertical component.
         pub motion: Option<MotionSummary>,
-        /// The other horizontal component; null where the motion has none.
+        /// The other horizontal component; null where the motion has only one.
         pub other_component: Option<MotionSummary>,
         /// Settings and work of the computation.
         pub run: RunInSpace,
@@ -61,24 +61,25 @@ described! {
         pub provenance: Provenance,
     }
 
-    /// In which directions variants fall.
+    /// Directions in which variants fall.
     #[derive(Clone, Debug, PartialEq)]
     pub struct Directions of cases: &[Case] {
-        /// Variants whose first body leaves its seat to the right, x positive.
+        /// Variants whose first body leaves its seat to the right (positive x).
         pub first_right: u32 = first(cases, Heading::Right),
-        /// To the left.
+        /// Variants whose first body leaves its seat to the left (negative x).
         pub first_left: u32 = first(cases, Heading::Left),
-        /// Away along the barrels, y positive.
+        /// Variants whose first body leaves its seat away along the barrels (positive y).
         pub first_away: u32 = first(cases, Heading::Away),
-        /// The opposite direction along the barrels.
+        /// Variants whose first body leaves its seat toward the near side (negative y).
         pub first_near: u32 = first(cases, Heading::Near),
-        /// Fallen barrels of all variants that came to lie to the right of where they stood, more than along.
+        /// Fallen barrels of all variants that came to lie to the right of their place at rest, more than along the
+        /// barrels.
         pub debris_right: u32 = debris(cases, Heading::Right),
-        /// To the left.
+        /// Fallen barrels that came to lie to the left, more than along the barrels.
         pub debris_left: u32 = debris(cases, Heading::Left),
-        /// Away along the barrels, more than across.
+        /// Fallen barrels that came to lie away along the barrels, more than across them.
         pub debris_away: u32 = debris(cases, Heading::Away),
-        /// The opposite direction along the barrels.
+        /// Fallen barrels that came to lie toward the near side, more than across the barrels.
         pub debris_near: u32 = debris(cases, Heading::Near),
     }
 
@@ -89,30 +90,30 @@ described! {
         pub kind: &'static str ["stable", "collapse", "not-judged", "interrupted", "invalid"],
         /// Mode of the collapse.
         pub mode: Option<&'static str> ["ejection", "rocking", "rack-sliding", "overturning"],
-        /// When the first body left its seat.
+        /// Time at which the first body left its seat.
         pub time: Option<f64> as "s",
         /// Name of the first body that left its seat.
         pub first: Option<String>,
-        /// In which direction it left.
+        /// Direction in which the first body left its seat.
         pub heading: Option<&'static str> ["right", "left", "away", "near"],
-        /// The lowest level that gave way.
+        /// Lowest of the levels that collapse.
         pub from_level: Option<u32>,
-        /// The highest level that went.
+        /// Highest of the levels that collapse.
         pub to_level: Option<u32>,
-        /// When the first barrel had fallen.
+        /// Time at which the first barrel had fallen.
         pub first_fall: Option<f64> as "s",
-        /// Barrels that had fallen at the end; null where the run is invalid or was stopped before.
+        /// Barrels that had fallen at the end; null where the run is invalid or was interrupted.
         pub barrels_fallen: Option<usize>,
-        /// Barrels in all.
+        /// Number of all barrels.
         pub barrels: usize,
-        /// Why the run is invalid.
+        /// Reason why the run is invalid.
         pub reason: Option<String>,
     }
 
     /// One body in space.
     #[derive(Clone, Debug)]
     pub struct BodyInSpace {
-        /// Its name.
+        /// Name of the body.
         pub name: String,
         /// Kind of the body.
         pub kind: &'static str ["barrel", "rack", "device", "body"],
@@ -122,41 +123,42 @@ described! {
         pub column: u32,
         /// Row along the barrels, 1 nearest; 0 in a free scene.
         pub row: u32,
-        /// When it left its seat.
+        /// Time at which the body left its seat.
         pub left_seat_at: Option<f64> as "s",
-        /// In which direction.
+        /// Direction in which the body left its seat.
         pub left_seat_to: Option<&'static str> ["right", "left", "away", "near"],
-        /// When it had fallen.
+        /// Time at which the body had fallen.
         pub fell_at: Option<f64> as "s",
-        /// Largest drop below its place at rest.
+        /// Largest drop below the position at rest.
         pub drop: f64 as "m",
-        /// Largest force on it since it had fallen.
+        /// Largest force on the body after its fall.
         pub fall_force: Option<f64> as "N",
-        /// Displacement x, y, z against the ground and its place at rest, at the end.
+        /// Displacement x, y, z from the position at rest relative to the ground, at the end.
         pub moved: [f64; 3] as "m",
-        /// Its center of mass x, y, z at the end, where the ground was at the start.
+        /// Position x, y, z of the center of mass at the end, relative to the initial position of the ground.
         pub position: [f64; 3] as "m",
-        /// Orientation at the end: the quaternion w, x, y, z that turns its principal axes.
+        /// Orientation of the principal axes at the end, as the quaternion w, x, y, z.
         pub orientation: [f64; 4] as "1",
-        /// Velocity x, y, z of its center of mass at the end, the ground's included.
+        /// Velocity x, y, z of the center of mass at the end, including that of the ground.
         pub velocity: [f64; 3] as "m/s",
         /// Spin about x, y, z at the end.
         pub spin: [f64; 3] as "rad/s",
-        /// Largest horizontal displacement against the ground while the stack stood.
+        /// Largest horizontal displacement relative to the ground before the first loss of seat.
         pub peak_displacement: f64 as "m",
-        /// Largest horizontal displacement against what it stands on, whatever its direction, while the stack stood.
+        /// Largest horizontal displacement, in any direction, relative to the supports before the first loss of seat.
         pub peak_slip: f64 as "m",
-        /// Largest displacement across the barrels against what it stands on, while the stack stood.
+        /// Largest displacement across the barrels relative to the supports before the first loss of seat.
         pub peak_slip_across: f64 as "m",
-        /// The same along the barrels, of another instant.
+        /// Largest displacement along the barrels relative to the supports before the first loss of seat; may be of
+        /// another instant.
         pub peak_slip_along: f64 as "m",
-        /// Largest rise above its place at rest while the stack stood.
+        /// Largest rise above the position at rest before the first loss of seat.
         pub peak_uplift: f64 as "m",
-        /// Largest tilt while the stack stood; racks only.
+        /// Largest tilt before the first loss of seat; racks only.
         pub peak_tilt: Option<f64> as "rad",
-        /// Largest contact force on it while the stack stood over the largest at rest.
+        /// Largest contact force on the body before the first loss of seat over the largest at rest.
         pub stress_amplification: Option<f64> as "1",
-        /// The same in the mean of what presses at rest.
+        /// Sum of the largest contact forces on the body before the first loss of seat over the sum at rest.
         pub mean_stress_amplification: Option<f64> as "1",
     }
 
@@ -167,20 +169,20 @@ described! {
         pub method: &'static str = run.simulation.method.name(),
         /// Time step.
         pub time_step: f64 as "s" = run.simulation.time_step,
-        /// Accepted steps.
+        /// Number of accepted steps.
         pub steps: u64 = run.work.steps,
-        /// Evaluations of all forces.
+        /// Number of force evaluations.
         pub evaluations: u64 = run.work.evaluations,
-        /// Contact elements tested.
+        /// Number of contact elements tested in all evaluations.
         pub contact_evaluations: u64 = run.work.contact_evaluations,
         /// Simulated time reached.
         pub end_time: f64 as "s" = run.end_time,
-        /// Why it ended.
+        /// Reason for the end of the run.
         pub ending: &'static str ["rest", "after-collapse", "duration", "patience", "interrupted", "broken"] =
             run.ending.name(),
-        /// Steps taken to find equilibrium.
+        /// Number of steps of settling.
         pub settle_steps: Option<u64> = run.settled.map(|settled| settled.steps),
-        /// Time on the clock, all variants included.
+        /// Wall-clock time, including all variants.
         pub wall_seconds: Option<f64> as "s" = None,
     }
 }
@@ -227,7 +229,7 @@ impl Summary {
             remedy: None,
             directions: None,
             outcome: outcome(run, sound),
-            // Numbers of a run that broke down look like results but are invalid.
+            // The numbers of a failed run look like results but are invalid.
             bodies: if sound { bodies(run) } else { Vec::new() },
             demands: demands_in(Span::UntilLoss),
             demands_whole_run: demands_in(Span::WholeRun),
@@ -255,7 +257,7 @@ impl Summary {
 }
 
 fn outcome(run: &Run, sound: bool) -> OutcomeInSpace {
-    // Events before a stop are listed with the bodies.
+    // For an interrupted run, events before the stop are listed with the bodies only.
     let ended = sound && run.outcome != Outcome::Interrupted;
     let mut summary = OutcomeInSpace {
         kind: run.outcome.kind(),
@@ -315,7 +317,7 @@ fn bodies(run: &Run) -> Vec<BodyInSpace> {
             peak_slip_along: fate.peak_slip[1],
             peak_uplift: fate.peak_uplift,
             peak_tilt: (part.kind == PartKind::Rack).then_some(fate.until_loss.tilt),
-            // The ground, which comes first, is omitted.
+            // One more, since the first body, the ground, is omitted.
             stress_amplification: run.seats.amplification(at + 1, Span::UntilLoss),
             mean_stress_amplification: run.seats.mean_amplification(at + 1, Span::UntilLoss),
         })

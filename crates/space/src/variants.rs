@@ -1,4 +1,5 @@
-//! Variants of a stack in space: the same draws, shares and words as in a plane, and directions.
+//! Variants of a stack in space, which are sampled and evaluated as in a plane, with the directions of falls in
+//! addition.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -27,11 +28,11 @@ use crate::summary::{Directions, Summary};
 /// Result of one variant in space.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Results common with a case of a plane; without trails.
+    /// Results as for a case in a plane, but without trails.
     pub result: CaseResult,
-    /// Direction in which the first body left its seat.
+    /// Direction in which the first body left its seat, if any did.
     pub first: Option<Heading>,
-    /// Directions of its fallen barrels, from their places at rest.
+    /// Directions of the fallen barrels from their places at rest.
     pub debris: Vec<Heading>,
 }
 
@@ -44,7 +45,7 @@ pub struct Answer {
     pub run: Run,
     /// Its summary, with the statistics of all variants.
     pub summary: Summary,
-    /// The case as stated, and its variants, including those that were stopped; empty if none were run.
+    /// The case as stated and its variants, including interrupted ones; empty if no variants were run.
     pub cases: Vec<Case>,
 }
 
@@ -108,7 +109,7 @@ impl Case {
 fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResult> {
     let RunFailure::Settle(restless) = failure else { return None };
     let levels = scenario.stack().filter(|_| restless.falls())?.levels;
-    // As built, before it fell.
+    // The stack as built, before it fell.
     let stack = Stack::of(scenario).ok()?;
     let name = restless.error.body.as_str();
     let first = stack.parts.iter().find(|part| part.name == name);
@@ -122,7 +123,7 @@ fn fallen_at_rest(scenario: &Scenario, failure: &RunFailure) -> Option<CaseResul
     Some(CaseResult::fallen_at_rest((name, from_level), levels, &barrels, failure.to_string()))
 }
 
-/// Returns the demands in a span of the run: displacements are horizontal, in any direction.
+/// Returns the demands in a span of a run; displacements are horizontal, in any direction.
 pub fn demands(run: &Run, span: Span) -> Demands {
     let Run { stack, fates, seats, .. } = run;
     let most = |kind: PartKind, on: &dyn Fn(u32) -> bool, value: &dyn Fn(usize) -> Option<f64>| {
@@ -161,11 +162,13 @@ pub fn demands(run: &Run, span: Span) -> Demands {
     }
 }
 
-/// Runs the case as stated and all its variants on all cores; the observer receives the number of finished cases and
-/// the total, and may stop them. Unfinished cases are returned as interrupted.
+/// Runs the case as stated and all its variants on all cores.
 ///
-/// The first result is the case as stated, followed by the variants by number. All keep the azimuth of the scenario:
-/// in space no components are exchanged.
+/// The observer receives the number of finished cases and their total, and may stop the work; unfinished cases are
+/// returned as interrupted.
+///
+/// The first result is the case as stated, followed by the variants in the order of their numbers. Unlike in a plane,
+/// no variant exchanges the horizontal components: all keep the azimuth of the scenario.
 ///
 /// # Errors
 /// If the motion cannot be read, or the stack as stated cannot be built or does not stand.
@@ -181,7 +184,8 @@ pub fn run_all(
     Ok(run_some(&plane, &ground, &numbers, &|done| observer(done, numbers.len())))
 }
 
-/// Runs variants by their numbers on all cores; the observer receives the number of finished ones, and may stop them.
+/// Runs variants by their numbers on all cores; the observer receives the number of finished variants, and may stop the
+/// work.
 fn run_some(
     plane: &Plane,
     ground: &Ground,
@@ -228,7 +232,7 @@ fn run_some(
     pool::map(numbers, work, &|_| ())
 }
 
-/// A changed stack in space, with its variants.
+/// A stack in space with a change that is tried as a remedy, and its variants.
 struct InSpace {
     plane: Plane,
     ground: Ground,
@@ -250,12 +254,12 @@ impl Trial for InSpace {
     }
 }
 
-/// Searches the smallest change that would have kept the stack up, by the rules and statistics of the planes.
+/// Searches for the smallest change that would have kept the stack up, with the rules and statistics of the planes.
 ///
-/// `None` where the stack stands, has no variants, or its runs end before the motion.
+/// Returns `None` if the stack stands, has no variants, or if its runs end before the motion.
 ///
 /// # Errors
-/// When the motion cannot be read.
+/// If the motion cannot be read.
 pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>, GroundError> {
     if answer.summary.unfinished.is_some() || answer.run.ending == Ending::Interrupted {
         return Ok(None);
@@ -268,14 +272,15 @@ pub fn remedy(answer: &Answer, observer: Observer<'_>) -> Result<Option<Remedy>,
     remedy_by(&answer.scenario, answer.summary.ensemble.iter(), &prepare, observer)
 }
 
-/// Returns the scenario with its records in memory, with the variants of space.
+/// Returns the variants of a scenario in space, with its records in memory.
 fn plane(scenario: &Scenario) -> Result<Plane, GroundError> {
     let mut all = planes(scenario)?;
     Ok(all.swap_remove(0))
 }
 
-/// Runs all variants of a scenario in space and then the run to be shown, with all results. The observer may stop it;
-/// the results until then are returned.
+/// Runs all variants of a scenario in space, and then the run that is shown.
+///
+/// The observer may stop the work; the results until then are returned.
 ///
 /// # Errors
 /// As [`run_all`], and if the run that is shown cannot be built or does not stand.

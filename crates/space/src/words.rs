@@ -1,4 +1,4 @@
-//! Sentences about a stack in space: those of a plane, and directions.
+//! Sentences about a stack in space: those of a plane, with directions in addition.
 
 use barrelstack::demand::DEMANDS;
 use barrelstack::outcome::{CollapseMode, Outcome};
@@ -12,7 +12,7 @@ use crate::fate::Heading;
 use crate::run::Run;
 use crate::summary::Summary;
 
-/// Returns the answer in one sentence.
+/// Returns the answer of a run as one sentence.
 pub fn headline(run: &Run, summary: &Summary) -> String {
     if let Some(spread) = &summary.ensemble {
         return headline_in_space(spread);
@@ -35,13 +35,14 @@ pub fn headline(run: &Run, summary: &Summary) -> String {
         ),
         Outcome::Interrupted => stopped(summary.unfinished.as_ref(), run.end_time),
         Outcome::NotJudged => {
-            "A free scene: nothing in it has a seat to lose, so nothing is judged.".to_owned()
+            "This is a free scene: its bodies have no seats to lose, so there is no verdict."
+                .to_owned()
         }
         Outcome::Invalid { reason } => format!("This run has no verdict: {reason}."),
     }
 }
 
-/// Returns the kind of the verdict.
+/// Returns the tone of the verdict: stands, falls, neutral or invalid.
 pub fn tone(run: &Run, summary: &Summary) -> Tone {
     if let Some(spread) = &summary.ensemble {
         return of_spread(&[(View::Transverse, spread)]);
@@ -54,7 +55,7 @@ pub fn tone(run: &Run, summary: &Summary) -> Tone {
     }
 }
 
-/// Returns the words for a direction after a verb.
+/// Returns the words for a direction, as they follow a verb.
 pub fn toward(heading: Heading) -> &'static str {
     match heading {
         Heading::Right => "across the barrels, to the right",
@@ -64,7 +65,7 @@ pub fn toward(heading: Heading) -> &'static str {
     }
 }
 
-/// Returns the words for a loss of seat.
+/// Returns the words for a loss of seat, such as "B3.1 leaves its cradle".
 pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     match loss {
         Loss::Displaced => format!("{name} leaves its cradle"),
@@ -74,22 +75,22 @@ pub(crate) fn leaves(name: &str, loss: Loss) -> String {
     }
 }
 
-/// Returns the sentences that support the headline.
+/// Returns the sentences that follow the headline and support it.
 pub fn sentences(run: &Run, summary: &Summary) -> Vec<String> {
     let mut sentences: Vec<String> = summary.ensemble.iter().filter_map(measure).collect();
     if let Some(directions) = &summary.directions {
         let [across, along] = directions.first();
         if across + along > 0 {
             sentences.push(format!(
-                "The first body leaves its seat across the barrels in {across} of {} variants that fall, along them \
-                 in {along}.",
+                "In the {} variants that fall, the first body leaves its seat across the barrels in {across}, along them in \
+                 {along}.",
                 across + along
             ));
         }
         let [across, along] = directions.debris().map(f64::from);
         if across + along > 0.0 {
             sentences.push(format!(
-                "Of the barrels that fall{} by then {} lie across from where they stood, {} along.",
+                "Of the barrels that fall{}, {} lie across the barrels from their place at rest, {} along them.",
                 summary
                     .ensemble
                     .as_ref()
@@ -124,7 +125,7 @@ const SHOWN: [&str; 5] = [
     "rack_walk_peak",
 ];
 
-/// Returns the rows of the summary as text: name and value.
+/// Returns the rows of the summary, each with name and value.
 pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
@@ -162,7 +163,7 @@ pub fn rows(run: &Run, summary: &Summary) -> Vec<(String, String)> {
     if let Some(energy) = &summary.energy {
         row(
             "energy balance",
-            format!("closes to {:.0e} of the energy that went through", energy.residual_ratio),
+            format!("residual {:.0e} of the energy that went through", energy.residual_ratio),
         );
     }
     let Summary { run: done, .. } = summary;

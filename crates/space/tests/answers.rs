@@ -1,4 +1,4 @@
-//! Devices and seats in space against their closed forms, across the barrels, along them and at an angle.
+//! Devices and seats in space compared with closed forms, across the barrels, along them and at an angle.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -20,15 +20,15 @@ const RACK: f64 = 400.0;
 /// Angle (degrees) of the supports of a cradle.
 const CRADLE: f64 = 28.0;
 
-/// Returns a push (g) along the first component for a time (s).
+/// Returns a motion that pushes (g) along the first component for a time (s).
 fn pulse(amplitude: f64, seconds: f64) -> String {
     format!(
         "[motion.pulse]\nkind = \"rectangular\"\namplitude = \"{amplitude} g\"\nperiod = \"{seconds} s\""
     )
 }
 
-/// Returns a push (g) that grows and fades along the first component within sixteen seconds, too slowly for
-/// vibrations.
+/// Returns a motion along the first component whose acceleration (g) grows and fades within sixteen seconds, too slowly
+/// to cause vibrations.
 fn growing(amplitude: f64) -> String {
     format!(
         "[motion.pulse]\nkind = \"half-sine\"\namplitude = \"{amplitude} g\"\nperiod = \"16 s\""
@@ -40,8 +40,8 @@ fn largest(run: &Run) -> f64 {
     run.elements.iter().map(|element| element.peak.0.abs()).fold(0.0, f64::max)
 }
 
-/// Returns a stack on a rack so wide and so heavy, and on contacts so stiff, that only the device deforms; rotated so
-/// that the push comes at an angle (degrees) from across its barrels toward along them.
+/// Returns a stack whose rack is so wide and heavy, and whose contacts are so stiff, that only the device deforms;
+/// rotated so that the push comes at an angle (degrees), from 0 across the barrels to 90 along them.
 fn stack(settings: &[&str], motion: &str, seconds: f64, angle: f64) -> Scenario {
     let text = format!(
         "schema = 1\n[stack]\nview = \"spatial\"\nazimuth = \"{} deg\"\nlevels = 1\ncolumns = 2\n\
@@ -118,7 +118,7 @@ fn a_sheet_slides_as_the_block_of_newmark_whatever_the_direction() {
 
 #[test]
 fn stops_of_a_platform_on_springs_hold_it_both_ways() {
-    // Without friction it swings on its springs as one mass, at any rotation.
+    // Without friction the stack swings on its springs as one mass, at any rotation.
     let spring = 1e5;
     let aboard = 60.0 + RACK + 2.0 * BARREL;
     let settings = [
@@ -150,7 +150,7 @@ fn a_stack_glides_between_ties_to_walls_on_all_four_sides() {
         "stack.tie.levels=1",
         "stack.tie.slack='0.02 m'",
         "stack.tie.stiffness='40 kN/m'",
-        // So far that the rotation of a tie is negligible as the stack moves sideways.
+        // The anchor is so far away that the rotation of a tie is negligible as the stack moves sideways.
         "stack.tie.distance='20 m'",
     ];
     for (angle, axis) in [(0.0, Vec3::new(1.0, 0.0, 0.0)), (90.0, Vec3::new(0.0, 1.0, 0.0))] {
@@ -186,7 +186,8 @@ fn a_tuned_mass_splits_the_frequency_of_its_platform_both_ways() {
     let root = (0.25 * sum * sum - whole * own).sqrt();
     for axis in [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)] {
         for square in [0.5 * sum - root, 0.5 * sum + root] {
-            // Each mode is isolated in a quantity that the other one, orthogonal in the masses, does not affect.
+            // Each mode is isolated in a quantity that the other mode, which is orthogonal with respect to the masses,
+            // does not affect.
             let shape = own / (own - square);
             let mode: Vec<(f64, f64)> = platform
                 .iter()
@@ -276,8 +277,9 @@ fn hooks_and_saddles_bear_what_a_rack_without_friction_is_pushed_with() {
     }
 }
 
-/// Returns the force on hooks over the push on the rack of the second level along the barrels: because of the
-/// overturning moment the leading tube bears more than the trailing one, on staves that slope away under both.
+/// Returns the ratio of the force on the hooks to the push on the rack of the second level along the barrels. Because
+/// of the overturning moment, the leading tube carries more than the trailing tube, and the staves slope away under
+/// both.
 fn on_a_slope(run: &Run) -> f64 {
     let bodies = run.stack.model.bodies();
     let named = |name: &str| bodies.iter().find(|body| body.name == name).unwrap();
@@ -330,7 +332,7 @@ fn barrels_roll_out_over_chocks_from_the_tangent_of_their_angle() {
         "stack.chock.angle='40 deg'",
         "stack.rack.cradle.angle='20 deg'",
         "interface.barrel-rack.friction.coefficient=0",
-        // As stiff as a penalty can be, so that penetration is negligible.
+        // Contacts are as stiff as possible, so that penetration is negligible.
         "interface.fallen-barrel-rack.law=hertz",
         "interface.fallen-barrel-rack.stiffness='1e11 N/m^1.5'",
         "interface.fallen-barrel-rack.friction.coefficient=0",

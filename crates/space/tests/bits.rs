@@ -26,7 +26,8 @@ fn a_collapse_in_space_has_the_bits_that_are_kept_and_is_as_much_work() {
     assert!(!fallen.is_empty(), "nothing falls, so impacts are not looked at");
     let work = (run.work.steps, run.work.evaluations, run.work.contact_evaluations);
     println!("{fallen:?} {work:?} {:016x}", hash(&run.frames.poses));
-    // A skipped pair is no evaluation: before pairs were skipped by their true distances there were twice as many.
+    // Skipped pairs do not count as evaluations; the number is half of that without skipping pairs by their true
+    // distances.
     assert_eq!(work, (41_109, 41_110, 6_001_491));
     if cfg!(target_arch = "x86_64") {
         assert_eq!(hash(&run.frames.poses), 0xd017_9670_cde8_e108, "other bits: see above");

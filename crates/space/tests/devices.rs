@@ -1,5 +1,5 @@
-//! Devices in space: tensions of straps at rest, no effect of idle devices, installation of all devices on the demo
-//! and its mirror image, and straps that hold or tear.
+//! Devices in space: tensions of straps at rest, idle devices without effect, all devices on the demo and its mirror
+//! image, and straps that hold or tear.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -29,7 +29,7 @@ fn borne(standing: &Standing, body: usize) -> f64 {
         .sum()
 }
 
-/// Returns the tensions (N) of all straps at a place, by name.
+/// Returns the names and tensions (N) of all straps of a stack at rest.
 fn tensions(standing: &Standing) -> Vec<(String, f64)> {
     let told = |element: &Element<Spatial>| {
         (element.link().name.clone(), element.load(&standing.state).force)
@@ -57,7 +57,7 @@ fn seats_bear_the_weight_and_what_the_straps_pull() {
         let (count, pull) = own.fold((0, 0.0), |(count, sum), (_, force)| (count + 1, sum + force));
         assert_eq!(count, if part.level > 1 { 2 } else { 0 }, "{}", part.name);
         if part.level == 3 {
-            // Nothing lies on the top barrels, so their cradles bear the whole force.
+            // Nothing lies on the top barrels, so their cradles carry the whole force.
             let weight = 9.80665 * standing.stack.model.bodies()[body].mass;
             let seat = borne(&standing, body);
             println!("{}: seat {seat:.1} N, straps {pull:.1} N, weight {weight:.1} N", part.name);
@@ -78,8 +78,8 @@ fn bits(run: &Run) -> Vec<u64> {
 
 #[test]
 fn every_idle_device_changes_no_bit_and_every_other_one_does() {
-    // Long enough for the top barrels to be thrown against their lids, with stops so soft that impacts do not change
-    // the steps.
+    // The run is long enough for the top barrels to hit their lids, and the stops are so soft that impacts do not
+    // change the time steps.
     let common = [
         "stack.levels=3",
         "run.duration='9 s'",

@@ -34,7 +34,7 @@ fn a_ball_thrown_along_the_floor_goes_on_at_five_sevenths() {
     // measured 9e-6, which is the penetration
     assert_near(end.linear.length(), 5.0 / 7.0, 3e-5);
     assert_near(end.angular.length(), 5.0 / 7.0 / 0.3, 3e-5);
-    // It continues in the initial direction, and turns about the horizontal axis perpendicular to it.
+    // The ball continues in its initial direction, and rotates about the horizontal axis perpendicular to it.
     let aside = end.linear.dot(Vec3::new(-0.8, 0.6, 0.0)).abs();
     // measured 3e-13
     assert!(aside < 1e-10, "{aside}");
@@ -164,7 +164,7 @@ step = "20 us"
 #[test]
 fn a_body_of_two_balls_rests_on_both_and_comes_back_from_a_wall() {
     let run = parsed(DUMBBELL);
-    // Each ball bears half.
+    // Each ball carries half of the weight.
     let sunk = 0.1 - run.frames.poses[0][2][2];
     assert_near(sunk, 8.0 * G / 2.0 / 1e6, 1e-9);
     let end = run.last.twists[2];

@@ -64,7 +64,7 @@ fn a_stack_that_is_turned_against_the_clock_sees_the_ground_turn_with_it() {
 fn components_of_unknown_directions_are_said_to_be_taken() {
     let (found, told) = peak("H1", "0 deg", ["H1", "H2"]);
     assert!(close(found, [found.x, 0.5 * found.x]), "{found:?}");
-    assert!(told.iter().any(|told| told.contains("does not say how")), "{told:?}");
+    assert!(told.iter().any(|told| told.contains("does not state the directions")), "{told:?}");
 }
 
 /// Returns one level on its rack in space under a motion, until a time (s), with further changes.

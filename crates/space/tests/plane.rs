@@ -1,4 +1,4 @@
-//! A stack of right cylinders that is shaken across them moves in space as in the plane.
+//! A stack of right cylinders that is shaken across their axes moves in space as in the plane.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -16,7 +16,7 @@ fn apart(view: [&str; 2]) -> [f64; 4] {
         let changes = [
             &format!("stack.view={view}"),
             "stack.levels=3",
-            // Right cylinders except for half a millimeter.
+            // The barrels are right cylinders to within half a millimeter.
             "stack.barrel={ head_diameter = \"0.645 m\", bilge_diameter = \"0.646 m\" }",
             "run.duration='6 s'",
             "record.frame_rate='50 Hz'",

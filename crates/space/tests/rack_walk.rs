@@ -1,4 +1,4 @@
-//! Walk of a rack on soft seats: the rigid limit, and the smallest model beside the program.
+//! Walk of a rack on soft seats: the rigid limit, and comparison of the smallest model with the program.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
 use crate::two_seats::{Cycle, GRAVITY, TwoSeats, newmark};
@@ -15,7 +15,7 @@ fn block(stiffness: f64) -> TwoSeats {
         height: 0.5 * height,
         half_spacing: 0.5 * width,
         stiffness,
-        // A fifth of critical for half of the mass.
+        // A fifth of the critical damping for half of the mass.
         damping: 0.2 * 2.0 * (0.5 * mass * stiffness).sqrt(),
         friction: 0.3,
         stick: 1.0,

@@ -1,4 +1,4 @@
-//! Stacks in space come to rest on seats that bear their weight, stay there, and conserve energy when shaken.
+//! Stacks in space come to rest on seats that carry their weight, stay at rest, and conserve energy when shaken.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -16,7 +16,7 @@ fn demo(changes: &[&str]) -> Scenario {
     soft_demo(&all)
 }
 
-/// Returns the upward force (N) on a body from all bodies of some parts.
+/// Returns the upward force (N) on a body from all bodies that `by` selects.
 fn borne(standing: &Standing, body: usize, by: impl Fn(usize) -> bool) -> f64 {
     let forces = standing.scratch.pair_forces.iter();
     forces

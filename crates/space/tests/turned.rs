@@ -23,8 +23,8 @@ impl Drive<Spatial> for Turned {
 /// Returns the displacements (m) of the bodies of a stack of two levels after seven seconds, rotated back, relative
 /// to their positions as built.
 ///
-/// It starts as built: seats with friction have many states of rest, and rounding may lead settling to another one,
-/// some hundredths of a millimeter away.
+/// The stack starts as built, without settling: seats with friction have many states of rest, and rounding may lead to
+/// another one, some hundredths of a millimeter away.
 fn ways(angle: f64) -> Vec<Vec3> {
     let changes = ["stack.view=spatial", "stack.levels=2", "stack.columns_along=2"];
     let scenario = soft_demo(&changes.map(str::to_owned));

@@ -1,4 +1,4 @@
-//! Variants in space: drawn as in the plane, equal when mirrored, and with directions of falls.
+//! Variants in space: sampled as in the plane, equal when mirrored, and with directions of falls.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test that shows what it measured")]
 
@@ -42,14 +42,14 @@ fn a_variant_in_space_has_the_places_across_and_the_masses_of_the_one_in_the_pla
             assert!(a.offset_y != 0.0 && a.offset_y.abs() <= 1e-3);
             assert_eq!((a.row, b.row), (Some(1), None));
         }
-        // It also reads back.
+        // The resolved scenario can be read back.
         let text = space.variant(number).to_resolved_toml();
         assert_eq!(Scenario::from_str(&text).unwrap(), space.variant(number));
     }
 }
 
-/// Returns the displacement (m) of the bodies of the demo in five seconds, and its difference from that of another
-/// stack whose bodies stand in their places on the other side; `back` maps one displacement to the other.
+/// Returns the largest displacement (m) of the bodies of the demo within five seconds, and the largest difference from
+/// a stack whose bodies stand on the opposite side; `back` maps displacements of one stack to the other.
 fn beside_the_other_side(change: &str, back: impl Fn(Vec3) -> Vec3) -> [f64; 2] {
     let one = run(&demo(&["run.duration='5 s'"])).unwrap();
     let other = run(&demo(&["run.duration='5 s'", change])).unwrap();
@@ -74,7 +74,7 @@ fn a_stack_that_is_turned_by_half_a_turn_does_the_same_to_the_other_side() {
     let turn = |way: Vec3| Vec3::new(-way.x, -way.y, way.z);
     let [way, worst] = beside_the_other_side("stack.azimuth='180 deg'", turn);
     assert!(way > 0.01 && worst < 1e-11, "{worst:e} of {way}"); // measured 3e-14 of 0.041
-    // A fall goes to the other side, too.
+    // A fall is to the opposite side, too.
     let falls = |azimuth: &str| {
         run(&demo(&["stack.levels=2", "run.duration='9.2 s'", azimuth])).unwrap().heading
     };
@@ -151,7 +151,7 @@ fn a_change_that_would_have_kept_a_stack_up_stands_in_as_many_variants_when_it_i
         let spread = answered(&one.changes).summary.ensemble.unwrap();
         assert_eq!((spread.collapsed + spread.broken, spread.run()), (one.failed, 8), "{one:?}");
     }
-    // A search that is canceled says so.
+    // A canceled search reports that it was canceled.
     let stopped = remedy(&own, &|_| ControlFlow::Break(())).unwrap().unwrap();
     assert!(!stopped.complete && stopped.height.is_none() && stopped.straps.is_none());
     // A stack that stands needs no remedy.

@@ -17,10 +17,11 @@ pub enum FrictionLaw<R = f64> {
     /// f_t     = spring + c_t v_t held within ± μ fₙ
     /// ```
     ///
-    /// `s` is the stick displacement: it is integrated with the slip rate like any other coordinate of the state, and
-    /// only an accepted step limits it to the capacity of the spring ([`Stick::commit`]), so a body at rest on a
-    /// slope stays there for ever. The paper's `f_t = μ fₙ` is the sliding part of this law.
-    /// μ is the static coefficient until the force first exceeds it, and the kinetic one until the slip reverses.
+    /// `s` is the stick displacement. It is integrated with the slip rate like any other coordinate of the state, and
+    /// is limited to the capacity of the spring only when a step is accepted ([`Stick::commit`]), so a body at rest on
+    /// a slope does not creep. The law `f_t = μ fₙ` of Candia et al. (2008) is the sliding part of this law. μ is the
+    /// static coefficient until the force exceeds the static limit, and then the kinetic coefficient until the slip
+    /// reverses.
     Coulomb {
         /// `μ_s` (1), at least the kinetic one.
         static_coefficient: R,
@@ -28,13 +29,13 @@ pub enum FrictionLaw<R = f64> {
         kinetic_coefficient: R,
         /// `k_t` (N/m).
         tangential_stiffness: R,
-        /// `c_t` (N·s/m): without it a stopped body vibrates on its stick for ever.
+        /// `c_t` (N·s/m); without this damping a stopped body would vibrate on its stick without end.
         tangential_damping: R,
     },
     /// Smoothed Coulomb friction: `f_t = μ fₙ v_t / √(v_t² + v_r²)`.
     ///
-    /// It has no memory and cannot hold: under a steady tangential force `T < μ fₙ` a body creeps at
-    /// `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
+    /// The law has no memory and cannot hold a body at rest: under a steady tangential force `T < μ fₙ` the body creeps
+    /// at `v_r T / √((μ fₙ)² − T²)`, see [`FrictionLaw::creep_speed`].
     Regularized {
         /// `μ` (1).
         coefficient: R,
@@ -48,13 +49,14 @@ pub enum FrictionLaw<R = f64> {
 pub struct Stick<S: Space> {
     /// Elastic tangential displacement of the contactor relative to the target (m), in the inertial frame.
     pub displacement: S::Tangent,
-    /// The plane of the displacement when the last step was accepted: contacts travel over round targets.
+    /// Tangent plane of the displacement when the last step was accepted; it turns as the contact travels over a round
+    /// target.
     pub tangent_plane: S::TangentPlane,
     /// `true` if the node was slipping when the last step was accepted.
     pub slipping: <S::Real as Real>::Mask,
 }
 
-/// A friction force, and its recoverable energy.
+/// A friction force and its recoverable energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<S: Space> {
     /// Force (N) along the slip; the opposite acts on the contactor.
@@ -133,10 +135,10 @@ impl<S: Space> Stick<S> {
         Self { displacement, tangent_plane: to, ..self }
     }
 
-    /// Returns the stick memory after an accepted step: the displacement limited by friction, and whether the node
+    /// Returns the stick memory after an accepted step: the displacement, limited by friction, and whether the node
     /// slips.
     ///
-    /// `self` has the displacement reached by the step; `weight` is that of [`FrictionLaw::force`].
+    /// `self` has the displacement at the end of the step; `weight` is as in [`FrictionLaw::force`].
     #[inline(always)]
     #[must_use]
     pub fn commit(
@@ -170,7 +172,7 @@ impl<S: Space> Stick<S> {
         if !overstretched.any() {
             return Self { slipping, ..self };
         }
-        // A stick of weight zero has no contact and is reset anyway.
+        // Avoids a division by zero: a stick of weight zero has no contact, and is reset in any case.
         let safe = S::Real::select(overstretched, stiffness, S::Real::splat(1.0));
         let cut = S::shorten(spring, held) * (S::Real::splat(1.0) / safe);
         let displacement = S::choose(overstretched, cut, self.displacement);

@@ -22,7 +22,8 @@ pub enum Basis {
     Node,
     /// Constants of one meter of boundary (N/m², N·s/m²).
     Length,
-    /// Constants of one seat (N/m, N·s/m): a place where two bodies touch, or a whole row of nodes on one surface.
+    /// Constants of one seat (N/m, N·s/m). A seat is a place where two bodies touch, or a whole row of nodes on one
+    /// surface.
     ///
     /// The depth of a row is that of its deepest node, and its force is divided among its nodes in proportion to
     /// their depths.
@@ -30,8 +31,8 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the factor of the constants of a node with a tributary length (m); for a row of nodes on the basis of
-    /// a seat, of those of the whole row.
+    /// Returns the factor of the constants for a node with a tributary length (m), or for a whole row of nodes on the
+    /// basis of a seat.
     #[inline(always)]
     pub fn weight<R: Real>(self, tributary_length: R) -> R {
         match self {
@@ -50,8 +51,9 @@ impl Basis {
     }
 }
 
-/// Rolling resistance: a moment against the spin ω of one body relative to the other, the normal force times a lever
-/// times `ω / √(ω² + ω₀²)`.
+/// Rolling resistance: a moment that opposes the relative spin ω of two bodies.
+///
+/// The moment is the normal force times a lever times `ω / √(ω² + ω₀²)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling<R = f64> {
     /// The lever (m).
@@ -78,8 +80,7 @@ pub struct Interface<S: Space> {
 }
 
 impl<S: Space> Interface<S> {
-    /// Returns the stiffness (N/m) at a penetration (m): that along the normal or that of the stick, whichever is
-    /// larger.
+    /// Returns the stiffness (N/m) at a penetration (m): the larger of the normal and the tangential stiffness.
     #[inline(always)]
     pub fn stiffness(&self, depth: S::Real) -> S::Real {
         let mut normal = self.normal.tangent_stiffness(depth);

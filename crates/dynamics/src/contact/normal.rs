@@ -46,11 +46,11 @@ pub enum NormalLaw<R = f64> {
     /// fₙ = k δ^(3/2) (1 + e² + (1 − e²) s) / 2      s = δ̇ / √(δ̇² + v²)
     /// ```
     ///
-    /// On approach it is the spring, on separation e² of it, so e² of the energy is returned: the loading and
-    /// unloading branches of Walton and Braun (1986), joined without memory over speeds of about `v`. At lower speeds
-    /// the force is that of a spring and a damper, and bodies come to rest.
-    /// The spring stiffens as between round bodies (Hertz), so that a light body rests softly and a heavy one is
-    /// stopped within millimeters.
+    /// On approach the force is that of the spring, on separation e² times that, so the share e² of the energy is
+    /// returned. These are the loading and unloading branches of Walton and Braun (1986), joined without memory over
+    /// speeds of about `v`. At lower speeds the force is that of a spring and a damper, so bodies come to rest. The
+    /// spring stiffens as between round bodies (Hertz), so that a light body rests softly and a heavy one is stopped
+    /// within millimeters.
     Rebound {
         /// `k` (N/m^1.5).
         stiffness: R,
@@ -66,17 +66,18 @@ pub enum NormalLaw<R = f64> {
     },
 }
 
-/// End of the stroke of a soft law: beyond a depth (m) a second law acts as well, on the penetration in excess of it.
+/// End of the stroke of a soft law: beyond a depth (m) a second law acts as well, on the excess penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop<R = f64> {
-    /// Penetration (m) beyond which it acts.
+    /// Penetration (m) beyond which the stop acts.
     pub depth: R,
     /// The additional law.
     pub law: NormalLaw<R>,
 }
 
 impl<R: Real> Stop<R> {
-    /// Adds the force of the stop, where it is reached, to that of the soft law, for a step (s).
+    /// Adds the force of the stop, in lanes that reach it, to the force of the soft law; `step` (s) is as in
+    /// [`NormalForce::within_step`].
     #[inline(always)]
     pub(crate) fn add(&self, soft: NormalForce<R>, depth: R, rate: R, step: R) -> NormalForce<R> {
         let beyond = depth - self.depth;
@@ -93,7 +94,7 @@ impl<R: Real> Stop<R> {
     }
 }
 
-/// Growth of an elastic force with penetration.
+/// Exponent of an elastic force as a function of penetration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Exponent {
     /// Proportional, `n = 1`.
@@ -102,7 +103,7 @@ pub enum Exponent {
     Hertzian,
 }
 
-/// A normal force, and its recoverable part.
+/// A normal force and its recoverable part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalForce<R> {
     /// Compressive force (N), never negative.
@@ -116,18 +117,18 @@ pub struct NormalForce<R> {
 impl<R: Real> NormalForce<R> {
     /// Returns the effective force of a whole step (s) of central differences.
     ///
-    /// The method takes a force as constant for half a step before and after its instant. A spring engaged at a rate
-    /// δ̇ has acted only for the time `δ/δ̇` of the half before, and one that is released will act only for the time
-    /// `δ/|δ̇|` of the half after, with half its force on average; and the force of a stiffening spring exceeds its
-    /// average over the displacement:
+    /// The method takes a force as constant for half a step before and after its instant. But a spring that engaged at
+    /// a rate δ̇ acted only for the time `δ/δ̇` of the half step before, and a spring that releases will act only for
+    /// the time `δ/|δ̇|` of the half step after, in both cases with half its force on average. Moreover, the force of a
+    /// stiffening spring exceeds its average over the displacement. With both corrections the elastic force is:
     ///
     /// ```text
     /// elastic · (½ + (½ − b) δ/w)   where δ < w = |δ̇| Δt
     /// elastic · (1 − b (w/δ)²)      elsewhere, with the bend b = n (n − 1) / 12 of elastic ∝ δⁿ
     /// ```
     ///
-    /// So a linear spring engaged at a steady rate absorbs exactly the energy that it stores, wherever in the step it
-    /// is engaged, and the error of a bounce is smaller by orders of magnitude. A step of zero leaves the force
+    /// So a linear spring that engages at a steady rate absorbs exactly the energy that it stores, wherever in the step
+    /// it engages, and the energy error of a bounce decreases by orders of magnitude. A step of zero leaves the force
     /// unchanged.
     #[inline(always)]
     #[must_use]
@@ -210,7 +211,7 @@ impl<R: Real> NormalLaw<R> {
         self.force(depth, rate).within_step(self.bend(), depth, rate, step)
     }
 
-    /// Returns `n (n − 1) / 12` of its elastic force `∝ δⁿ`: see [`NormalForce::within_step`].
+    /// Returns the bend `n (n − 1) / 12` of the elastic force `∝ δⁿ`; see [`NormalForce::within_step`].
     #[inline(always)]
     fn bend(&self) -> f64 {
         match self {
@@ -238,7 +239,7 @@ impl<R: Real> NormalLaw<R> {
         }
     }
 
-    /// Returns the damping `∂fₙ/∂δ̇` (N·s/m) at a penetration (m), on approach.
+    /// Returns the damping `∂fₙ/∂δ̇` (N·s/m) on approach at a penetration (m).
     pub fn tangent_damping(&self, depth: R) -> R {
         match *self {
             Self::SpeedGap { damping, .. } | Self::KelvinVoigt { damping, .. } => damping,
@@ -250,7 +251,7 @@ impl<R: Real> NormalLaw<R> {
                 };
                 elastic * dissipation
             }
-            // Its damping grows with the load, not with the penetration: see `Rebound`.
+            // The damping of `Rebound` grows with the load and not with the penetration; `Hertz` has none.
             Self::Hertz { .. } | Self::Rebound { .. } => R::zero(),
         }
     }

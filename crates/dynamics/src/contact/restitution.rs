@@ -15,8 +15,8 @@ pub fn damping(stiffness: f64, damping_ratio: f64, mass: f64) -> f64 {
     2.0 * damping_ratio * (stiffness * mass).sqrt()
 }
 
-/// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`,
-/// continued by `arcosh` above ζ = 1.
+/// Returns the restitution of the speed-gap law at a damping ratio ζ ≥ 0: `e = exp(−ζ arccos ζ / √(1 − ζ²))`, with
+/// `arcosh` and `√(ζ² − 1)` above ζ = 1.
 pub fn speed_gap(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let exponent = if (zeta - 1.0).abs() < 1e-7 {
@@ -41,7 +41,7 @@ pub fn kelvin_voigt(damping_ratio: f64) -> f64 {
 
 /// Returns the damping ratio ζ at which the speed-gap law has a restitution `0 < e ≤ 1`.
 ///
-/// Returns `None` for other values: no damping makes the rebound vanish (e → 0 only as ζ → ∞).
+/// Returns `None` for other values: no finite damping makes the rebound vanish (e → 0 only as ζ → ∞).
 pub fn speed_gap_damping_ratio(restitution: f64) -> Option<f64> {
     invert(restitution, speed_gap)
 }
@@ -76,8 +76,8 @@ fn invert(restitution: f64, law: impl Fn(f64) -> f64) -> Option<f64> {
 /// Returns the restitution of the Hunt–Crossley law for an impact at `speed` (m/s) with dissipation `d` (s/m).
 ///
 /// During the whole contact `u − ln(1 + u)`, with `u = d δ̇`, is a function of the penetration alone, so the speeds
-/// before and after satisfy `u₀ − ln(1 + u₀) = −e u₀ − ln(1 − e u₀)`. It depends on the speed: a property of the law,
-/// not of the solution.
+/// before and after satisfy `u₀ − ln(1 + u₀) = −e u₀ − ln(1 − e u₀)`. The restitution depends on the speed; this is a
+/// property of the law and not an error of the solution.
 pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     let before = dissipation * speed;
     if before <= 0.0 {
@@ -95,7 +95,7 @@ pub fn hunt_crossley(dissipation: f64, speed: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns `u − ln(1 + u)`, by its series where the difference would cancel.
+/// Returns `u − ln(1 + u)`, evaluated by its series for small `u`, where the difference would cancel.
 fn excess(u: f64) -> f64 {
     if u.abs() < 1e-3 {
         u * u * (1.0 / 2.0 - u * (1.0 / 3.0 - u * (1.0 / 4.0 - u * (1.0 / 5.0 - u / 6.0))))

@@ -8,20 +8,21 @@ use crate::state::State;
 
 /// A guide on its first body, along which a point of the second body moves.
 ///
-/// With the displacement `e` (m) of that point from its place along the axis, which turns with the first body,
+/// With the displacement `e` (m) of the point from its place at rest, along an axis that turns with the first body, the
+/// force is
 ///
 /// ```text
 /// f = k e + c ė                          everywhere
 /// f = … + kₛ (|e| − δ) sgn e + cₛ ė      beyond the gap δ; the damper on approach only
 /// ```
 ///
-/// The force acts on both bodies at the point of the second one, so momentum is conserved. A guide holds the point
-/// within `reach` (m) of its axis; beyond that, or above its strength, it releases for good.
+/// The force acts on both bodies at the point of the second body, so momentum is conserved. The guide releases the
+/// point permanently once the point is farther than `reach` (m) from the axis, or the force exceeds the strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Unit vector in the frame of the first body.
+    /// Axis: a unit vector in the frame of the first body.
     pub axis: S::Vector,
     /// Vector from the first point to the second at rest (m), in the frame of the first body.
     pub place: S::Vector,
@@ -29,18 +30,18 @@ pub struct Guide<S: Space> {
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Displacement δ (m) to either side at which it meets a stop; infinite without stops.
+    /// Displacement δ (m) to either side at which the point meets a stop; infinite without stops.
     pub gap: S::Real,
     /// Stiffness kₛ of the stops (N/m).
     pub stop_stiffness: S::Real,
     /// Damping cₛ of the stops on approach (N·s/m).
     pub stop_damping: S::Real,
-    /// Force (N) above which it breaks, for good; infinite if it never does.
+    /// Force (N) above which the guide breaks; infinite if it never breaks.
     pub strength: S::Real,
-    /// Distance (m) from its axis beyond which it releases, for good; infinite if it never does.
+    /// Distance (m) from the axis beyond which the guide releases the point; infinite if it never does.
     pub reach: S::Real,
-    /// Unit vector in the frame of the first body along which the distance from the axis is not limited; zero for
-    /// none.
+    /// Direction in which the distance from the axis is not limited: a unit vector in the frame of the first body, or
+    /// zero for none.
     pub free: S::Vector,
 }
 
@@ -49,7 +50,7 @@ lanewise!(struct Guide<Planar<R>> {
 });
 
 impl<S: Space> Guide<S> {
-    /// Creates a guide with a spring and a damper only, the second point in its place.
+    /// Creates a guide with a spring and a damper only, whose points coincide at rest.
     pub fn spring(link: Link<S>, axis: S::Vector, stiffness: S::Real, damping: S::Real) -> Self {
         let (never, none) = (S::Real::splat(f64::INFINITY), S::Real::zero());
         Self {
@@ -67,8 +68,8 @@ impl<S: Space> Guide<S> {
         }
     }
 
-    /// Converts a fitted guide to one whose first body turns about the axis: only the displacement along the axis
-    /// counts, and the point is held within `reach` beyond its current distance from the axis.
+    /// Converts a fitted guide for a first body that turns about the axis: only the displacement along the axis counts,
+    /// and the guide holds the point up to `reach` beyond its current distance from the axis.
     #[must_use]
     pub fn about_axis(self) -> Self {
         let along = self.axis * self.axis.dot(self.place);

@@ -6,7 +6,7 @@ use crate::real::Real;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// The points that an element joins, and its name.
+/// Name of an element, and the points that it joins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<S: Space> {
     /// Name in results.
@@ -22,11 +22,11 @@ lanewise!(struct Link<Planar<R>> { name, bodies, points });
 /// Geometry of a link at a state.
 pub(super) struct Line<S: Space> {
     bodies: [BodyId; 2],
-    /// From the centers of mass to the points (m), in the inertial frame.
+    /// Vectors (m) from the centers of mass to the points, in the inertial frame.
     pub(super) arms: [S::Vector; 2],
-    /// From the first point to the second (m).
+    /// Vector (m) from the first point to the second.
     apart: S::Vector,
-    /// Its length (m).
+    /// Distance (m) of the points.
     pub(super) distance: S::Real,
 }
 
@@ -34,15 +34,15 @@ impl<S: Space> Link<S> {
     pub(super) fn flaw(&self, bodies: usize) -> Option<&'static str> {
         let [first, second] = self.bodies;
         if first == second {
-            Some("it ties a body to itself")
+            Some("it joins a body to itself")
         } else if first.max(second) >= bodies {
-            Some("it ties a body that is not there")
+            Some("it joins a body that does not exist")
         } else {
             None
         }
     }
 
-    /// Returns the distance of its points (m).
+    /// Returns the distance (m) of the points at a state.
     pub fn span(&self, state: &State<S>) -> S::Real {
         let [first, second] = [0, 1].map(|at| {
             let pose = state.poses[self.bodies[at]];
@@ -76,7 +76,7 @@ impl<S: Space> Link<S> {
 }
 
 impl<S: Space> Line<S> {
-    /// Returns the unit vector from its first point to its second, in lanes where its length is valid.
+    /// Returns the unit vector from the first point to the second, in lanes where the distance is positive.
     #[inline(always)]
     pub(super) fn along(&self, counts: <S::Real as Real>::Mask) -> S::Vector {
         let one = S::Real::splat(1.0);
@@ -100,7 +100,8 @@ impl<S: Space> Line<S> {
         self.velocity(state).dot(along)
     }
 
-    /// Returns, for each body, the wrench of a tensile force (N) along the line and the part of a damper (N) in it.
+    /// Returns, for each body, the wrench of a tensile force (N) along the line, and the part of it that is due to a
+    /// damper with the force `damped` (N).
     #[inline(always)]
     pub(super) fn pull(
         &self,

@@ -1,9 +1,8 @@
-//! Force elements: forces between two bodies without a contact.
+//! Force elements: forces between points of two bodies, without contact.
 //!
-//! An element is of one of the kinds below, each in a file of its own, which defines its forces at a state and
-//! whether it fails ([`Load`]).
-//! The rest is common to all: elements are attached to a model, remember plastic elongation and failure, enter the
-//! forces and the energy balance, and run in lanes.
+//! Each kind of element has a file of its own, which defines its forces and its failure at a state ([`Load`]). This
+//! module has what all kinds share: the memory of plastic elongation and failure, the contributions to forces and
+//! energy balance, and the support of lanes.
 
 mod guide;
 mod link;
@@ -21,43 +20,43 @@ pub use link::Link;
 pub use rod::Rod;
 pub use strap::Strap;
 
-/// Memory of an element; changed by accepted steps only.
+/// Memory of an element, which only accepted steps change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory<S: Space> {
     /// Plastic elongation (m).
     pub plastic: S::Real,
-    /// `true` if it is broken, for good: then it bears nothing.
+    /// `true` once the element is broken; from then on it exerts no force.
     pub broken: <S::Real as Real>::Mask,
 }
 
 lanewise!(struct Memory<Planar<R>> { plastic } masks { broken });
 
-/// Load of an element at a state.
+/// Force and energy of an element at a state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load<R: Real> {
-    /// Force (N) along it, positive where it pulls its bodies together.
+    /// Force (N) along the element, positive where it pulls its bodies together.
     pub force: R,
-    /// Energy stored in it (J); lost when it breaks.
+    /// Energy stored in the element (J); lost when it breaks.
     pub energy: R,
-    /// Part of the force due to the spring (N), which has the energy.
+    /// Part of the force (N) that is due to the spring and stores the energy.
     pub elastic: R,
     /// Plastic elongation (m) once the state is accepted.
     pub plastic: R,
-    /// `true` if it fails.
+    /// `true` if the element fails at this state.
     pub breaks: R::Mask,
 }
 
 /// Load and wrenches of an element at a state.
 pub(crate) struct Action<S: Space> {
     pub(crate) load: Load<S::Real>,
-    /// For each body the total wrench about the center of mass, and the part of the damper in it.
+    /// For each body, the total wrench about its center of mass, and the part of it that is due to dampers.
     pub(crate) wrenches: [(Wrench<S>, Wrench<S>); 2],
 }
 
 /// Declares the kinds of elements, each a struct with a `link` and the functions called here.
 macro_rules! kinds {
     ($($(#[$about:meta])* $kind:ident),*) => {
-        /// An element of one of the kinds.
+        /// A force element.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Element<S: Space> {
             $($(#[$about])* $kind($kind<S>)),*
@@ -72,32 +71,32 @@ macro_rules! kinds {
         lanewise!(enum Element<Planar<R>> { $($kind(element)),* });
 
         impl<S: Space> Element<S> {
-            /// Returns its name, and the points that it joins.
+            /// Returns the name of the element and the points that it joins.
             pub fn link(&self) -> &Link<S> {
                 match self { $(Self::$kind(element) => &element.link),* }
             }
 
-            /// Returns its largest stiffness (N/m) between its points.
+            /// Returns the largest stiffness (N/m) between the points.
             pub fn stiffness(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.stiffness()),* }
             }
 
-            /// Returns its largest damping (N·s/m) between its points.
+            /// Returns the largest damping (N·s/m) between the points.
             pub fn damping(&self) -> S::Real {
                 match self { $(Self::$kind(element) => element.damping()),* }
             }
 
-            /// Fits its natural length to the points at a state, plus an excess (m).
+            /// Sets the natural length to the distance of the points at a state, plus an excess (m).
             pub fn fit(&mut self, state: &State<S>, give: S::Real) {
                 match self { $(Self::$kind(element) => element.fit(state, give)),* }
             }
 
-            /// Returns the problem of its constants, if any.
+            /// Returns what is wrong with the constants, if anything.
             fn flaw(&self) -> Option<&'static str> {
                 match self { $(Self::$kind(element) => element.flaw()),* }
             }
 
-            /// Returns its load and wrenches at a state; zero in lanes where it is broken.
+            /// Returns load and wrenches at a state; zero in lanes where the element is broken.
             #[inline(always)]
             pub(crate) fn act(
                 &self,
@@ -112,32 +111,33 @@ macro_rules! kinds {
 }
 
 kinds!(
-    /// Acts in tension only; may yield.
+    /// A strap, which acts in tension only and may yield.
     Strap,
-    /// Holds a distance, and damps a pendulum.
+    /// A rod, which keeps two points at a distance.
     Rod,
-    /// A spring, a damper and stops along an axis of a body.
+    /// A guide: a spring, a damper and stops along an axis of a body.
     Guide
 );
 
 impl<S: Space> Element<S> {
-    /// Returns its problem in a model with a number of bodies, if any.
+    /// Returns what is wrong with the element in a model with a number of bodies, if anything.
     pub(crate) fn problem(&self, bodies: usize) -> Option<&'static str> {
         self.link().flaw(bodies).or_else(|| self.flaw())
     }
 
-    /// Returns its load at a state, unbroken.
+    /// Returns the load of the unbroken element at a state.
     pub fn load(&self, state: &State<S>) -> Load<S::Real> {
         let rotations: Vec<_> = state.poses.iter().map(|p| S::rotation(p.orientation)).collect();
         self.act(state, &rotations, Memory::default()).load
     }
 
-    /// Returns the joined bodies, each with the point (m) in its frame.
+    /// Returns the joined bodies, each with its point (m) in the body frame.
     pub fn ends(&self) -> impl Iterator<Item = (BodyId, S::Vector)> + use<S> {
         self.link().bodies.into_iter().zip(self.link().points)
     }
 
-    /// Returns `true` if the force acts on both bodies at the point of the second one, not on each at its own.
+    /// Returns `true` if the force acts on both bodies at the point of the second body, and not on each body at its own
+    /// point.
     pub fn acts_at_second(&self) -> bool {
         match self {
             Self::Strap(_) => false,

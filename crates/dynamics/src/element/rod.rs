@@ -1,4 +1,4 @@
-//! Rods: they hold two points at a distance, in tension and compression.
+//! Rods, which keep two points at a distance, in tension and compression.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -6,21 +6,22 @@ use crate::real::Real;
 use crate::space::{Linear, Space, Wrench};
 use crate::state::State;
 
-/// A rod between a point of one body and a point of another, about which they turn.
+/// A rod that is hinged to a point of one body and to a point of another.
 ///
-/// Along it `f = k (d − l) + c ḋ` for the distance `d` (m) of the points and its length `l`; across it a damper acts
-/// on the velocity of the second point relative to the first body: the damping of a pendulum.
+/// The force along the rod is `f = k (d − l) + c ḋ`, with the distance `d` (m) of the points and the length `l` of the
+/// rod. Across the rod a damper acts on the velocity of the second point relative to the first body, which is the
+/// damping of a pendulum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rod<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) at which it is unloaded.
+    /// Distance of the points (m) at which the rod is unloaded.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
-    /// Damping c (N·s/m) along it.
+    /// Damping c (N·s/m) along the rod.
     pub damping: S::Real,
-    /// Damping (N·s/m) across it.
+    /// Damping (N·s/m) across the rod.
     pub sway_damping: S::Real,
 }
 

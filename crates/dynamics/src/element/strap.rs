@@ -1,4 +1,4 @@
-//! Straps and other ties: they act in tension only.
+//! Straps and other ties, which act in tension only.
 
 use super::{Action, Link, Load, Memory, all};
 use crate::lanewise;
@@ -9,23 +9,22 @@ use crate::state::State;
 /// A strap between a point of one body and a point of another.
 ///
 /// Its tension is `T = max(0, k e + c ė)` while its elongation `e` (m), the distance of the two points less `length`,
-/// is positive, and zero while it is slack.
-/// Where the spring would exceed its yield force, it elongates plastically until it does not; only the elastic
-/// elongation pulls.
-/// It has no mass, and nothing touches it between its ends.
+/// is positive, and zero while it is slack. If the force of the spring would exceed the yield force, the strap
+/// elongates plastically until the two are equal; only the elastic elongation causes tension. The strap has no mass,
+/// and touches nothing between its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strap<S: Space> {
     /// The joined points.
     pub link: Link<S>,
-    /// Distance of the points (m) beyond which it pulls.
+    /// Distance of the points (m) beyond which the strap is taut.
     pub length: S::Real,
     /// Stiffness k (N/m).
     pub stiffness: S::Real,
     /// Damping c (N·s/m).
     pub damping: S::Real,
-    /// Tension (N) of its spring at which it yields; infinite if it never does.
+    /// Force (N) of the spring at which the strap yields; infinite if it never yields.
     pub yields_at: S::Real,
-    /// Tension (N) above which it tears, for good; infinite if it never does.
+    /// Tension (N) above which the strap tears; infinite if it never tears.
     pub strength: S::Real,
 }
 
@@ -52,7 +51,7 @@ impl<S: Space> Strap<S> {
         } else if !all(self.length, |l| l >= 0.0 && l.is_finite()) {
             Some("its length must not be negative")
         } else if ![self.strength, self.yields_at].into_iter().all(|it| all(it, |t| t > 0.0)) {
-            Some("its strength, and what it yields at, must be positive")
+            Some("its strength and its yield force must be positive")
         } else {
             None
         }

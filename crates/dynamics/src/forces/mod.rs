@@ -23,10 +23,10 @@ pub struct Contact<S: Space> {
     pub pair: usize,
     /// Index of the node in the contactor's node set.
     pub node: u32,
-    /// The lanes in which it touches; always `true` in a single run.
+    /// The lanes in which the element touches; always `true` in a single run.
     pub touching: <S::Real as Real>::Mask,
-    /// Where the force acts on both bodies (m), in the frame of the target's surface: the companion point of a fixed node,
-    /// or the middle of the overlap.
+    /// Point (m) at which the force acts on both bodies, in the frame of the target's surface: the companion point of a
+    /// fixed node, or the middle of the overlap.
     pub point: S::Vector,
     /// Unit normal in the same frame, out of the target.
     pub normal: S::Vector,
@@ -70,27 +70,29 @@ impl<S: Space> Default for Losses<S> {
     }
 }
 
-/// Sum of the contact forces of one pair, and of the force along a side that conserves the energy of a contact shared
-/// with a second one; so it may exceed the sum of its contacts.
+/// Total contact force of one pair.
+///
+/// Where two corners share one contact, the total includes a force along the side, which closes the energy balance as
+/// the shares change. So the total may differ from the sum of the contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct PairForce<S: Space> {
     /// Index of the pair in the model.
     pub pair: usize,
-    /// Its contactor.
+    /// Contactor of the pair.
     pub contactor: BodyId,
-    /// Its target.
+    /// Target of the pair.
     pub target: BodyId,
-    /// Force (N) on the contactor, in the inertial frame; the opposite acts on the target.
+    /// Force (N) on the contactor, in the inertial frame; the opposite force acts on the target.
     pub force: S::Vector,
 }
 
-/// Data that can be recomputed from a state; may be dropped at any time.
+/// Working memory: data that can be recomputed from a state, and may be dropped at any time.
 #[derive(Clone, Debug)]
 pub struct Scratch<S: Space> {
     /// Contacts of the last evaluation, in the order of their elements, without the force along a side of
     /// [`PairForce`]; empty unless [`Scratch::keeps_contacts`].
     pub contacts: Vec<Contact<S>>,
-    /// `true` to store `contacts`, which forces do not need, but observers of contacts do.
+    /// `true` to store `contacts`, which observers of contacts need, but the computation of forces does not.
     pub keeps_contacts: bool,
     /// Total forces of every touching pair, in the order of the pairs.
     pub pair_forces: Vec<PairForce<S>>,
@@ -108,7 +110,7 @@ pub struct Scratch<S: Space> {
     pub accelerations: Vec<Twist<S>>,
     /// Rotation of every body.
     pub rotations: Vec<S::Rotation>,
-    /// Rate of every stick (m/s): its slip rate, turned with the bodies; zero where it does not touch.
+    /// Rate of every stick (m/s): its slip rate, and its rotation with the bodies; zero without contact.
     pub slip_rates: Vec<S::Tangent>,
     /// Number of force evaluations.
     pub evaluations: u64,
@@ -121,13 +123,13 @@ pub struct Scratch<S: Space> {
     pub(crate) is_hard: <S::Real as Real>::Mask,
     /// Time (s) for which impacts are predicted; zero where steps are never divided.
     pub(crate) lookahead: S::Real,
-    /// Relative kinematics of the current pair at the current surface, reused by solids of a body that share it.
+    /// Relative kinematics of the last pair, reused for further node sets of its contactor at the same surface.
     kinematics: Option<PairKinematics<S>>,
     /// Accelerations at the start of the step, for methods with a correction.
     pub(crate) old_accelerations: Vec<Twist<S>>,
     /// Slip rates at the start of the step.
     pub(crate) old_slip_rates: Vec<S::Tangent>,
-    /// Contact data that sticks need once the step is accepted, and normal forces; in the order of their elements.
+    /// Normal forces, and the data that sticks need once the step is accepted, of all touching elements in order.
     pub pressed: Vec<Pressed<S>>,
     /// Groups of contact elements that are tested in the current evaluation.
     awake: Vec<usize>,
@@ -143,13 +145,13 @@ pub struct Pressed<S: Space> {
     pub node: u32,
     /// The lanes in which it touches.
     pub touching: <S::Real as Real>::Mask,
-    /// Where the force acts (m), in the frame of the target's surface.
+    /// Point (m) at which the force acts, in the frame of the target's surface.
     pub point: S::Vector,
-    /// Tangent plane, stored by its stick with the displacement.
+    /// Tangent plane, which the stick stores with its displacement.
     tangent_plane: S::TangentPlane,
-    /// Compressive force (N); zero where it does not touch.
+    /// Compressive force (N); zero in lanes without contact.
     pub normal_force: S::Real,
-    /// Factor of the constants of its laws.
+    /// Factor of the constants of the laws.
     pub weight: S::Real,
 }
 
@@ -189,9 +191,9 @@ impl<S: Space> Scratch<S> {
         self.pressed.len()
     }
 
-    /// Renumbers to a new list of elements; `origins` has the index of each in the old list.
+    /// Updates the element numbers to a new list; `origins` has the index of every new element in the old list.
     ///
-    /// Every contact keeps its element, since touching elements are within the margin of any list.
+    /// No contact is lost, since touching elements are within the margin of every list.
     pub(crate) fn renumber(&mut self, origins: &[Option<usize>]) {
         let mut numbers = vec![None; self.slip_rates.len()];
         let mut slip_rates = vec![S::Tangent::default(); origins.len()];
@@ -245,7 +247,7 @@ pub(crate) fn evaluate_within<S: Space>(
     );
 }
 
-/// Fills with defaults; unlike `fill`, it is compiled for the vector unit.
+/// Fills a slice with defaults; unlike `fill`, this loop is compiled for the vector unit.
 #[inline(always)]
 fn wipe<T: Default>(all: &mut [T]) {
     for one in all {
@@ -255,7 +257,7 @@ fn wipe<T: Default>(all: &mut [T]) {
 
 /// Collects the groups of elements that may touch in the current step, or whose impacts are to be predicted.
 ///
-/// Most need no test, so all are filtered first, separately from their forces.
+/// Most groups need no test, so all are filtered before any force is computed.
 #[inline(always)]
 fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut Vec<usize>) {
     awake.clear();
@@ -270,7 +272,7 @@ fn wake<S: Space>(model: &Model<S>, elements: &ContactElements<S>, awake: &mut V
     }
 }
 
-/// Adds the force elements.
+/// Adds the forces of the force elements.
 #[inline(always)]
 fn act<S: Space>(model: &Model<S>, state: &State<S>, scratch: &mut Scratch<S>) {
     let Scratch { wrenches, losses, rotations, loads, .. } = scratch;
@@ -342,8 +344,8 @@ pub(crate) fn commit<S: Space>(model: &Model<S>, state: &mut State<S>, scratch: 
     );
 }
 
-/// Accepts as [`commit`], with displacements `corrected` first: from an element and its displacement (m) to the
-/// accepted one.
+/// Accepts the state as [`commit`] does, with corrected stick displacements: `corrected` returns the displacement (m)
+/// to accept from an element and its displacement (m).
 pub(crate) fn commit_corrected<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -407,8 +409,7 @@ fn commit_all<S: Space>(
     sticks[next..].fill(Stick::default());
 }
 
-/// Commits the sticks of a pair; resets those between its contacts, and those before them that belong to no touching
-/// pair.
+/// Commits the sticks of a pair, and resets all sticks without contact from `next` up to the last contact of the pair.
 #[inline(always)]
 fn commit_pair<S: Space>(
     law: impl Fn() -> FrictionLaw<S::Real>,

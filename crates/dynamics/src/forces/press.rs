@@ -23,8 +23,8 @@ use row::{Row, counting};
 
 /// Adds the contacts of one pair: gap, normal law, friction law, and the sum of the forces on both bodies.
 ///
-/// In lanes the paper's laws have a loop of their own, without dispatch per contact; single numbers gain nothing from
-/// it.
+/// In lanes, the speed-gap law with Coulomb friction has a loop of its own, without dispatch per contact; single
+/// numbers would gain nothing.
 #[inline(always)]
 pub(super) fn touch<S: Space>(
     model: &Model<S>,
@@ -197,7 +197,7 @@ struct Press<'a, S: Space, L> {
     /// Rolling resistance of the pair, if any.
     rolling: Option<RollingPair<S::Real>>,
     stop: Option<Stop<S::Real>>,
-    /// Decision where the contacts of the pair count; `None` if everywhere.
+    /// Contact filter of the pair; `None` if all contacts count.
     counted: Option<AtFace<S>>,
     /// Called once per contact, so that the compiler can specialize the loop for the laws where they are known.
     laws: L,
@@ -206,8 +206,8 @@ struct Press<'a, S: Space, L> {
     frame: &'a PairFrame<S>,
     /// Kinematics of the pair: computed before the first node, to avoid a test at every node.
     meeting: Meeting<'a, S>,
-    /// Lanes in which a contact of two round pieces belongs to this pair: its contactor is the heavier body, or of equal
-    /// ones the first.
+    /// Lanes in which this pair, and not the pair with exchanged bodies, counts a contact of two round pieces: the
+    /// contactor is the heavier body or, of two equal ones, the first.
     leads: <S::Real as Real>::Mask,
     pair: usize,
     elements: &'a ContactElements<S>,
@@ -223,7 +223,7 @@ struct Press<'a, S: Space, L> {
 const RESTING_SHARE: f64 = 0.01;
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// All contacts of a pair.
+    /// Adds all contacts of a pair.
     #[inline(always)]
     fn nodes(&mut self, nodes: &Nodes<S>, group: &Group, surface: &S::Surface, basis: Basis) {
         let one = S::Real::splat(1.0);
@@ -322,7 +322,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.needs_substeps = self.needs_substeps | (near & deep);
     }
 
-    /// Adds the moment by which a normal force (N) resists rolling.
+    /// Adds the moment of rolling resistance under a normal force (N).
     #[inline(always)]
     fn resist_rolling(&mut self, normal_force: S::Real) {
         let Some(rolling) = &self.rolling else { return };
@@ -331,16 +331,19 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.sum.friction += Wrench { force: S::Vector::default(), moment };
     }
 
-    /// Adds the forces of a node at `node` (m), which penetrates in at least one lane; in the frame of the target's
-    /// surface. Returns the energy (J) that its spring would store at full share.
+    /// Adds the forces of a node at `node` (m, in the frame of the target's surface), which penetrates in at least one
+    /// lane.
+    ///
+    /// Returns the energy (J) that the spring of the node would store at a share of 1.
     #[inline(always)]
     fn node(&mut self, element: usize, node: S::Vector, gap: Gap<S>, share: S::Real) -> S::Real {
         let gap = counting(self.counted, gap);
         self.press(element, node, gap, share, None)
     }
 
-    /// Adds the forces of a node at `node` (m) whose gap counts; its laws are evaluated at a depth (m) that it shares
-    /// with others, or at its own.
+    /// Adds the forces of a node at `node` (m) whose gap the contact filter accepts.
+    ///
+    /// The laws are evaluated at the depth `shared` (m) of a row of nodes, or at the depth of the node itself.
     #[inline(always)]
     fn press(
         &mut self,
@@ -391,10 +394,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Returns the friction force (N) of an element under a normal force (N), with the weight of its law, and the
-    /// plane of its stick; adds its energy and the rate of its stick.
+    /// Returns the friction force (N) and the tangent plane of an element under a normal force (N) with a weight; adds
+    /// the energy and the rate of its stick.
     ///
-    /// Sticks are kept in the inertial frame, in which neither body differs from the other.
+    /// Sticks are kept in the inertial frame, which favors neither body.
     #[inline(always)]
     fn friction(
         &mut self,
@@ -416,8 +419,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Returns the node (m) of a round about `center` for which the force acts midway between the boundaries, so that
-/// exchanging the bodies changes nothing.
+/// Returns the node (m) of a round piece about `center`, placed so that the force acts midway between the boundaries
+/// and exchanging the bodies changes nothing.
 #[inline(always)]
 fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vector {
     center - gap.normal * (radius - gap.distance * S::Real::splat(0.5))
@@ -427,12 +430,12 @@ fn midway<S: Space>(center: S::Vector, gap: Gap<S>, radius: S::Real) -> S::Vecto
 struct RollingPair<R> {
     /// [`Rolling::lever`].
     lever: R,
-    /// Spin scale (rad/s): the spin over it is the active share of the lever.
+    /// `√(ω² + ω₀²)` (rad/s), by which the spin is divided.
     scale: R,
 }
 
 impl<R: Real> RollingPair<R> {
-    /// Computed only for pairs with rolling resistance, since it takes a square root.
+    /// Creates the resistance at a relative spin; called only for pairs that need it, since it takes a square root.
     #[inline(always)]
     fn new(rolling: Rolling<R>, spin: impl Linear<R>) -> Self {
         let scale = (spin.dot(spin) + rolling.spin * rolling.spin).sqrt();

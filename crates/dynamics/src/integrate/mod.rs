@@ -1,7 +1,7 @@
 //! Time integration: from one accepted state to the next.
 //!
-//! Every method starts with the forces of the initial state in `scratch`, and leaves there the forces of the accepted
-//! state. Sticks are advanced like every other coordinate, by their rates; their memory is committed only with the
+//! Every method starts with the forces of the initial state in `scratch`, and leaves the forces of the accepted state
+//! there. Sticks are advanced by their rates like every other coordinate; their memory is committed only with the
 //! accepted state.
 
 mod runge_kutta;
@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::space::{Pose, Space, Twist};
 use crate::state::State;
 
-/// Ground motion.
+/// Ground motion that drives the prescribed bodies.
 pub trait Drive<S: Space> {
     /// Returns displacement (m) and velocity (m/s) of the ground at a time (s); the velocity is the derivative of the
     /// displacement.
@@ -39,16 +39,16 @@ impl<S: Space> Drive<S> for Still {
 /// Integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// Symplectic Euler: one evaluation a step, first order.
+    /// Symplectic Euler: one evaluation per step, first order.
     SemiImplicitEuler,
-    /// Velocity Verlet with predicted velocities (Groot and Warren 1997): one evaluation a step,
-    /// second order where the motion is smooth.
+    /// Velocity Verlet with predicted velocities (Groot and Warren 1997): one evaluation per step, second order where
+    /// the motion is smooth.
     VelocityVerlet,
-    /// The classical Runge–Kutta method: four evaluations a step, fourth order where smooth.
+    /// The classical Runge–Kutta method: four evaluations per step, fourth order where the motion is smooth.
     RungeKutta4,
-    /// Bogacki–Shampine 3(2) with step control: three evaluations a step.
+    /// Bogacki–Shampine 3(2) with step control: three evaluations per step.
     BogackiShampine {
-        /// Largest local error of a position (m), and of a velocity times one time step of the stiffest contact.
+        /// Largest local error (m) of a position, and of a velocity times the step.
         tolerance: f64,
     },
 }
@@ -70,7 +70,7 @@ impl Method {
     }
 }
 
-/// Advances states by a method; has working memory only.
+/// Advances states by an integration method; contains only working memory.
 #[derive(Debug)]
 pub struct Integrator<S: Space> {
     method: Method,
@@ -83,7 +83,8 @@ impl<S: Space> Integrator<S> {
         Self { method, stages: runge_kutta::Stages::default() }
     }
 
-    /// Positions the bodies carried by the ground and evaluates the forces: the start of every method.
+    /// Prepares a state for the first step of any method: moves the prescribed bodies with the ground, and evaluates
+    /// the forces.
     pub fn start(
         model: &Model<S>,
         drive: &impl Drive<S>,
@@ -95,7 +96,7 @@ impl<S: Space> Integrator<S> {
         evaluate(model, state, scratch);
     }
 
-    /// Advances `state` to the time `until` (s) in one step, or by less if the method requires.
+    /// Advances `state` to the time `until` (s) in one step, or by less if an adaptive method requires it.
     ///
     /// Returns the step (s) to try next.
     pub fn step(
@@ -134,8 +135,8 @@ impl<S: Space> Integrator<S> {
 
 /// Updates the element list; if it changed, renumbers the elements in `scratch`.
 ///
-/// The forces in `scratch` are kept: evaluating them again, with corrected velocities and committed sticks, would
-/// change them, and the list would no longer affect speed alone.
+/// The forces in `scratch` are kept. Evaluating them again, with corrected velocities and committed sticks, would
+/// change them, so the list would affect more than speed.
 fn refresh<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

@@ -1,4 +1,4 @@
-//! Explicit Runge–Kutta methods as tableaus, with one stepper for all.
+//! Explicit Runge–Kutta methods: their tableaus, and one stepper for all of them.
 
 use super::{Drive, accept, free, place_prescribed};
 use crate::contact::Stick;
@@ -39,11 +39,11 @@ pub(super) static BOGACKI_SHAMPINE: Tableau = Tableau {
 
 /// The rates of one stage.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_field_names, reason = "a slip rate is called so everywhere")]
+#[expect(clippy::struct_field_names, reason = "the name that is used everywhere else")]
 struct Rates<S: Space> {
-    /// Velocity of every body, and the rate of its rotation from the start of the step ([`Space::turn_rate`]).
+    /// Velocity of every body, and the rate of its rotation vector since the start of the step ([`Space::turn_rate`]).
     velocities: Vec<Twist<S>>,
-    /// Its acceleration, and the rate of its [`Space::momentum`].
+    /// Acceleration of every body, and the rate of its [`Space::momentum`].
     kicks: Vec<Twist<S>>,
     slip_rates: Vec<S::Tangent>,
 }
@@ -56,7 +56,7 @@ pub(super) struct Stages<S: Space> {
     /// Velocity of every body, and its [`Space::momentum`].
     momenta: Vec<Twist<S>>,
     sticks: Vec<Stick<S>>,
-    /// Rotation of every body from the start to the current stage.
+    /// Rotation vector of every body from the start to the current stage.
     turned: Vec<S::Spin>,
 }
 
@@ -90,7 +90,7 @@ impl<S: Space> Stages<S> {
 
     /// Takes one step that is as long as the tolerance allows, and ends at `until` at the latest.
     ///
-    /// Returns the step (s) to try next. Lanes share the step that the worst of them requires.
+    /// Returns the step (s) to try next. All lanes take the shortest step that any of them requires.
     #[expect(clippy::too_many_arguments, reason = "the method, its tolerance, and what it acts on")]
     pub(super) fn adaptive(
         &mut self,
@@ -193,7 +193,7 @@ impl<S: Space> Stages<S> {
         self.rates.push(rates);
     }
 
-    /// Returns the rates of a body at a stage: of position and rotation, and of velocity and momentum.
+    /// Returns the rates of a body at a stage: those of position and rotation, and those of velocity and momentum.
     fn rates_of(
         &self,
         model: &Model<S>,
@@ -229,8 +229,8 @@ impl<S: Space> Stages<S> {
         }
     }
 
-    /// Returns the largest difference (m) between the step and its embedded result; velocities count as displacements
-    /// in the step.
+    /// Returns the largest difference (m) between the result of a step and its embedded result; velocities are
+    /// multiplied by the step.
     fn error(
         &self,
         tableau: &Tableau,
@@ -275,8 +275,8 @@ impl<S: Space> Stages<S> {
     }
 }
 
-/// Replaces the spin of a twist by its [`Space::momentum`]: methods add momenta, since spins turn with their bodies
-/// even without a moment.
+/// Replaces the spin of a twist by its [`Space::momentum`]. Methods add momenta, since a spin may change even without a
+/// moment.
 fn momentum<S: Space>(
     model: &Model<S>,
     scratch: &Scratch<S>,

@@ -7,11 +7,12 @@ use crate::real::Real;
 use crate::space::Space;
 use crate::state::State;
 
-/// Steps `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, all with the new velocity.
+/// Takes a step of symplectic Euler: `v ← v + a dt`, then `q ← q + v dt` and `s ← s + ṡ dt`, both with the new
+/// velocity.
 ///
-/// The new slip rates are known only after the evaluation, so sticks are predicted with the old ones and corrected: a
-/// stick advanced by old rates alone would gain energy in every step, by a fraction of ω² dt² for a tangential
-/// frequency ω.
+/// The new slip rates are known only after the evaluation, so sticks are predicted with the old rates and then
+/// corrected. A stick advanced by old rates alone would gain energy in every step, by a fraction of ω² dt² for a
+/// tangential frequency ω.
 pub(super) fn semi_implicit_euler<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,
@@ -33,14 +34,13 @@ pub(super) fn semi_implicit_euler<S: Space>(
     accept(model, state, scratch, step);
 }
 
-/// Steps half a kick, a drift without forces ([`Space::coast`]), and the other half of the kick with the forces at
-/// the new position.
+/// Takes a step of velocity Verlet: half a kick, a drift without forces ([`Space::coast`]), and half a kick with the
+/// forces at the new position.
 ///
-/// Forces that depend on the velocity use the one predicted from the old acceleration, which is corrected
-/// afterwards; sticks likewise use the old slip rate.
-/// Springs that engage or release within the step act for a part of it only
-/// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)).
-/// Prediction errors are of second order and do not accumulate, since the corrected values are kept.
+/// Forces that depend on the velocity use a prediction from the old acceleration, which is corrected afterwards; sticks
+/// likewise use the old slip rate. Springs that engage or release within the step act for a part of the step only
+/// ([`NormalForce::within_step`](crate::contact::NormalForce::within_step)). Prediction errors are of second order and
+/// do not accumulate, since the corrected values are kept.
 pub(super) fn velocity_verlet<S: Space>(
     model: &Model<S>,
     drive: &impl Drive<S>,

@@ -12,7 +12,7 @@ use crate::state::State;
 
 use super::{Lanewise, MOST_LANES};
 
-/// A case that is ready to run: model, initial state, ground motion, and duration.
+/// A case that is ready to run: model, initial state, ground motion, time step and end time.
 pub struct Case<'a, D> {
     /// The model.
     pub model: &'a Model<Planar>,
@@ -22,14 +22,14 @@ pub struct Case<'a, D> {
     pub drive: D,
     /// Time step (s).
     pub time_step: f64,
-    /// End time (s), unless it is stopped.
+    /// End time (s), unless the batch stops the case earlier.
     pub end_time: f64,
 }
 
 /// Result of a case.
 #[derive(Clone, Debug)]
 pub struct End {
-    /// Reason for its end, or the error.
+    /// Reason for the end of the case, or the error.
     pub finish: Result<Finish, RunError>,
     /// End time (s).
     pub time: f64,
@@ -47,12 +47,12 @@ pub trait Batch<'a, R: Real> {
     /// Returns the next case for a lane; all cases of a batch have one [`Topology`](super::Topology).
     fn next(&mut self, lane: usize) -> Option<Case<'a, Self::Drive>>;
 
-    /// Called with the initial state of a case, placed on its ground, and its forces.
+    /// Called with the initial state of a case, moved to the position of its ground, and with its forces.
     fn start(&mut self, lane: usize, state: &State<Planar>, scratch: &Scratch<Planar>);
 
     /// Called after each accepted step of all lanes; returns the lanes to stop.
     ///
-    /// Lanes without a case are included, with constant state.
+    /// Lanes without a case are included; their state is constant.
     fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask;
 
     /// Called when a case has ended.
@@ -61,10 +61,9 @@ pub trait Batch<'a, R: Real> {
 
 /// Runs all cases of a batch, as many side by side as a bundle has lanes.
 ///
-/// A lane gets the next case as soon as its own has ended. Every case takes the same steps with the same bits as a
-/// single run by [`simulate`](crate::simulate()): lanes share only the list of contact elements, which affects speed
-/// alone, and the order of work.
-/// Only methods of a fixed step are supported.
+/// A lane gets the next case as soon as its own has ended. Every case takes the same steps, with the same bits, as a
+/// single run by [`simulate`](crate::simulate()): lanes share only the order of work and the list of contact elements,
+/// which affects speed alone. Only methods with a fixed step are supported.
 pub fn run_batch<'a, R: Real, C: Batch<'a, R>>(method: Method, batch: &mut C) {
     let Some(first) = batch.next(0) else { return };
     let mut lanes = Lanes::<R, C::Drive>::of(&first);
@@ -135,7 +134,7 @@ impl<R: Real, D: Drive<Planar>> Drive<Planar<R>> for Drives<D> {
 }
 
 impl<R: Real, D: Drive<Planar>> Lanes<R, D> {
-    /// Creates lanes with the state of one case, none of them busy.
+    /// Creates lanes that all have the state of one case; none of them is busy.
     fn of(case: &Case<'_, D>) -> Self {
         let model = Model::<Planar<R>>::in_all(case.model);
         let mut state = State::initial(&model);

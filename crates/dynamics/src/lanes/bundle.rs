@@ -10,9 +10,9 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8, mask64x8
 
 use crate::real::{Mask, Real};
 
-/// A vector unit that this machine is known to have.
+/// A vector unit whose presence on this machine has been checked.
 pub(super) trait Unit: Simd + fmt::Debug + Send + Sync + 'static {
-    /// Zero-sized proof that the machine has it.
+    /// Zero-sized proof that the machine has the unit.
     const TOKEN: Self;
 }
 
@@ -74,8 +74,8 @@ impl<U: Unit> Real for Bundle<U> {
         U::TOKEN.vectorize(
             #[inline(always)]
             || {
-                // A bundle that must lie in memory: the compiler aligns the stack frame of a function for bundles
-                // only if it finds one before register allocation; bundles spilled later would straddle cache lines.
+                // Forces a bundle into memory. The compiler aligns a stack frame for bundles only if it has one before
+                // register allocation; bundles that are spilled later would straddle cache lines.
                 std::hint::black_box(&Self::splat(0.0));
                 work()
             },

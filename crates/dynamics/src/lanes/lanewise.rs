@@ -8,13 +8,13 @@ use crate::real::{Mask, Real};
 use crate::shape::{BarrelProfile, Circle, Cradle, HalfPlane, NoWhole, Shape};
 use crate::space::{Planar, Pose, Rotation2, Twist, Vec2, Wrench};
 
-/// A value of bundles, each lane of which is the same kind of value of single numbers.
+/// A value made of bundles; each of its lanes is the corresponding value made of single numbers.
 ///
-/// Everything that decides memory layout and control flow (the number of nodes, the kind of a law) must be equal in
-/// all lanes; [`Topology`](super::Topology) compares it beforehand. [`lanewise!`](crate::lanewise) implements it for
-/// structs and enums by the names of their fields.
+/// Everything that determines memory layout and control flow, such as the number of nodes or the kind of a law, must be
+/// equal in all lanes; [`Topology`](super::Topology) compares it beforehand. [`lanewise!`](crate::lanewise) implements
+/// this trait for structs and enums from the names of their fields.
 pub trait Lanewise {
-    /// The value of single numbers.
+    /// The value made of single numbers.
     type Single;
     /// Returns the same value in every lane.
     fn in_all(single: &Self::Single) -> Self;
@@ -24,9 +24,9 @@ pub trait Lanewise {
     fn of_lane(&self, lane: usize) -> Self::Single;
 }
 
-/// Message for values of different topology in a bundle.
+/// Panic message for values of different topology in one bundle.
 #[doc(hidden)]
-pub const ALIKE: &str = "things that share a bundle are of one topology";
+pub const ALIKE: &str = "all values in a bundle must have the same topology";
 
 impl<R: Real> Lanewise for R {
     type Single = f64;
@@ -102,7 +102,7 @@ impl<T: Lanewise, const N: usize> Lanewise for [T; N] {
     }
 }
 
-/// A value per lane that takes no part in arithmetic; a single run has one lane.
+/// One value per lane that takes no part in arithmetic; a single run has one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerLane<T>(Vec<T>);
 
@@ -139,11 +139,11 @@ impl<T: Clone> Lanewise for PerLane<T> {
     }
 }
 
-/// Implements [`Lanewise`] by the names of fields:
+/// Implements [`Lanewise`] from the names of the fields of a type:
 ///
-/// - `struct Name<R> { a, b }` and `struct Name<Planar<R>> { a, b }`, all of whose fields are lanewise
-///   but for those after `masks`, which are truth values;
-/// - `enum Name<R> { One { a, b }, Two(a), Three }`, whose variant is part of the topology;
+/// - `struct Name<R> { a, b }` and `struct Name<Planar<R>> { a, b }` for structs; all fields are lanewise, except those
+///   after `masks`, which are truth values;
+/// - `enum Name<R> { One { a, b }, Two(a), Three }` for enums; the variant is part of the topology;
 /// - `same Name, Other;` for types that are equal in all lanes.
 #[macro_export]
 macro_rules! lanewise {
@@ -199,7 +199,7 @@ macro_rules! lanewise {
         @variants $name:ident, ($bundle:ty), ($single:ty),
         { $($variant:ident $({ $($field:ident),* })? $(($inner:ident))?),* $(,)? }
     ) => {
-        #[allow(unreachable_code, reason = "a variant may hold what the plane has none of")]
+        #[allow(unreachable_code, reason = "a variant may have an empty type in the plane")]
         impl<R: $crate::real::Real> $crate::lanes::Lanewise for $bundle {
             type Single = $single;
             fn in_all(single: &Self::Single) -> Self {
@@ -209,7 +209,7 @@ macro_rules! lanewise {
                         $(($crate::lanes::Lanewise::in_all($inner)))?,)*
                 }
             }
-            #[allow(irrefutable_let_patterns, reason = "an enum may have one variant only")]
+            #[allow(irrefutable_let_patterns, reason = "an enum may have only one variant")]
             fn put(&mut self, lane: usize, single: &Self::Single) {
                 match self {
                     $($name::$variant $({ $($field),* })? $(($inner))? => {
@@ -327,11 +327,11 @@ impl<R: Real> Model<Planar<R>> {
         self.gravity.put(lane, &single.gravity);
         self.substepping.put(lane, &single.substepping);
         for (reach, single) in self.reach.iter_mut().zip(&single.reach) {
-            // The ball must hold the body of every lane.
+            // The bounding ball must enclose the body of every lane.
             *reach = reach.max(*single);
         }
         for (body, (alike, single)) in self.alike.iter_mut().zip(&single.alike).enumerate() {
-            // Bodies with equal boundaries in one case may differ in another.
+            // Bodies with equal boundaries in one case may differ in another case.
             if alike != single {
                 *alike = body;
             }

@@ -1,7 +1,8 @@
-//! Many cases in the lanes of a vector register.
+//! Runs of many cases side by side, in the lanes of a vector register.
 //!
-//! A lane computes the same bits as a single run, from the same source: laws, shapes, methods and energy balance are
-//! written once over [`Real`], and the bundles here implement it. The vector unit is detected at run time.
+//! A lane computes the same bits as a single run, with the same source code: laws, shapes, methods and the energy
+//! balance are generic over [`Real`], which the bundles of this module implement. The vector unit is detected at run
+//! time.
 //!
 //! - `Bundle`: eight numbers of one vector unit.
 //! - [`Topology`]: properties that cases must share to run in one bundle.
@@ -25,10 +26,10 @@ pub use topology::Topology;
 /// Upper bound of the number of lanes of a bundle.
 const MOST_LANES: usize = 16;
 
-/// Width of a bundle.
+/// Vector unit that computes bundles of numbers, or single numbers without one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
-    /// Single numbers.
+    /// No vector unit: single numbers.
     Scalar,
     /// AVX2.
     Avx2,
@@ -36,11 +37,11 @@ pub enum Width {
     Avx512,
 }
 
-/// Work that is generic over the scalar, to run with the bundles of a width.
+/// Work that is generic over the scalar, and can run with the bundles of any width.
 pub trait Task {
     /// Result of the work.
     type Output;
-    /// Runs it.
+    /// Runs the work.
     fn run<R: Real>(self) -> Self::Output;
 }
 
@@ -48,12 +49,12 @@ impl Width {
     /// All widths, the narrowest first.
     pub const ALL: [Self; 3] = [Self::Scalar, Self::Avx2, Self::Avx512];
 
-    /// Returns the widest that this machine supports.
+    /// Returns the largest width that this machine supports.
     pub fn widest() -> Self {
         Self::ALL.into_iter().rev().find(|width| width.is_here()).unwrap_or(Self::Scalar)
     }
 
-    /// Returns `true` if this machine supports it.
+    /// Returns `true` if this machine supports the width.
     pub fn is_here(self) -> bool {
         match self {
             Self::Scalar => true,
@@ -71,7 +72,7 @@ impl Width {
         }
     }
 
-    /// Returns the width with a [`Width::name`].
+    /// Returns the width with the given [`Width::name`].
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|width| width.name() == name)
     }
@@ -90,8 +91,8 @@ impl Width {
 
 /// Vector units of this processor architecture.
 ///
-/// A token proves that the machine has a unit. Bundles need it in every operation, so it is a constant here, and the
-/// functions of this module are the only access to code that uses it: each checks the machine first.
+/// A token proves that the machine has a vector unit. Bundles need the token in every operation, so it is a constant.
+/// Code that uses it is accessible only through the functions of this module, which check the machine first.
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "tokens as constants; every path to them checks the machine first")]
 pub(crate) mod units {
@@ -119,8 +120,9 @@ pub(crate) mod units {
         Level::new().as_avx512().is_some()
     }
 
-    /// Runs scalar work with the instructions of a vector unit, if the machine has one: they preserve their operands,
-    /// which saves a tenth of the instructions. None of them fuses a product and a sum, so the bits are the same.
+    /// Runs scalar work with the instructions of a vector unit, if the machine has one. These instructions preserve
+    /// their operands, which saves a tenth of all instructions. None of them fuses a product and a sum, so the bits are
+    /// the same.
     #[inline(always)]
     pub(crate) fn single<T>(work: impl FnOnce() -> T) -> T {
         static AVX2: LazyLock<Option<Avx2>> = LazyLock::new(|| Level::new().as_avx2());

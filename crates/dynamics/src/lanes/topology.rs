@@ -1,4 +1,4 @@
-//! Properties that must be equal in all lanes.
+//! Properties of a model that must be equal in all lanes.
 
 use std::mem::{Discriminant, discriminant};
 
@@ -10,7 +10,8 @@ use crate::pairs::Pairs;
 use crate::shape::Shape;
 use crate::space::Planar;
 
-/// Properties that models must share to run in one bundle: bodies, boundaries, laws and pairs in kind and number.
+/// Properties that models must share to run in one bundle: kinds and numbers of bodies, boundaries, laws and pairs.
+///
 /// Masses, positions, sizes and constants may differ.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Topology {
@@ -31,7 +32,7 @@ struct BodyKind {
     surfaces: Vec<(Discriminant<Shape>, usize)>,
     /// Kind and number of nodes of every node set.
     nodes: Vec<(Discriminant<Nodes<Planar>>, usize)>,
-    /// For every round piece: `takes_limit`, and which limits and sides it has.
+    /// For every round piece, `takes_limit`, and which limits and sides are present.
     rounds: Vec<(bool, [bool; 2], [bool; 2])>,
 }
 

@@ -1,4 +1,4 @@
-//! Settles many stacks side by side, each to the bits of settling alone.
+//! Settling of many stacks side by side, each with the same bits as if settled alone.
 
 use crate::contact_elements::ContactElements;
 use crate::forces::{Scratch, evaluate};
@@ -18,18 +18,18 @@ use super::{LOOK, Locked, MOST_STEPS, SettleError, Settled, TRIES, gravity, sett
 pub struct Stack<'a> {
     /// The model.
     pub model: &'a Model<Planar>,
-    /// Initial state; left at rest.
+    /// Initial state; at rest on return.
     pub state: &'a mut State<Planar>,
-    /// Left with the forces at rest, including contacts.
+    /// Has the forces at rest on return, including contacts.
     pub scratch: &'a mut Scratch<Planar>,
 }
 
 /// Settles stacks of one [`Topology`](crate::lanes::Topology), as many side by side as a bundle has lanes; returns
 /// the result of [`settle`] for each, in their order, or `None` when stopped.
 ///
-/// A lane gets the next stack as soon as its own rests. Lanes share only the list of contact elements, so every stack
-/// takes the path that it takes alone. A stack that does not come to rest on the first try is settled alone, where
-/// the cause is diagnosed.
+/// A lane gets the next stack as soon as its own is at rest. Lanes share only the list of contact elements, so every
+/// stack takes the same steps as alone. A stack that does not come to rest on the first try is settled alone, where the
+/// cause is diagnosed.
 pub fn settle_all<R: Real>(
     stacks: &mut [Stack<'_>],
     tolerance: f64,
@@ -115,7 +115,7 @@ impl<R: Real> Lanes<R> {
         self.tries[lane] = Some(Try { stack: index, departure, steps: 0 });
     }
 
-    /// Leaves a lane without a stack, at the initial poses of its last one.
+    /// Leaves a lane without a stack, at the initial poses of its last stack.
     fn retire(&mut self, lane: usize) {
         let start: Vec<Pose<Planar>> =
             self.model.bodies.iter().map(|body| body.pose.of_lane(lane)).collect();
@@ -131,7 +131,8 @@ impl<R: Real> Lanes<R> {
         }
     }
 
-    /// Rebuilds the list of contact elements of all lanes; those of starting lanes get the memory of their stacks.
+    /// Rebuilds the list of contact elements of all lanes; elements of lanes that begin a stack get the memory of that
+    /// stack.
     fn list(&mut self, begin: &[usize], stacks: &[Stack<'_>]) {
         let State { contact_elements, poses, twists, .. } = &mut self.state;
         let origins = contact_elements.rebuild(&self.model, poses, twists);

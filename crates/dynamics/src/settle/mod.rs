@@ -1,8 +1,7 @@
-//! Static equilibrium under gravity, before anything shakes.
+//! Static equilibrium under gravity, computed before the ground moves.
 //!
-//! Equilibrium depends on positions and sticks alone, so it is solved in a fictitious time, with masses chosen for
-//! fast convergence and vanishing velocities: dampers, whatever their law, affect neither the equilibrium nor its
-//! existence.
+//! Equilibrium depends on positions and sticks alone. So it is solved in a fictitious time, with masses chosen for fast
+//! convergence and with vanishing velocities, at which no damper acts.
 
 mod lanes;
 mod refusal;
@@ -24,22 +23,22 @@ use relax::Relaxation;
 /// Result of settling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settled {
-    /// Number of steps of the successful try, each with one force evaluation.
+    /// Number of steps of the successful try; each has one force evaluation.
     pub steps: u64,
-    /// Largest residual acceleration, over gravity.
+    /// Largest residual acceleration, as a fraction of gravity.
     pub unbalanced: f64,
-    /// Locked-in friction.
+    /// Friction that is locked in at rest.
     pub locked: Locked,
 }
 
-/// Friction at rest: forces that equilibrium alone does not determine, and that depend on the path to it.
+/// Friction at rest: forces that equilibrium alone does not determine, since they depend on the path to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locked {
     /// Number of contacts whose stick holds.
     pub holding: usize,
     /// Number of contacts at the friction limit.
     pub slipping: usize,
-    /// Sum of the friction forces of all contacts, over that of their normal forces.
+    /// Sum of the friction forces of all contacts over the sum of their normal forces.
     pub friction: f64,
 }
 
@@ -50,27 +49,28 @@ const MOST_STEPS: u64 = 40_000;
 /// slowly, with less overshoot.
 const TRIES: [(f64, u64); 3] = [(2.0, 0), (16.0, 0), (64.0, 4000)];
 
-/// Number of steps between two checks for bodies that have left.
+/// Number of steps between two checks for bodies that have left their place.
 const LOOK: u64 = 20;
 
-/// Units in the last place of a body's position that its contacts may leave unbalanced: with springs that are stiff
-/// for their load, positions cannot be represented more accurately.
+/// Relative error of a body's position at which its contact forces count as balanced: a few units in the last place.
+/// Where springs are stiff for their load, no representable position balances the forces better.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Lets the bodies sink into their contacts until all forces balance.
 ///
-/// Gravity acts on all bodies at once, and friction acts throughout, so forces locked in by sticking as the stack
-/// sinks remain, as they would after stacking; [`Settled::locked`] reports their amount. The method is relaxation
-/// with momentum: every step carries on a growing share of the displacement of the step before, and all bodies are
-/// stopped whenever the power of the forces becomes negative. If relaxation fails it is retried with heavier masses
-/// before returning an error.
-/// The mass of a body is the stiffness of its contacts times a factor, and velocities are too small for dampers, so
-/// neither damping constants nor the time step affect the equilibrium or the number of steps.
+/// Gravity acts on all bodies at once, and friction acts throughout. So friction forces that are locked in as the stack
+/// sinks remain, as they would after stacking; [`Settled::locked`] reports them.
 ///
-/// `state` is left at rest at its time; prescribed bodies do not move.
+/// The method is relaxation with momentum: every step repeats a growing share of the displacement of the step before,
+/// and all bodies are stopped whenever the power of the forces becomes negative. If relaxation fails, it is retried
+/// with heavier masses before an error is returned. The mass of a body is the stiffness of its contacts times a factor,
+/// and velocities are too small for dampers to act, so neither damping constants nor the time step affect the
+/// equilibrium or the number of steps.
+///
+/// On return, `state` is at rest at its original time; prescribed bodies do not move.
 ///
 /// # Errors
-/// If a body leaves its place, or the forces do not balance to `tolerance` (share of gravity).
+/// If a body leaves its place, or the forces do not balance to `tolerance` (a fraction of gravity).
 pub fn settle<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,
@@ -84,7 +84,8 @@ pub fn settle<S: Space>(
     let start = state.clone();
     let mut result = sink(model, state, scratch, tolerance, TRIES[0]);
     for attempt in &TRIES[1..] {
-        // With momentum bodies overshoot, for some too far. If every try fails, the first error is returned.
+        // With momentum bodies overshoot, and may leave their supports. If every try fails, the first error is
+        // returned.
         if result.as_ref().is_err_and(|error| error.lack != Lack::Support) {
             state.clone_from(&start);
             evaluate(model, state, scratch);
@@ -99,7 +100,7 @@ pub fn settle<S: Space>(
     result.map(|(steps, unbalanced)| Settled { steps, unbalanced, locked })
 }
 
-/// Steps until every lane rests, with one entry of [`TRIES`]; returns the number of steps and the residual.
+/// Relaxes until every lane is at rest, with one entry of [`TRIES`]; returns the number of steps and the residual.
 fn sink<S: Space>(
     model: &Model<S>,
     state: &mut State<S>,

@@ -1,4 +1,4 @@
-//! Diagnosis of bodies that do not come to rest: which one fails, and the cause.
+//! Diagnosis of a stack that does not come to rest: the body that fails first, and the cause.
 
 use crate::body::BodyId;
 use crate::contact::FrictionLaw;
@@ -10,14 +10,14 @@ use crate::state::State;
 
 use super::gravity;
 
-/// Displacement of a body over its reach at which the cause is diagnosed: more than it settles, and before the scene
-/// is disturbed.
+/// Displacement of a body, as a fraction of its reach, at which the cause is diagnosed: more than any body settles, but
+/// early enough that the body has not yet disturbed others.
 const GOING: f64 = 0.1;
 
-/// Displacement of a body over its reach beyond which it has left its place.
+/// Displacement of a body, as a fraction of its reach, beyond which it has left its place.
 const LEFT: f64 = 0.5;
 
-/// Displacement, over that of the farthest body, from which another body moves with it.
+/// Displacement of a body, as a fraction of the largest of all bodies, above which it is classed as moving, too.
 const WITH_IT: f64 = 0.25;
 
 /// Ratio of penetration to displacement above which a body is classed as sinking.
@@ -31,76 +31,76 @@ const TURNS: f64 = 0.7;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("body \"{body}\" does not come to rest under gravity (it moved {moved:.3} m): {lack}")]
 pub struct SettleError {
-    /// The lowest of the moving bodies: those above lose their support with it.
+    /// Name of the lowest moving body, since bodies above it lose their support with it.
     pub body: String,
-    /// Its displacement (m).
+    /// Displacement of the body (m).
     pub moved: f64,
     /// The cause.
     pub lack: Lack,
 }
 
-/// Cause of a failure to come to rest.
+/// Cause of the failure to come to rest.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Lack {
-    /// No contact with any body.
+    /// The body has no contact with any other.
     #[error("nothing lies under it, and nothing holds it")]
     Support,
-    /// Its support is too soft.
+    /// The support of the body is too soft.
     #[error(
-        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for what lies \
+        "it sinks {depth:.3} m into \"{on}\": the contacts of {interface} are too soft for the load \
          on them"
     )]
     Stiffness {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
         /// The penetration (m).
         depth: f64,
     },
-    /// All its contacts slip.
-    #[error("it slides on \"{on}\", more than the friction of {interface} can hold")]
+    /// All contacts of the body slip.
+    #[error("it slides on \"{on}\": the friction of {interface} is too low to hold it")]
     Friction {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
     },
-    /// Its friction law does not hold at rest.
+    /// The friction law of a contact does not hold the body at rest.
     #[error(
-        "it creeps on \"{on}\": the regularized friction of {interface} resists motion, but holds \
-         nothing at rest"
+        "it creeps on \"{on}\": the regularized friction of {interface} resists motion, but cannot \
+         hold a body at rest"
     )]
     Stick {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
-        /// The interface between the two.
+        /// Name of the interface between the two bodies.
         interface: String,
     },
-    /// It turns over on its support.
+    /// The body turns over on its support.
     #[error(
-        "it tips or rolls over on \"{on}\", which does not hold its weight and what it bears upright"
+        "it tips or rolls over on \"{on}\", which does not keep it and the bodies on it upright"
     )]
     Balance {
-        /// The body it lies on.
+        /// Name of the body on which it lies.
         on: String,
     },
-    /// It leaves its support.
+    /// The body leaves its support.
     #[error("it is pushed out of its place")]
     Place,
-    /// The forces neither balance nor move it away.
+    /// The forces do not balance, but the body does not leave its place.
     #[error(
-        "after {steps} steps its forces still miss their balance, by {unbalanced:.0e} of gravity"
+        "after {steps} steps its forces are still out of balance by {unbalanced:.0e} of gravity"
     )]
     Time {
         /// Number of steps.
         steps: u64,
-        /// The residual acceleration, over gravity.
+        /// The residual acceleration, as a fraction of gravity.
         unbalanced: f64,
     },
 }
 
-/// Detects bodies that leave their place.
+/// Detector of bodies that leave their place.
 pub(super) struct Departure<S: Space> {
     start: Vec<Pose<S>>,
     /// The bodies, the lowest first.
@@ -117,8 +117,8 @@ impl<S: Space> Departure<S> {
         Self { start, upward, first: None }
     }
 
-    /// Returns the drift (m) of every body: sideways, up, or down by more than any body below it, since bodies on
-    /// soft contacts sink with them.
+    /// Returns the displacement (m) of every body from its place: sideways, up, or down by more than any body below it.
+    /// Sinking together with the bodies below on soft contacts does not count.
     fn strayed(&self, model: &Model<S>, poses: &[Pose<S>]) -> Vec<f64> {
         let down = model.gravity * (S::Real::splat(1.0) / gravity(model));
         let mut strayed = vec![0.0; self.start.len()];
@@ -135,10 +135,10 @@ impl<S: Space> Departure<S> {
         strayed
     }
 
-    /// Detects bodies that leave: diagnoses the first that drifts further than settling explains, and returns the
-    /// error once a body has left.
+    /// Detects bodies that leave their place: diagnoses the first body that moves farther than bodies settle, and
+    /// returns the error once a body has left.
     ///
-    /// The diagnosis comes early since a body that has left has already met others and pushed them away.
+    /// The diagnosis is early, since a body that has left may already have pushed others away.
     pub(super) fn watch(
         &mut self,
         model: &Model<S>,
@@ -172,8 +172,8 @@ impl<S: Space> Departure<S> {
         most(model, &self.strayed(model, poses)) >= LEFT
     }
 
-    /// Returns the error if the forces do not balance, though no body has left: for the body with the largest
-    /// residual.
+    /// Returns the error if no body has left, but the forces do not balance: for the first body that moved or, if none
+    /// did, the body with the largest residual.
     pub(super) fn unbalanced(
         &mut self,
         model: &Model<S>,
@@ -195,7 +195,7 @@ impl<S: Space> Departure<S> {
         displacement.dot(displacement).sqrt().largest_lane()
     }
 
-    /// Diagnoses a moving body, given the others that move.
+    /// Diagnoses a moving body; `going` has the bodies that move.
     fn lack(
         &self,
         body: BodyId,
@@ -213,7 +213,7 @@ impl<S: Space> Departure<S> {
             let pair = &model.pair(contact.pair);
             if pair.contactor == body { pair.target } else { pair.contactor }
         };
-        // Its support is among the bodies at rest; if all move, any contact will do.
+        // The support is among the bodies at rest; if all bodies move, any contact is used.
         let bearing: Vec<_> = scratch.contacts.iter().filter(of).collect();
         let staying: Vec<_> = bearing.iter().copied().filter(|c| !going[partner(c)]).collect();
         let bearing = if staying.is_empty() { bearing } else { staying };
@@ -253,7 +253,7 @@ impl<S: Space> Departure<S> {
     }
 }
 
-/// Returns the largest drift of any body, over its extent.
+/// Returns the largest ratio of the displacement of a body to its extent.
 fn most<S: Space>(model: &Model<S>, strayed: &[f64]) -> f64 {
     let shares = strayed.iter().enumerate().map(|(body, far)| far / extent(model, body));
     shares.fold(0.0, f64::max)

@@ -12,14 +12,15 @@ use crate::state::State;
 
 use super::{ROUNDING, gravity};
 
-/// Displacement of a body over its reach in its first step while it is in free fall.
+/// Displacement of a body in free fall in its first step, as a fraction of its reach.
 const FIRST_FALL: f64 = 1e-4;
 
-/// Maximum displacement of a body over its reach in a step: nonlinear contacts are soft at first touch.
+/// Maximum displacement of a body in a step, as a fraction of its reach; limited since nonlinear contacts are soft at
+/// first touch.
 const LONGEST_WAY: f64 = 2e-3;
 
-/// Scale of velocities (per step of relaxation) in forces: a power of two, which preserves bits, so small that
-/// dampers vanish and smooth friction laws keep only their static part.
+/// Factor from displacements per step of relaxation to the velocities in the force laws. It is a power of two, so no
+/// bits are lost, and so small that dampers vanish and smoothed friction laws keep only their static part.
 const SLOWLY: f64 = 1.0 / (1_u128 << 100) as f64;
 
 /// A contact with the geometry of both of its bodies.
@@ -28,15 +29,15 @@ struct Touch<S: Space> {
     touching: <S::Real as Real>::Mask,
     /// Contactor and target.
     bodies: [usize; 2],
-    /// From their centers of mass to the contact (m), in the inertial frame.
+    /// Vectors (m) from their centers of mass to the contact, in the inertial frame.
     arms: [S::Vector; 2],
-    /// From the frame of the target's surface to the inertial frame.
+    /// Rotation from the frame of the target's surface to the inertial frame.
     rotation: S::Rotation,
-    /// Out of the target, in the surface's frame.
+    /// Unit normal out of the target, in the surface's frame.
     normal: S::Vector,
 }
 
-/// Stiffness of all supports of a body: for its displacement (N/m) and for its rotation (N·m).
+/// Stiffness of all supports of a body, against displacement (N/m) and against rotation (N·m).
 #[derive(Clone, Copy)]
 struct Held<R> {
     translation: R,
@@ -54,29 +55,29 @@ impl<R: Real> Held<R> {
 
 /// Relaxation state. Each lane converges independently; converged lanes are frozen.
 pub(super) struct Relaxation<S: Space> {
-    /// Fictitious mass over the total stiffness of a body's contacts.
+    /// Ratio of the fictitious mass of a body to the total stiffness of its contacts.
     ///
-    /// A contact of stiffness k between two bodies, in terms of their displacements and rotations, is at most four
-    /// times k on the diagonal, and central differences with a step of 1 are stable while a mass is a quarter of the
-    /// stiffness: so 1 is just stable for springs, and the rest is for friction that slips.
+    /// In the displacements and rotations of two bodies, a contact of stiffness k is bounded by a diagonal stiffness of
+    /// 4 k, and central differences with a step of 1 are stable if a mass is at least a quarter of its stiffness. So a
+    /// ratio of 1 is just stable for springs; the excess is for friction that slips.
     margin: f64,
     /// The lanes at rest.
     pub(super) resting: <S::Real as Real>::Mask,
-    /// The bodies that have had a contact, or a loaded force element.
+    /// `true` for every body that has had a contact or a loaded force element.
     pub(super) met: Vec<bool>,
     /// Extent of every body from its center of mass (m).
     pub(super) reach: Vec<S::Real>,
     /// Displacements and rotations of the last step.
     displacements: Vec<Twist<S>>,
-    /// Maximum stiffness of every body so far: a body that leaves its contacts for a moment must not become light
-    /// while others lie on it.
+    /// Largest stiffness of the supports of every body so far, since a body that leaves its contacts for a moment must
+    /// not become light while others lie on it.
     held: Vec<Held<S::Real>>,
     touches: Vec<Touch<S>>,
     /// The lanes in which each element of the list touched.
     pub(super) touched: Vec<<S::Real as Real>::Mask>,
     /// Number of remaining steps without momentum.
     calm: u64,
-    /// Number of steps since the last stop.
+    /// Number of steps since the bodies were last stopped.
     since: S::Real,
 }
 
@@ -107,15 +108,17 @@ impl<S: Space> Relaxation<S> {
         S::Real::select(S::Real::zero().lt(reach), reach, S::Real::splat(1.0))
     }
 
-    /// Returns the residual acceleration (m/s²) of a body, with rotation taken at its reach.
+    /// Returns the residual acceleration (m/s²) of a body; that of rotation is taken at the distance of its reach.
     #[inline(always)]
     pub(super) fn acceleration(&self, scratch: &Scratch<S>, body: usize) -> S::Real {
         let Twist { linear, angular } = scratch.accelerations[body];
         length::<S>(linear).max(S::spin_magnitude(angular) * self.reach[body])
     }
 
-    /// Returns the lanes in which the residual of every body is below a share of gravity, or below the rounding error
-    /// of stiff contacts; and the largest residual acceleration (m/s²).
+    /// Returns the lanes at rest, and the largest residual acceleration (m/s²).
+    ///
+    /// A lane is at rest if the residual of every body is below `tolerance` (a fraction of gravity) plus the rounding
+    /// error of stiff contacts.
     pub(super) fn left_over(
         &self,
         model: &Model<S>,
@@ -200,7 +203,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Takes one step: from the forces at a state to a state nearer to rest, and its forces.
+    /// Takes one step from the forces at a state to a state nearer to rest, and computes its forces.
     pub(super) fn advance(
         &mut self,
         model: &Model<S>,
@@ -257,7 +260,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Renumbers to a new list of elements.
+    /// Updates the element numbers to a new list.
     pub(super) fn renumber(&mut self, origins: &[Option<usize>], scratch: &mut Scratch<S>) {
         scratch.renumber(origins);
         let touched =
@@ -265,7 +268,7 @@ impl<S: Space> Relaxation<S> {
         self.touched = origins.iter().map(touched).collect();
     }
 
-    /// Restores the memory of resting lanes.
+    /// Restores the memory of sticks and elements in lanes at rest.
     #[inline(always)]
     fn keep(&self, state: &mut State<S>, sticks: &[Stick<S>], memory: &[Memory<S>]) {
         let rests = self.resting;
@@ -279,8 +282,8 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Computes the displacements of the next step: a share of those of the last one, which grows until the power of
-    /// the forces is negative, plus the response of the fictitious masses to the forces.
+    /// Computes the displacements of the next step: the response of the fictitious masses to the forces, plus a share
+    /// of the last displacements that grows until the power of the forces is negative.
     #[inline(always)]
     fn choose_ways(&mut self, model: &Model<S>, scratch: &Scratch<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -343,7 +346,7 @@ impl<S: Space> Relaxation<S> {
         }
     }
 
-    /// Moves the sticks of new contacts by the share of the step for which they touched.
+    /// Moves the sticks of new contacts by the share of the step in which they touched.
     #[inline(always)]
     fn slide_fresh(&self, model: &Model<S>, sticks: &mut [Stick<S>], scratch: &Scratch<S>) {
         let one = S::Real::splat(1.0);

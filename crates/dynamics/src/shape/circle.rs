@@ -34,7 +34,7 @@ impl<R: Real> Circle<R> {
     /// Returns the squared distance (m²) from the center below which a point may penetrate.
     #[inline(always)]
     pub(super) fn within(&self) -> R {
-        // Slack for rounding, so that no node is missed that the square root would find.
+        // Includes a slack for rounding, so that no node is missed that the exact gap would find.
         self.radius * self.radius * R::splat(1.0 + 1e-14)
     }
 

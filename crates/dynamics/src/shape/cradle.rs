@@ -7,10 +7,10 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// An arc about the origin, open upward, with matter outside the circle.
+/// An arc about the origin that is open upward, with matter outside the circle.
 ///
-/// Within the opening angle a point is free inside the circle and penetrates outside of it; beyond the opening angle
-/// only the two tips can be touched.
+/// Within the opening angle, a point is free inside the circle and penetrates outside of it. Beyond the opening angle,
+/// only the two tips of the arc can be touched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cradle<R = f64> {
     /// Radius of the arc (m).
@@ -27,7 +27,7 @@ impl<R: Real> Cradle<R> {
         let (zero, one) = (R::zero(), R::splat(1.0));
         let length = point.length();
         let safe = R::select(length.le(zero), one, length);
-        // Within the opening angle if the direction is nearer to straight down than the tips.
+        // A point is within the opening angle if its direction is nearer to straight down than the tips are.
         let inside = (-point.z).lt(length * self.cos);
         let tip = Vec2::new(
             R::select(point.x.lt(zero), -self.sin, self.sin) * self.radius,
@@ -80,7 +80,7 @@ impl Cradle {
             .collect()
     }
 
-    /// Returns a thin uniform arc along the boundary.
+    /// Returns the section of a thin uniform arc along the boundary.
     pub(super) fn section(&self) -> Section {
         let half = self.half_angle();
         let centroid = Vec2::new(0.0, -self.radius * self.sin / half);

@@ -26,7 +26,7 @@ pub use whole::{
     Axes, Bearing, MOST_POINTS, NoWhole, Patch, Points, Shares, Slopes, Spread, Touch, Whole,
 };
 
-/// Distance of a point from a surface, and normal.
+/// Distance of a point from a surface, and the normal there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap<S: Space> {
     /// Distance (m) from the surface to the point along `normal`; **negative when penetrating**.
@@ -46,12 +46,12 @@ pub struct Nearest<S: Space> {
     pub to_end: S::Real,
     /// Unit vector along that piece toward that end.
     pub toward_end: S::Vector,
-    /// Distance (m) to the core, from which the boundary is grown.
+    /// Distance (m) to the core, which is the shape without its rounding.
     pub core: S::Real,
 }
 
 impl<S: Space> Nearest<S> {
-    /// Creates the result for a piece that is round or not, far from any end.
+    /// Creates the result for a piece without ends; `round` has the lanes in which the piece is round.
     #[inline(always)]
     pub(crate) fn endless(gap: Gap<S>, round: <S::Real as Real>::Mask) -> Self {
         let to_end = S::Real::splat(f64::INFINITY);
@@ -59,26 +59,27 @@ impl<S: Space> Nearest<S> {
     }
 }
 
-/// Directions in which a boundary faces at a point.
+/// Directions in which the boundary of a body faces at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing<S: Space> {
     /// Unit vectors in the frame of the other surface, as [`Round::limits`].
     pub limits: [S::Vector; 2],
-    /// Maximum component, along a limit, of the direction toward a piece of that surface.
+    /// Maximum component, along a limit, of the direction toward a piece of the other surface on which the point can
+    /// bear.
     pub most: f64,
-    /// Maximum distance (m) of a point past the pieces that it does not face.
+    /// Maximum distance (m) of the point past the pieces that it does not face.
     pub slack: f64,
 }
 
 impl<S: Space> Facing<S> {
-    /// Creates the directions for a point with this outward unit normal, the mean of both at a corner: it bears on
-    /// pieces turned by less than 70° from it, which both sides of a right corner are.
+    /// Creates the directions for a point with an outward unit normal, which is the mean of both sides at a corner. The
+    /// point bears on pieces within 70° of facing the normal, which includes both sides of a right corner.
     #[inline(always)]
     pub(crate) fn outward(normal: S::Vector) -> Self {
         Self { limits: [-normal; 2], most: -0.35, slack: FLUSH }
     }
 
-    /// Returns the lanes in which a piece with an outward normal can be borne on.
+    /// Returns the lanes in which the point can bear on a piece with an outward normal.
     #[inline(always)]
     pub(crate) fn includes(&self, normal: S::Vector) -> <S::Real as Real>::Mask {
         let most = S::Real::splat(self.most);
@@ -114,29 +115,29 @@ pub trait Surface<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync +
 
     /// Returns the gap and the nearest piece of the boundary.
     ///
-    /// A straight side is extended at both ends by `slack` (m): of two corners one above the other one has a side
-    /// before it and the other has not, whatever the last digit.
+    /// A straight side is extended at both ends by `slack` (m). Where the corners of two bodies lie one above the
+    /// other, `slack` decides independently of rounding which corner has a side in front of it.
     fn nearest(&self, point: S::Vector, slack: S::Real) -> Nearest<S>;
 
-    /// Returns, for a point inside the core, the nearest of the pieces that it can bear on as a point of another
-    /// body's boundary; elsewhere `nearest`.
+    /// Returns, for a point inside the core, the nearest piece on which the point can bear as part of another body's
+    /// boundary; elsewhere returns `nearest`.
     ///
-    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush
-    /// on an equal box lies on the side of the lower one and below its top. The directions in which the boundary of
-    /// the other body faces at that point decide.
+    /// The nearest piece is not always the one that a point inside presses into: a corner of a box that stands flush on
+    /// an equal box lies on a side of the lower box and below its top. The directions in which the boundary of the
+    /// other body faces at that point decide.
     #[inline(always)]
     fn bearing(&self, _point: S::Vector, _facing: &Facing<S>, nearest: Nearest<S>) -> Nearest<S> {
         nearest
     }
 
-    /// Tests cheaply: returns `true` wherever `gap(point).distance < 0`, and possibly elsewhere.
+    /// Returns `true` wherever `gap(point).distance < 0`, and possibly elsewhere; cheaper than the gap.
     #[inline(always)]
     fn may_touch(&self, point: S::Vector) -> <S::Real as Real>::Mask {
         self.gap(point).distance.lt(S::Real::zero())
     }
 
-    /// Visits the points (m) that penetrate in at least one lane, in order, with index out of `count`, position and
-    /// gap. `facing` returns the directions in which their boundary faces there, if known.
+    /// Visits those of `count` points (m) that penetrate in at least one lane, in order, with index, position and gap.
+    /// `facing` returns the directions in which their boundary faces at a point, if known.
     #[inline(always)]
     fn penetrated_by(
         &self,
@@ -180,7 +181,7 @@ pub struct Section {
     pub gyration_squared: f64,
 }
 
-/// A shape of the plane.
+/// A planar shape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<R = f64> {
     /// A disc, or a barrel in transverse section.
@@ -312,7 +313,7 @@ impl<R: Real> Surface<Planar<R>> for Shape<R> {
 }
 
 impl<R: Real> Shape<R> {
-    /// Returns the gap of a point of another body whose boundary faces in known directions there.
+    /// Returns the gap of a point of another body, given the directions in which its boundary faces there.
     #[inline(always)]
     fn gap_facing(&self, point: Vec2<R>, facing: Option<Facing<Planar<R>>>) -> Gap<Planar<R>> {
         let gap = self.gap(point);
@@ -326,8 +327,8 @@ impl<R: Real> Shape<R> {
 }
 
 impl Shape {
-    /// Returns the unit outward normal at a point (m) of the boundary, at a corner the mean of both sides; `None` for
-    /// a point off the boundary, and for a cradle, which is only touched by the body that it carries.
+    /// Returns the unit outward normal at a point (m) of the boundary, at a corner the mean of both sides; `None` for a
+    /// point off the boundary, and for a cradle, which touches only the body that it carries.
     pub fn outward(&self, point: Vec2) -> Option<Vec2> {
         let near = 1e-9 * self.reach();
         let on_it = self.gap(point).distance.abs() < near;
@@ -414,7 +415,7 @@ impl Piece {
         }
     }
 
-    /// Returns the point (m) at a share of its length.
+    /// Returns the point (m) at a share of the length.
     fn at(self, share: f64) -> Vec2 {
         match self {
             Self::Side(from, to) => from + (to - from) * share,
@@ -426,8 +427,8 @@ impl Piece {
     }
 }
 
-/// Returns nodes along an open or closed boundary, each piece divided into equal parts no longer than `spacing` (m)
-/// that turn by no more than `most_turn` (rad).
+/// Returns nodes along an open or closed boundary. Each piece is divided into equal parts no longer than `spacing` (m),
+/// which turn by no more than `most_turn` (rad).
 pub(crate) fn nodes_along(
     pieces: &[Piece],
     closed: bool,
@@ -461,7 +462,7 @@ pub(crate) fn nodes_along(
     nodes
 }
 
-/// Returns the number of equal parts no longer than `spacing` in a length.
+/// Returns the number of equal parts of a length that are no longer than `spacing`.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
 pub(crate) fn parts_of(length: f64, spacing: f64) -> usize {
     ((length / spacing - 1e-9).ceil().clamp(1.0, 1e6) as usize).max(1)

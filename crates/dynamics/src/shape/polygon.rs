@@ -9,8 +9,8 @@ use crate::math;
 use crate::real::Real;
 use crate::space::{Linear, Planar, Vec2};
 
-/// Tolerance (m) outside of a side for a node of a flush body: about a nanometer, and not a round number, at which
-/// nodes of a scene would come and go by rounding.
+/// Distance (m) outside of a side at which a node of a flush body still touches: about a nanometer, and not a round
+/// decimal number, at which nodes of a scene would touch or not by rounding.
 pub(super) const FLUSH: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Maximum angle of a part of a rounded corner (rad).
@@ -18,8 +18,8 @@ const CORNER_STEP: f64 = TAU / 24.0;
 
 /// A convex polygon whose corners may be rounded.
 ///
-/// It is stored as the core polygon whose points lie `corner_radius` inside every side; the boundary is the core
-/// grown by that radius, so signed distance stays exact at the corners.
+/// The polygon is stored as its core, which lies `corner_radius` inside every side. The boundary is the core grown by
+/// that radius, so the signed distance is exact at the corners, too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon<R = f64> {
     /// Sides of the core, counterclockwise (from `x` toward `z`).
@@ -33,14 +33,14 @@ pub struct Polygon<R = f64> {
 struct Side<R> {
     /// Start point (m).
     start: Vec2<R>,
-    /// Midpoint (m). Distances are measured from here and not from an end, which a mirror swaps: so a mirrored
-    /// polygon rounds as this one does.
+    /// Midpoint (m). Distances are measured from it and not from an end, since mirroring exchanges the ends: so a
+    /// mirrored polygon has the same rounding errors.
     middle: Vec2<R>,
-    /// Unit vector along it.
+    /// Unit vector along the side.
     along: Vec2<R>,
     /// Unit vector out of the polygon.
     outward: Vec2<R>,
-    /// Half its length (m).
+    /// Half the length of the side (m).
     half_length: R,
 }
 
@@ -61,9 +61,9 @@ pub enum PolygonError {
     NotConvex {
         /// The corner, counted from 1.
         corner: usize,
-        /// Its abscissa (m).
+        /// Horizontal coordinate of the corner (m).
         x: f64,
-        /// Its height (m).
+        /// Height of the corner (m).
         z: f64,
     },
     /// The corners go around more than once.
@@ -107,7 +107,7 @@ impl<R: Real> Polygon<R> {
             deepest = R::select(higher, height, deepest);
             deepest_normal = Vec2::select(higher, side.outward, deepest_normal);
 
-            // Beside the side its start is a candidate; its end is the start of the next one.
+            // Beside the side, its start is a candidate; its end is the start of the next side.
             let along = offset.dot(side.along);
             let above = along.abs().le(side.half_length + slack);
             let apart = Vec2::select(above, side.outward * height, point - side.start);
@@ -135,7 +135,7 @@ impl<R: Real> Polygon<R> {
         Nearest { gap, round, to_end, toward_end, core }
     }
 
-    /// Returns the nearest of the sides that a point of another body, inside the core, can bear on: see
+    /// Returns the nearest side on which a point of another body inside the core can bear; see
     /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
@@ -195,7 +195,8 @@ impl Polygon {
     /// Creates a convex polygon from its sharp corners (m), counterclockwise, and a corner radius (m).
     ///
     /// # Errors
-    /// If the corners are fewer than three, do not all turn left, go around twice, or leave no core.
+    /// If there are fewer than three corners, if they do not all turn left or go around twice, or if the radius leaves
+    /// no core.
     pub fn new(corners: &[Vec2], corner_radius: f64) -> Result<Self, PolygonError> {
         let count = corners.len();
         if count < 3 {
@@ -239,8 +240,7 @@ impl Polygon {
         Ok(Self::grown(&core, corner_radius))
     }
 
-    /// Creates the set of points within a radius (m) of the line between two points (m): a bar from the side, with
-    /// round ends.
+    /// Creates a bar with round ends: all points within a radius (m) of the line between two points (m).
     ///
     /// # Errors
     /// If the points coincide or the radius is not positive.
@@ -255,7 +255,7 @@ impl Polygon {
         Ok(Self::grown(&[from, to], radius))
     }
 
-    /// Returns its corners as round pieces.
+    /// Returns the corners as round pieces.
     pub(super) fn rounds(&self, tributary_length: f64) -> Vec<Round<Planar>> {
         let count = self.sides.len();
         (0..count)
@@ -325,7 +325,7 @@ impl Polygon {
         (math::atan2(-a.x, a.z), math::atan2(a.x * b.z - a.z * b.x, a.dot(b)))
     }
 
-    /// Returns corners and sides in turn; without corners if they are sharp.
+    /// Returns the arcs of the corners and the sides in turn; only the sides if the corners are sharp.
     fn pieces(&self) -> Vec<Piece> {
         let mut pieces = Vec::new();
         for (i, side) in self.sides.iter().enumerate() {
@@ -344,7 +344,7 @@ impl Polygon {
         nodes_along(&self.pieces(), true, spacing, CORNER_STEP)
     }
 
-    /// Returns the mean of the outward normals at a point (m) of the boundary.
+    /// Returns the outward unit normal at a point (m) of the boundary, at a sharp corner the mean of both sides.
     pub(super) fn outward(&self, point: Vec2, near: f64) -> Vec2 {
         if self.corner_radius > 0.0 {
             return self.gap(point).normal;
@@ -357,13 +357,13 @@ impl Polygon {
         unit(touching)
     }
 
-    /// Returns the corners as nodes, each with half of both its sides as tributary length; a rounded one is divided
-    /// into parts that turn by at most 15 degrees.
+    /// Returns the corners as nodes, each with half of both adjoining sides as tributary length; a rounded corner is
+    /// divided into parts that turn by at most 15 degrees.
     pub fn corner_nodes(&self) -> Vec<BoundaryNode> {
         nodes_along(&self.pieces(), true, f64::INFINITY, CORNER_STEP)
     }
 
-    /// Returns nodes at equal parts of every side, in the same number, and at every end.
+    /// Returns nodes at the ends of every side, and between `parts` equal parts of it.
     pub fn nodes_per_side(&self, parts: usize) -> Vec<BoundaryNode> {
         let longest = self.sides.iter().map(|side| 2.0 * side.half_length).fold(0.0, f64::max);
         if self.corner_radius > 0.0 {

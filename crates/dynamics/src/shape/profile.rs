@@ -24,7 +24,7 @@ pub struct BarrelProfile<R = f64> {
     pub stave_radius: R,
     /// Radius of the rounded edges (m) between staves and heads.
     pub rounding: R,
-    /// Height of the center of such an edge above the axis (m).
+    /// Height of the center of a rounded edge above the axis (m).
     pub corner_height: R,
 }
 
@@ -64,7 +64,7 @@ impl<R: Real> BarrelProfile<R> {
         let corner_distance = from_corner.length();
         let safe = R::select(corner_distance.le(zero), one, corner_distance);
 
-        // Inside: the nearer of stave and head. Outside: the one faced by the point.
+        // Inside, the nearer of stave and head; outside, the one in front of which the point lies.
         let inside_by_head = arc_distance.lt(head_distance);
         let by_head = (outside & beyond_arc) | (!outside & inside_by_head);
         let flat = Vec2::new(one, zero);
@@ -89,7 +89,7 @@ impl<R: Real> BarrelProfile<R> {
         }
     }
 
-    /// Returns the nearer of the stave and the head that a point of another body, inside the core, can bear on: see
+    /// Returns the nearer of stave and head on which a point of another body inside the core can bear; see
     /// [`Surface::bearing`](super::Surface::bearing).
     #[inline(always)]
     pub(super) fn bearing(
@@ -154,7 +154,7 @@ impl BarrelProfile {
 
     /// Returns the profile with edges rounded by a radius (m).
     ///
-    /// Returns `None` if that leaves nothing of the heads.
+    /// Returns `None` if the rounding leaves nothing of the heads.
     pub fn rounded(self, rounding: f64) -> Option<Self> {
         let across = self.half_length - rounding;
         let apart = self.stave_radius - rounding;
@@ -232,7 +232,7 @@ impl BarrelProfile {
         )
     }
 
-    /// Returns the chain from the right head over the top, the left head and the bottom.
+    /// Returns the outline as a chain of points, from the right head over the top, the left head and the bottom.
     fn chain(&self, parts: usize) -> Vec<Vec2> {
         let half = self.half_stave();
         let direction = |angle: f64| {
@@ -285,7 +285,7 @@ impl BarrelProfile {
         nodes_along(&pieces, true, spacing, f64::INFINITY)
     }
 
-    /// Returns the flat section inside the outline (a barrel's own inertia is not that of a plate).
+    /// Returns the section of a flat plate inside the outline, whose inertia is not that of a barrel.
     pub(super) fn section(&self) -> Section {
         super::polygon::section_of(&self.chain(2000))
     }

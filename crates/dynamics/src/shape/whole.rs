@@ -1,16 +1,16 @@
-//! Convex bodies that touch as wholes, and their contact patches.
+//! Convex solids that touch over a point, a line or a face, and their contact patches.
 
 use super::{Gap, Shape};
 use crate::real::Real;
 use crate::space::{Planar, Rotation2, Space, Vec2, Wrench};
 
-/// A convex body that touches as a whole: with its deepest point, or with all of a line or a face where it lies flat.
+/// A convex solid that touches with its deepest point, or with a whole line or face where it lies flat.
 pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + 'static {
-    /// Visits the patches in which it touches a surface, some possibly open, in the order of their sticks; all in the
+    /// Visits the contact patches with a surface, some of which may be open, in the order of their sticks; all in the
     /// frame of the surface.
     ///
-    /// `position` is the center of mass (m) of its body, `rotation` transforms from the body frame to that of the
-    /// surface.
+    /// `position` is the center of mass (m) of the solid's body, and `rotation` the rotation from the body frame to
+    /// that of the surface.
     fn meet(
         &self,
         surface: &S::Surface,
@@ -19,8 +19,8 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
         visit: impl FnMut(Patch<S>),
     );
 
-    /// Returns the points in which it bears on a surface, if these are several separate points; all as in
-    /// [`Whole::meet`].
+    /// Returns the points that bear on a surface, if the contact is one of several separate points; the arguments are
+    /// as in [`Whole::meet`].
     #[inline(always)]
     fn points(
         &self,
@@ -34,19 +34,19 @@ pub trait Whole<S: Space>: Clone + PartialEq + std::fmt::Debug + Send + Sync + '
     /// Returns the maximum number of sticks with one surface.
     fn most_sticks(&self) -> usize;
 
-    /// Returns center, in the body frame from the center of mass, and radius (m) of an enclosing ball.
+    /// Returns the center (m, in the body frame, from the center of mass) and the radius (m) of an enclosing ball.
     fn ball(&self) -> (S::Vector, S::Real);
 
     /// Returns the tributary length of boundary (m) of a contact.
     fn tributary_length(&self) -> S::Real;
 }
 
-/// A point of a body, and its distance from the surface of another.
+/// A point of a body, and its gap to the surface of another body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch<S: Space> {
     /// The point (m).
     pub node: S::Vector,
-    /// Its distance and normal.
+    /// The gap at the point.
     pub gap: Gap<S>,
 }
 
@@ -61,25 +61,25 @@ impl<S: Space> Touch<S> {
 /// Contact of two bodies: in a point, or along a line or a face that they share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch<S: Space> {
-    /// Index of its first stick, of [`Whole::most_sticks`].
+    /// Index of the first stick of the patch, below [`Whole::most_sticks`].
     pub first: usize,
-    /// Its deepest point.
+    /// Deepest point of the patch.
     pub deepest: Touch<S>,
-    /// Its extent; `None` for a point.
+    /// Extent of the patch; `None` for a point.
     pub spread: Option<Spread<S>>,
 }
 
-/// Points that bear like parallel springs, with friction at their center of pressure.
+/// Points that act like parallel springs, with friction at their center of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Points<S: Space> {
     /// The points.
     pub points: [Bearing<S>; MOST_POINTS],
-    /// Unit vectors along the faces of both bodies in which they lie, for their sticks.
+    /// Unit vectors along the touching faces of both bodies, for the sticks.
     pub axes: [S::Vector; 4],
 }
 
-/// Maximum number of bearing points: the corners of the polygon that two rectangles share, as either body has it, and
-/// the deepest.
+/// Maximum number of bearing points: the corners of the polygon that two rectangles share, computed from either body,
+/// and the deepest point.
 pub const MOST_POINTS: usize = 17;
 
 /// A point of [`Points`].
@@ -93,31 +93,31 @@ pub struct Bearing<S: Space> {
     pub turning: S::Spin,
 }
 
-/// Extent of a patch, which presses according to the depth of its deepest point, δ, and that of its middle, δ₀.
+/// Extent of a patch, whose pressure depends on the depth δ of its deepest point and the depth δ₀ of its middle.
 ///
-/// A line bears like springs at its deepest point and at the mirror image of that beyond the middle, of depth `2 δ₀ −
-/// δ`; a face like two more in the middle. The energy
+/// A line acts like two springs, at its deepest point and at the mirror image of that point beyond the middle, which
+/// has the depth `2 δ₀ − δ`. A face has two more springs in the middle. The energy
 ///
 /// ```text
 /// E = a U(δ) + b (U(2 δ₀ − δ) + n U(δ₀))      n = 0 for a line, 2 for a face
 /// ```
 ///
-/// is with `a = b = 1` that of a tube on its two ends and of a disc on four points of its rim, at any rotation. Where
-/// bodies lie flat the deepest point runs from end to end as they rock, but there its part of the force, `a U′(δ) − b
-/// U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment jumps. A patch that shrinks to a point has the
-/// stiffness of one spring, so there `a = b = 1/(2 + n)`.
+/// with `a = b = 1` is that of a tube on its two ends, and of a disc on four points of its rim, at any rotation. As
+/// bodies that lie flat rock, the deepest point moves from end to end. At that moment the part of the force at the
+/// deepest point, `a U′(δ) − b U′(2 δ₀ − δ)`, vanishes if `a = b`, so neither force nor moment jumps. A patch that
+/// shrinks to a point has the stiffness of one spring, so `a = b = 1/(2 + n)` there.
 ///
-/// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and with them the energy: the
-/// corresponding forces keep the energy balance closed, for example for a tube that slides off a head.
+/// As bodies slide and turn, `a`, `b` and the position of the middle change as well, and with them the energy. The
+/// corresponding forces close the energy balance, for example for a tube that slides off a head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread<S: Space> {
-    /// Its middle.
+    /// Middle of the patch.
     pub middle: Touch<S>,
-    /// Weights of its parts.
+    /// Weights of the parts of the patch.
     pub shares: Shares<S::Real>,
-    /// Extent (m) from its middle.
+    /// Extent (m) of the patch from its middle.
     pub radius: S::Real,
-    /// Unit vectors along it that turn with a body, for its sticks.
+    /// Unit vectors along the patch that turn with a body, for the sticks.
     pub axes: Axes<S>,
     /// Derivatives with respect to the motion of the bodies.
     pub slopes: Slopes<S>,
@@ -127,11 +127,11 @@ pub struct Spread<S: Space> {
 /// rotation about the center of mass of the contactor (1/rad), as forces and moments are of energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slopes<S: Space> {
-    /// Of δ₀ (m): the part beyond that of the material points currently at the middle.
+    /// Derivative of δ₀ (m), without the part that is due to the motion of the material points at the middle.
     pub middle: Wrench<S>,
-    /// Of `a`.
+    /// Derivative of `a`.
     pub deepest: Wrench<S>,
-    /// Of `b`.
+    /// Derivative of `b`.
     pub others: Wrench<S>,
 }
 
@@ -175,8 +175,8 @@ impl<S: Space> Axes<S> {
     }
 }
 
-/// Empty type: in the plane nothing touches as a whole, since a convex boundary is a chain of round pieces
-/// ([`Round`](crate::body::Round)).
+/// Empty type for the plane, where convex boundaries touch with their round pieces ([`Round`](crate::body::Round))
+/// instead.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoWhole {}
 

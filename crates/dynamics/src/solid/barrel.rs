@@ -27,8 +27,9 @@ pub struct Barrel<R = f64> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "a barrel {length} m long, with heads of {head_radius} m and a bilge of {bilge_radius} m in radius and a \
-     chime rounded by {rounding} m: lengths must be positive, the bilge wider than the heads but not wider \
-     than half as much again as it is long, and the rounding smaller than half the length and the heads"
+     chime rounded by {rounding} m: lengths must be positive, the bilge wider than the heads, the staves \
+     curved along the barrel with at least the radius of the bilge, and the rounding smaller than half the length and \
+     the heads"
 )]
 pub struct BarrelError {
     length: f64,
@@ -38,8 +39,8 @@ pub struct BarrelError {
 }
 
 impl Barrel {
-    /// Creates a barrel of a length (m), the radii (m) of its heads and of its bilge, and a rounding (m) of its
-    /// chime, which is taken off the corner between head and stave.
+    /// Creates a barrel from its length (m), the radii (m) of its heads and its bilge, and the radius (m) that rounds
+    /// the corner between head and stave, its chime.
     ///
     /// # Errors
     /// If these are not the dimensions of a barrel.
@@ -65,7 +66,7 @@ impl Barrel {
             && rise > 0.0
             && barrel.half_length > 0.0
             && barrel.head_radius > 0.0
-            // An arc whose center lies on this side of the axis would not be its own hull.
+            // The formulas need the center of the arc on the far side of the axis.
             && stave_offset >= 0.0
             && arc.is_finite();
         if sound {
@@ -86,7 +87,7 @@ impl<R: Real> Barrel<R> {
     /// Returns distance and normal at a point (m).
     ///
     /// Outside of the core the nearest point lies on the stave, on a head, or on the circle where they meet; inside,
-    /// the nearer face counts.
+    /// the nearer of stave and head is used.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -143,7 +144,7 @@ impl<R: Real> Barrel<R> {
         Vec3::select(on_stave, stave, chime)
     }
 
-    /// Returns one lane.
+    /// Returns the barrel in one lane.
     pub(super) fn lane(&self, lane: usize) -> Barrel {
         Barrel {
             half_length: self.half_length.lane(lane),
@@ -156,8 +157,8 @@ impl<R: Real> Barrel<R> {
 }
 
 impl Barrel {
-    /// Returns three derivatives along `along` (m) of half the square of the distance (m) from the center of the
-    /// stave's arc, `½ (x² + (r + a)²)` at a point (m) that is `r` from the axis.
+    /// Returns the first three derivatives, in the direction `along` (m), of half the squared distance from the center
+    /// of the stave's arc: `½ (x² + (r + a)²)` at a point (m) at the distance `r` from the axis.
     #[inline(always)]
     pub(super) fn derivatives(&self, point: Vec3, along: Vec3) -> [f64; 3] {
         let inverse = 1.0 / (point.y * point.y + point.z * point.z).sqrt();

@@ -1,4 +1,4 @@
-//! A block with rounded edges, and its closest point to another convex solid.
+//! A block with rounded edges, and its closest points to another convex solid.
 
 use super::closest::{Closest, along};
 use super::rounded::Hull;
@@ -22,7 +22,7 @@ impl<R: Real> Block<R> {
         self.half.length() + self.rounding
     }
 
-    /// Returns distance and normal at a point (m); inside of the core the nearest face counts.
+    /// Returns distance and normal at a point (m); inside the core, those of the nearest face.
     #[inline(always)]
     pub(super) fn gap(&self, point: Vec3<R>) -> Gap<Spatial<R>> {
         let (zero, one) = (R::zero(), R::splat(1.0));
@@ -47,7 +47,7 @@ impl<R: Real> Block<R> {
         }
     }
 
-    /// Returns the corners (m) of the core, in the order of their signs.
+    /// Returns the corners (m) of the core, ordered by the signs of their coordinates.
     #[inline(always)]
     pub(super) fn corners(&self) -> [Vec3<R>; 8] {
         std::array::from_fn(|corner| {
@@ -67,13 +67,13 @@ impl<R: Real> Block<R> {
         )
     }
 
-    /// Returns one lane.
+    /// Returns the block in one lane.
     pub(super) fn lane(&self, lane: usize) -> Block {
         Block { half: self.half.lane(lane), rounding: self.rounding.lane(lane) }
     }
 }
 
-/// Edges of a block, as indices of their corners.
+/// Edges of a block, each as the indices of its two corners.
 const EDGES: [(usize, usize); 12] = [
     (0, 1),
     (2, 3),
@@ -89,11 +89,13 @@ const EDGES: [(usize, usize); 12] = [
     (3, 7),
 ];
 
-/// Returns the closest points of a block and another solid, with its origin at `at` (m) in the frame of the block, to
-/// which `frame` transforms from its own: in the frame of the block, with the other one as contactor.
+/// Returns the closest points of a block, as target, and another solid, as contactor, in the frame of the block.
 ///
-/// Separate cores are closest at an edge of the block, or inside a face, at the support point of the other toward it.
-/// For overlapping cores the face with the least penetration counts.
+/// `at` is the origin (m) of the other solid in the frame of the block, and `frame` the rotation from its frame to that
+/// of the block.
+///
+/// Separate cores are closest at an edge of the block, or inside a face at the support point of the other solid toward
+/// that face. For overlapping cores the face with the least penetration is used.
 pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     let (grown, radius) = (block.rounding, other.rounding());
     let mut best = Closest {
@@ -120,7 +122,7 @@ pub(super) fn from_block(block: &Block, other: &Hull, at: Vec3, frame: Rotation3
         let within = within && (support.y.abs() <= block.half.y || face.y != 0.0);
         let within = within && (support.z.abs() <= block.half.z || face.z != 0.0);
         if height >= 0.0 && within {
-            // No other feature is nearer than a face that bears.
+            // No other feature can be nearer than a face that bears.
             return Closest { evaluations: best.evaluations, ..shallowest };
         }
     }

@@ -1,6 +1,6 @@
 //! Closest points of two convex bodies.
 //!
-//! All computations are scalar: lanes are processed one after the other, with the bits of a single run.
+//! All computations are scalar: lanes are processed one after the other, with the same bits as a single run.
 
 use super::barrel::Barrel;
 use super::rounded::Hull;
@@ -22,8 +22,8 @@ pub struct Closest {
     pub converged: bool,
 }
 
-/// Maximum number of evaluations of the search along an axis; bisection alone needs 50, and every third evaluation
-/// bisects where false position is slower, as on a line that is flat to nine digits up to a kink.
+/// Maximum number of evaluations of the search along an axis. Bisection alone needs 50, and every third evaluation
+/// bisects where false position is slower, for example on a line that is flat to nine digits up to a kink.
 const MOST_ALONG: u32 = 180;
 
 /// Result along a segment: position from −1 at `middle − half` to 1 at `middle + half`; gap there; number of
@@ -34,14 +34,14 @@ type Along = (f64, Gap<Spatial>, u32, bool);
 const FLAT: f64 = 1e-14;
 /// Maximum number of steps along a segment before the search takes over.
 const MOST_HALLEY: u32 = 6;
-/// The error after a step is of third order; below this it is lost in rounding.
+/// Length of a step below which the error after it, which is of third order, is lost in rounding.
 const LAST_HALLEY: f64 = 1e-5;
 
 /// Returns the point of a segment that is closest to a hull.
 ///
-/// Beside a tube it has a closed form; on a stave, the usual case, Halley's method converges in two or three steps.
-/// The result is valid only if the gap does not decrease to either side, since it is convex. Otherwise [`along_axis`]
-/// searches for it.
+/// For a tube there is a closed form; for a stave, the usual case, Halley's method converges in two or three steps.
+/// Since the gap is convex, the result is valid if the gap does not decrease to either side. Otherwise [`along_axis`]
+/// searches for the minimum.
 #[inline(always)]
 pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     // `inline(always)`: a closure left out of line loses the target feature.
@@ -70,8 +70,8 @@ pub(super) fn along(hull: &Hull, middle: Vec3, half: Vec3) -> Along {
     )
 }
 
-/// Finds the minimum of a quantity along a segment from its three derivatives, by Halley's method. The result is the
-/// same from the other end to the last bit.
+/// Finds the minimum of a quantity along a segment from its three derivatives, by Halley's method. Exchanging the ends
+/// of the segment gives the same result to the last bit.
 #[inline(always)]
 fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> Option<f64> {
     let mut place = (-middle.dot(half) / half.dot(half)).clamp(-1.0, 1.0);
@@ -88,10 +88,11 @@ fn halley(middle: Vec3, half: Vec3, derivatives: impl Fn(Vec3) -> [f64; 3]) -> O
     None
 }
 
-/// Searches as [`along`], for any convex body, with the gap alone.
+/// Returns the same as [`along`] for any convex body, by a search that needs only the gap.
 ///
-/// The distance is convex along the segment, so its slope `n · half` never decreases and has one zero: found between
-/// the ends by false position, guarded by bisection. From the other end the search is the same to the last bit.
+/// The distance is convex along the segment, so its slope `n · half` never decreases and has one zero, which is found
+/// by false position with bisection as a safeguard. Exchanging the ends of the segment gives the same result to the
+/// last bit.
 #[inline(always)]
 fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> Along {
     let (first, falling) = slope(&gap, middle, half, -1.0);
@@ -109,7 +110,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
     for evaluation in 3..MOST_ALONG {
         let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
         let narrowed: f64 = high.0 - low.0;
-        // Every third time the interval must have halved, or it is bisected.
+        // Every third time, the interval is bisected unless it has halved.
         let slow = evaluation % 3 == 0 && narrowed > 0.5 * wide;
         if evaluation % 3 == 0 {
             wide = if slow { 0.5 * narrowed } else { narrowed };
@@ -121,7 +122,7 @@ fn along_axis(gap: impl Fn(Vec3) -> Gap<Spatial>, middle: Vec3, half: Vec3) -> A
         if slope.abs() <= flat || narrowed <= 8.0 * f64::EPSILON {
             return (place, here, evaluation, true);
         }
-        // An end that is kept twice counts half (the Illinois rule), so that both approach.
+        // The slope at an end that is kept twice is halved (the Illinois rule), so that both ends approach the zero.
         if slope < 0.0 {
             low = (place, slope);
             if kept == 1 {
@@ -151,7 +152,7 @@ fn slope(
     (gap, gap.normal.dot(half))
 }
 
-/// A barrel with its pose in the frame of another.
+/// A barrel with its pose in the frame of another barrel.
 #[derive(Clone, Copy)]
 struct Set<'a> {
     barrel: &'a Barrel,
@@ -159,13 +160,14 @@ struct Set<'a> {
     rotation: Rotation3,
 }
 
-/// Support point of a core with local curvature.
+/// Support point of a core, with the local curvature of its surface.
 struct Support {
     /// The support point (m).
     point: Vec3,
-    /// `r ⊥ ⊗ ⊥`: curvature radius (m) along the barrel, equal in all tangential directions.
+    /// Curvature radius (m) that is common to all tangential directions: that of the stave along the barrel, or zero at
+    /// the chime.
     along: f64,
-    /// Additional curvature radius (m) in direction `around`.
+    /// Additional curvature radius (m) in the direction `around`.
     across: f64,
     /// The unit vector around the axis.
     around: Vec3,
@@ -178,7 +180,7 @@ impl Set<'_> {
         self.rotation.apply(Vec3::new(1.0, 0.0, 0.0))
     }
 
-    /// Returns the nearest point (m) of the core to one outside of it.
+    /// Returns the point (m) of the core that is nearest to a point outside of the core.
     fn project(&self, point: Vec3) -> Vec3 {
         let gap = self.barrel.gap(self.rotation.unapply(point - self.center));
         let depth = (gap.distance + self.barrel.rounding).max(0.0);
@@ -222,7 +224,7 @@ impl Set<'_> {
     }
 }
 
-/// Angle (rad) to an axis below which a direction is that of the head.
+/// Angle (rad) to the axis below which a direction counts as normal to the head.
 const HEAD: f64 = 1e-7;
 
 /// Separation of two cores in a direction.
@@ -247,10 +249,10 @@ fn separation(target: &Set<'_>, contactor: &Set<'_>, normal: Vec3) -> Separation
     Separation { offset, distance: offset.dot(normal), supports }
 }
 
-/// Tangential parts of `offset` (m) below which a normal is exact to rounding.
+/// Tangential part of `offset`, relative to the lengths involved, below which a normal is exact to rounding.
 const TANGENTIAL: f64 = 4e-15;
-/// Newton steps (rad) below which a normal is exact: near the edge of a head a support turns much faster than its
-/// direction, so its position is lost in rounding long before the normal is.
+/// Newton step (rad) below which a normal is exact. Near the edge of a head the support point moves much faster than
+/// the direction turns, so its position is lost in rounding long before the normal is.
 const TURN: f64 = 1e-11;
 /// Maximum number of Newton steps before projections are used.
 const MOST_STEPS: u32 = 25;
@@ -259,11 +261,11 @@ const MOST_HELP: u32 = 40;
 
 /// Returns the closest points of two barrels, the target at the origin.
 ///
-/// The direction that separates the cores most is the normal, and the distance of its supporting planes is that of
-/// the cores: `g(n) = n · c − h₁(n) − h₂(−n)`, concave where the cores are separate. Where a head bears, `g` has a
-/// kink, so heads are tested first; otherwise Newton's method runs on the sphere of directions. It starts from
-/// projections from one core to the other and back, which also take over where it does not ascend: they always
-/// approach.
+/// The normal is the direction `n` that maximizes the distance of the supporting planes of the cores, `g(n) = n · c −
+/// h₁(n) − h₂(−n)`, and the maximum is the distance of the cores; `g` is concave where the cores are separate. Where a
+/// head bears, `g` has a kink, so heads are tested first; otherwise Newton's method runs on the sphere of directions.
+/// It starts from projections from one core to the other and back. Projections also take over where Newton's method
+/// does not ascend, since they always approach the solution.
 pub(super) fn barrels(
     target: &Barrel,
     contactor: &Barrel,
@@ -335,8 +337,8 @@ pub(super) fn barrels(
     found(normal, best.supports[1].point, best.distance, evaluations, false)
 }
 
-/// Returns the closest point of one core to the inside of a head of another: normal out of the head, the point of the
-/// core and its distance (m).
+/// Returns the closest point of one core to a head of another, if it lies in front of the head: normal out of the head,
+/// point of the core, and its distance (m).
 fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let axis = bearing.axis();
     let side = if (resting.center - bearing.center).dot(axis) < 0.0 { -1.0 } else { 1.0 };
@@ -356,9 +358,9 @@ fn on_head(bearing: &Set<'_>, resting: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
 /// Returns the closest points of the rims of two heads that face each other, if they cross in projection along the
 /// axis: normal out of the target, point of the contactor's core and distance (m).
 ///
-/// Two such heads share a lens, at a corner of which they are closest unless the rim of one is inside the other.
-/// Solved by Newton's method on the angles of both points; the normal must lie between the head and the stave of
-/// both, otherwise another feature is closer.
+/// The projections of such heads overlap in a lens. The heads are closest at a corner of the lens, unless the rim of
+/// one lies inside the other. The solution uses Newton's method on the angles of both points; the normal must lie
+/// between the head and the stave of both barrels, otherwise another feature is closer.
 fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f64)> {
     let side = contactor.center.x.signum();
     let facing = contactor.axis() * -(side * contactor.axis().x.signum());
@@ -389,7 +391,7 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
         let mut separation = Vec3::default();
         for _ in 0..12 {
             separation = other_head + other_out * other_radius - head - out * radius;
-            // Along both rims, per radian of the points.
+            // Tangents of both rims, per radian.
             let (slope, other_slope) =
                 (axis.cross(out) * radius, facing.cross(other_out) * other_radius);
             let (a, c) = (
@@ -425,8 +427,9 @@ fn rims_crossed(target: &Set<'_>, contactor: &Set<'_>) -> Option<(Vec3, Vec3, f6
     best
 }
 
-/// Returns normal, point of the contactor's core and distance (m), from the more accurate of both supports: one on a
-/// rim turns much faster than the direction where that is nearly an axis.
+/// Returns normal, point of the contactor's core and distance (m), computed from the more accurate of both support
+/// points. A support point on a rim is inaccurate where the direction is nearly axial, since it then moves much faster
+/// than the direction turns.
 fn polished(
     target: &Set<'_>,
     contactor: &Set<'_>,
@@ -478,7 +481,7 @@ fn ascend(
     tangential: Vec3,
     step: Vec3,
 ) -> Option<(Vec3, Separation)> {
-    // No step turns by more than half a radian, since curvatures change.
+    // No step turns by more than half a radian, since the curvatures change with the direction.
     let mut share = 0.5 / step.length().max(0.5);
     for _ in 0..40 {
         let next = (normal + step * share).unit_or(normal);

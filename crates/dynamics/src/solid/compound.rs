@@ -1,28 +1,30 @@
-//! Bodies of several solids, such as racks of tubes, and their contact pairs.
+//! Bodies made of several solids, such as racks made of tubes, and their contact pairs.
 
 use super::{Bulk, Hull, Rounded};
 use crate::body::{Body, BodyId, Nodes, Placed};
 use crate::model::{ContactPair, Counts, InterfaceId};
 use crate::space::{Pose, Rotation3, Spatial, Vec3};
 
-/// A solid of a body.
+/// One solid of a compound body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Its surface, both contactor and target.
+    /// Surface of the solid, as contactor and as target.
     pub hull: Hull,
-    /// Its origin (m) in the frame of the description.
+    /// Origin (m) of the solid in the common frame of all parts.
     pub center: Vec3,
-    /// Its rotation in that frame.
+    /// Rotation of the solid in the common frame.
     pub rotation: Rotation3,
-    /// Its mass distribution, in its own frame.
+    /// Mass distribution in the frame of the solid.
     pub bulk: Bulk,
 }
 
-/// Creates a free body of several solids, in place: its frame becomes that of its principal axes about its center of
-/// mass, and its pose is where that is.
+/// Creates a free body from several solids that are given in a common frame.
 ///
-/// Solids touch one by one, so a pair of bodies has the contact pairs of [`pairs_between`]; for distant ones only
-/// their balls are tested when the list of contact elements is built.
+/// The body frame has its origin at the center of mass and its axes along the principal axes; the pose of the body is
+/// that of the body frame in the common frame.
+///
+/// Every solid is a boundary of its own, so two bodies need the contact pairs of [`pairs_between`]. If the bodies are
+/// far apart, only bounding balls are tested, when the list of contact elements is built.
 pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spatial> {
     let whole = Bulk::sum(parts.iter().map(|part| part.bulk.placed(part.center, part.rotation)));
     let (inertia, orientation) = whole.principal();
@@ -46,8 +48,8 @@ pub fn compound(name: &str, parts: &[Part], tributary_length: f64) -> Body<Spati
     }
 }
 
-/// Returns the contact pairs of two bodies all of whose solids may touch, each once: those of the first are the
-/// contactors.
+/// Returns the contact pairs of every solid of one body with every solid of another; the solids of the first body are
+/// the contactors.
 pub fn pairs_between(
     bodies: &[Body<Spatial>],
     contactor: BodyId,

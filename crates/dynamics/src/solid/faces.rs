@@ -1,6 +1,6 @@
-//! Contact of the faces of two blocks: the polygon that they share, and the force share of each of its corners.
+//! Contact of the faces of two blocks: the polygon that they share, and the share of each corner in the force.
 //!
-//! As in [`closest`](super::closest), all computations are scalar.
+//! All computations are scalar, as in [`closest`](super::closest).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,7 +13,7 @@ use crate::space::{Linear, Rotation3, Spatial, Vec2, Vec3};
 /// Maximum number of corners of the polygon that two rectangles share.
 const MOST: usize = 8;
 
-/// Distance (m) outside of a face within which a corner counts as inside: corners of flush blocks coincide.
+/// Distance (m) outside of a face within which a corner counts as inside, since corners of flush blocks coincide.
 const FLUSH: f64 = 1e-9;
 
 /// A corner of a shared polygon, in the frame of the target.
@@ -31,21 +31,21 @@ pub(super) struct Vertex {
 /// The shared polygon of two blocks.
 pub(super) struct Shared<const CORNERS: usize, const AXES: usize> {
     pub(super) vertices: [Option<Vertex>; CORNERS],
-    /// Share of the contact that the polygon bears: 1 where a face of either block meets the other, 0 where an edge
+    /// Share of the contact that the polygon carries: 1 where a face of either block meets the other, 0 where an edge
     /// crosses an edge.
     pub(super) flat: f64,
     /// Unit vectors along the face of the target, or along those of both.
     pub(super) axes: [Vec3; AXES],
 }
 
-/// A side of the polygon: one of the contactor's face, or of the target's.
+/// A side of the polygon, which is part of a side of the contactor's face or of the target's face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Side {
     Contactor(usize),
     Target(usize),
 }
 
-/// Corners, each with the side that follows counterclockwise.
+/// Corners of a polygon, each with the side that follows counterclockwise.
 #[derive(Clone, Copy)]
 struct Chain {
     corners: [(Vec2, Side); 2 * MOST],
@@ -60,7 +60,7 @@ impl Chain {
         }
     }
 
-    /// Clips the polygon at a line at a distance (m) along a unit normal: a side of the target.
+    /// Clips the polygon at a side of the target, given as a line at a distance (m) along a unit normal.
     fn cut(&self, normal: Vec2, distance: f64, side: usize) -> Self {
         let mut kept = Self { count: 0, ..*self };
         let past = |corner: Vec2| corner.x * normal.x + corner.z * normal.z - distance;
@@ -100,8 +100,11 @@ struct Face {
 }
 
 impl Face {
-    /// Returns the face of a block in a direction of its own frame; `frame` transforms from that frame, with its
-    /// origin at `at`, to the target's frame, where `u × v` of its axes points along `up`.
+    /// Returns the face of a block toward a direction in the frame of the block.
+    ///
+    /// `frame` is the rotation from the frame of the block to that of the target, where the origin of the block lies at
+    /// `at` (m). The cross product of the two vectors along the face points to the side of `up`; by default that of the
+    /// outward normal.
     fn of(block: &Block, direction: Vec3, at: Vec3, frame: Rotation3, up: Option<Vec3>) -> Self {
         let steep = [direction.x.abs(), direction.y.abs(), direction.z.abs()];
         let halves = [block.half.x, block.half.y, block.half.z];
@@ -135,8 +138,8 @@ impl Face {
     }
 }
 
-/// Returns the mean of the polygon as [`shared`] has it and as it has it with the blocks exchanged, so that neither
-/// differs from the other.
+/// Returns the mean of [`shared`] and of [`shared`] with the blocks exchanged, so that the result does not depend on
+/// which block is the target.
 pub(super) fn shared_by_both(
     contactor: &Block,
     target: &Block,
@@ -149,7 +152,7 @@ pub(super) fn shared_by_both(
     let exchanged = |vertex: Vertex| Vertex {
         point: at + frame.apply(vertex.point - vertex.gap.normal * vertex.gap.distance),
         gap: Gap { normal: -frame.apply(vertex.gap.normal), ..vertex.gap },
-        // Derived by the rotation of the other body.
+        // The derivative is with respect to the rotation of the other block.
         turning: -frame.apply(vertex.turning),
         ..vertex
     };
@@ -164,14 +167,16 @@ pub(super) fn shared_by_both(
     Shared { vertices, flat: own.flat, axes: [a, b, c, d] }
 }
 
-/// Returns the polygon that a block with its origin at `at` (m) shares with a target, in the frame of the target, to
-/// which `frame` transforms from that of the contactor; `normal` points out of the target where they are closest.
+/// Returns the polygon that a block shares with a target, in the frame of the target.
 ///
-/// The two faces that meet there overlap in a polygon, in projection on that of the target. Each corner of it
-/// bears like as many springs as right angles by which the polygon turns there, so the whole always bears
-/// like four: a corner of a block on the other's face is one, and where twisted blocks cross their edges two
-/// corners take the place of one. All of it is continuous in the pose, since the turn of a convex boundary
-/// is; exact flushness needs no special case.
+/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal`
+/// points out of the target at the closest points.
+///
+/// The two faces that meet at the closest points overlap in a polygon, in projection on the face of the target. Each
+/// corner of the polygon acts like one spring per right angle by which the polygon turns at the corner, so the whole
+/// polygon always acts like four springs. A corner of a block on the face of the other block is one spring; where edges
+/// of twisted blocks cross, two corners of the polygon take the place of one. The result is continuous in the pose,
+/// since the turn of a convex boundary is, and exactly flush faces need no special case.
 fn shared(
     contactor: &Block,
     target: &Block,
@@ -240,9 +245,11 @@ fn shared(
     Shared { vertices, flat, axes: bearing.along }
 }
 
-/// Where a side of the contactor's face crosses one of the target's: the point (m) of the former, the unit
-/// normal of both out of the target, their distance (m) along it, and how much that counts as one of the
-/// faces: sides that are nearly parallel pass each other beside the faces.
+/// Returns the crossing of a side of the contactor's face with a side of the target's face: the point (m) of the
+/// former, the common unit normal out of the target, the distance (m) along the normal, and a weight from 0 to 1.
+///
+/// The weight vanishes where the common normal is far from that of the face, as for nearly parallel sides, which pass
+/// each other beside the faces.
 fn crossing(
     resting: &Face,
     own: usize,

@@ -1,7 +1,7 @@
-//! Lines and faces that two bounded solids share: tubes side by side, a tube or a head on a head or on the face of a
+//! Line and face contacts of two bounded solids: tubes side by side, and a tube or a head on a head or on the face of a
 //! block.
 //!
-//! As in [`closest`](super::closest), all computations are scalar.
+//! All computations are scalar, as in [`closest`](super::closest).
 
 use super::barrel::Barrel;
 use super::block::Block;
@@ -15,14 +15,14 @@ pub(super) struct Flat {
     /// The point (m) of the contactor's surface.
     pub(super) point: Vec3,
     pub(super) gap: Gap<Spatial>,
-    /// As in [`Spread`](crate::shape::Spread).
+    /// The weights, as in [`Spread`](crate::shape::Spread).
     pub(super) shares: Shares<f64>,
     pub(super) radius: f64,
-    /// Unit vectors along it; a line has only the first.
+    /// Unit vectors along the patch; a line has only the first.
     pub(super) axes: [Vec3; 2],
 }
 
-/// Sine of the angle between two bodies above which they share no patch.
+/// Sine of the angle between two solids above which they share no patch.
 pub(super) const WIDEST: f64 = 0.1;
 /// Extent (m) from the middle above which a line or a face has full weight.
 const LONG: f64 = 0.05;
@@ -33,11 +33,11 @@ pub(super) fn smooth(u: f64) -> f64 {
     u * u * (3.0 - u - u)
 }
 
-/// Returns the weights of a patch that bears like a number of springs and extends `length` (m) from its middle, for
-/// two bodies turned out of it by an angle with a sine.
+/// Returns the weights of a patch that acts like `springs` springs and extends `length` (m) from its middle, for two
+/// solids inclined to each other by an angle with the given squared sine.
 ///
-/// The shorter it is, the smaller the permitted angle: the part of a turned tube before the edge of a head is not at
-/// its deepest point, and its weight must vanish before it ends.
+/// The shorter the patch, the smaller the permitted angle: the part of an inclined tube in front of a head does not
+/// contain the deepest point, so its weight must vanish before this part ends.
 fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     let short = LONG / length;
     let flat = smooth(1.0 - sine_squared * (1.0 + short * short) / (WIDEST * WIDEST));
@@ -46,9 +46,11 @@ fn shares(springs: f64, sine_squared: f64, length: f64) -> Shares<f64> {
     Shares { deepest: 1.0 - flat * (1.0 - each), others: flat * each, aside: long }
 }
 
-/// Returns the patch that a contactor with its origin at `at` (m) shares with a target, in the frame of the target,
-/// to which `frame` transforms from that of the contactor; `normal` points out of the target. `None` if they touch in
-/// a point.
+/// Returns the patch that a contactor shares with a target, in the frame of the target; `None` if they touch in a
+/// point.
+///
+/// `at` is the origin (m) of the contactor, `frame` the rotation from its frame to that of the target, and `normal` the
+/// contact normal out of the target.
 pub(super) fn shared(
     contactor: &Hull,
     target: &Hull,
@@ -115,7 +117,7 @@ pub(super) fn shared(
                 ..flat
             })
         }
-        // A face of one may lie on an edge of the other, which has no middle of a face: see `faces`.
+        // Blocks are handled in `faces`, since a face of one may lie on an edge of the other.
         (Hull::Block(_), Hull::Block(_)) => None,
     }
 }
@@ -153,7 +155,7 @@ pub(super) fn slopes(
         force: Vec3::new(x[value], y[value], z[value]),
         moment: Vec3::new(yz[value], zx[value], xy[value]),
     });
-    // The contribution of material points: depth decreases as the contactor leaves along the normal.
+    // Without the contribution of the material points: depth decreases as the contactor leaves along the normal.
     middle.force += flat.gap.normal;
     middle.moment += (flat.point - at).cross(flat.gap.normal);
     Slopes { middle, deepest, others }
@@ -165,7 +167,7 @@ fn side_by_side(target: &Capsule, tube: &Capsule, at: Vec3, direction: Vec3) -> 
     if sine_squared >= WIDEST * WIDEST {
         return None;
     }
-    // Along the tube, which has the closest point: as the overlap ends, only its middle remains.
+    // Measured along the contactor, which has the closest point: as the overlap ends, only its middle remains.
     let (least, most, radius) =
         overlap(tube.half_length, -at.dot(direction), target.half_length * direction.x.abs());
     if radius <= 0.0 {
@@ -188,27 +190,27 @@ fn overlap(half: f64, center: f64, other: f64) -> (f64, f64, f64) {
     (least, most, 0.5 * (most - least))
 }
 
-/// A line on a head or a face.
+/// Contact line of a tube on a head or a face.
 struct Line {
-    /// Middle of the part of the tube's axis that lies before it (m).
+    /// Middle (m) of the part of the tube's axis in front of the head or face.
     center: Vec3,
-    /// Distance (m) of the surfaces there.
+    /// Distance (m) of the surfaces at the middle.
     distance: f64,
     /// Unit normal out of the head or face.
     normal: Vec3,
     shares: Shares<f64>,
-    /// Extent (m) from its middle.
+    /// Extent (m) of the line from its middle.
     length: f64,
 }
 
-/// Returns the line of a tube on a head or a face, in the frame of the solid that has it.
+/// Returns the contact line of a tube on a head or a face of a solid, in the frame of that solid.
 fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -> Option<Line> {
     match hull {
         Hull::Capsule(_) => None,
-        // On the stave, no part lies before a head.
+        // A tube on the stave has no part in front of a head.
         Hull::Barrel(_) if normal.x.abs() < 0.5 => None,
         Hull::Barrel(barrel) => {
-            // The part of the tube whose axis lies before the circle of the head.
+            // The part of the tube whose axis lies in front of the circle of the head.
             let across = Vec3::new(0.0, direction.y, direction.z);
             let (a, b) = (across.dot(across), across.dot(at));
             let beyond = at.y * at.y + at.z * at.z - barrel.head_radius * barrel.head_radius;
@@ -219,7 +221,7 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
         }
         Hull::Block(block) => {
             let axis = facing(normal);
-            // The part of the tube whose axis lies before the face.
+            // The part of the tube whose axis lies in front of the face.
             let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
             for other in AXES {
                 if other.dot(axis) == 0.0 {
@@ -242,8 +244,8 @@ fn along(hull: &Hull, tube: &Capsule, at: Vec3, direction: Vec3, normal: Vec3) -
     }
 }
 
-/// Returns the line of a tube on a plane perpendicular to an axis, at a height and with a rounding (m), along a chord
-/// given by its middle and half its length (m) along the tube.
+/// Returns the contact line of a tube on a plane perpendicular to an axis, given by height and rounding (m), along a
+/// chord given by its middle and half its length (m) along the tube.
 fn on_plane(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -296,15 +298,16 @@ fn head_on_block(
                 radius = radius.min(length);
             }
         }
-        // Near a corner the middle of the overlaps along both sides may lie beside the head.
+        // Near a corner, the point in the middle of the overlaps along both sides may lie outside of the head.
         (middle, radius.min(barrel.head_radius - (middle - aside).length()))
     };
     head_on(axis, (block.half.dot(axis), block.rounding), middle, barrel, at, frame)
 }
 
-/// Returns the patch of the head of a barrel on a plane perpendicular to an axis, at a height and with a rounding
-/// (m); `middle` returns the middle of the shared area and its extent (m), for a position of the center of the head
-/// in the plane.
+/// Returns the patch of the head of a barrel on a plane perpendicular to an axis, given by height and rounding (m).
+///
+/// `middle` returns the middle of the shared area and its extent (m) from the position of the center of the head in the
+/// plane.
 fn head_on(
     axis: Vec3,
     (height, rounding): (f64, f64),
@@ -327,7 +330,7 @@ fn head_on(
     if radius <= 0.0 {
         return None;
     }
-    // The point of the head's plane opposite to that.
+    // The point of the head's plane opposite to the middle.
     let reach = (middle - aside).dot(outward) / outward.dot(normal);
     let facing = middle + normal * (head.dot(normal) - reach);
     let distance = facing.dot(normal) - height - rounding - barrel.rounding;

@@ -1,4 +1,4 @@
-//! Mass, center and moments of inertia of solids, of bodies of several parts, and of filled barrels.
+//! Mass, center of mass and moments of inertia of solids, of compound bodies, and of filled barrels.
 
 use super::{Ball, Barrel, Capsule};
 use crate::math;
@@ -24,13 +24,13 @@ impl Bulk {
         Self { mass, center: Vec3::default(), second: rows }
     }
 
-    /// Creates a homogeneous ball of a mass (kg).
+    /// Returns the distribution of a homogeneous ball with a mass (kg).
     pub fn of_ball(ball: &Ball, mass: f64) -> Self {
         let second = 0.2 * mass * ball.radius * ball.radius;
         Self::symmetric(mass, Vec3::new(second, second, second))
     }
 
-    /// Creates a homogeneous capsule of a mass (kg).
+    /// Returns the distribution of a homogeneous capsule with a mass (kg).
     pub fn of_capsule(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         // Shares of the tube and of the ball formed by both ends.
@@ -41,26 +41,26 @@ impl Bulk {
         Self::symmetric(mass, Vec3::new(along, across, across) * mass)
     }
 
-    /// Creates a homogeneous tube of a mass (kg) with a thin wall and open ends, whose outside is a capsule: as the
-    /// tubes of racks are.
+    /// Returns the distribution of a thin-walled tube with open ends and a mass (kg), such as a tube of a rack; its
+    /// outside is a capsule.
     pub fn of_hollow(capsule: &Capsule, mass: f64) -> Self {
         let Capsule { half_length: l, radius: r } = *capsule;
         let across = 0.5 * r * r;
         Self::symmetric(mass, Vec3::new(l * l / 3.0, across, across) * mass)
     }
 
-    /// Creates a homogeneous block of a mass (kg) with sharp edges, from half its sides (m).
+    /// Returns the distribution of a homogeneous block with sharp edges, from half its sides (m) and its mass (kg).
     pub fn of_block(half: Vec3, mass: f64) -> Self {
         Self::symmetric(mass, half.times(half) * (mass / 3.0))
     }
 
-    /// Creates a homogeneous barrel of a mass (kg).
+    /// Returns the distribution of a homogeneous barrel with a mass (kg).
     pub fn of_barrel(barrel: &Barrel, mass: f64) -> Self {
         let outside = revolved(barrel);
         outside.of_density(mass / outside.volume)
     }
 
-    /// Returns the distribution displaced (m) and rotated.
+    /// Returns the distribution rotated and then displaced (m).
     #[must_use]
     pub fn placed(&self, offset: Vec3, rotation: Rotation3) -> Self {
         // R S Rᵀ: first its rows, then its columns.
@@ -89,8 +89,8 @@ impl Bulk {
 
     /// Returns the principal moments of inertia (kg·m²) about the center of mass, and the rotation of their axes.
     ///
-    /// Jacobi's method: planes are rotated one by one until the matrix is diagonal. Distributions symmetric about the
-    /// planes of their frame keep its axes.
+    /// Uses Jacobi's method, which rotates one plane after the other until the matrix is diagonal. Distributions that
+    /// are symmetric about the planes of their frame keep its axes.
     pub fn principal(&self) -> (Vec3, Quaternion) {
         let mut turned = Quaternion::identity();
         let mut second = self.second;
@@ -131,15 +131,15 @@ impl Barrel {
 /// Contents of a barrel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fill {
-    /// Nothing.
+    /// Empty.
     Empty,
-    /// Full, with contents that turn with the wood.
+    /// Full, with contents that rotate with the wood.
     Frozen,
-    /// Full of wine, which does not turn with the wood about the axis, and partly about others.
+    /// Full of wine, which does not rotate with the wood about the barrel's axis, and only partly about other axes.
     Fluid,
 }
 
-/// A barrel of wood with a room for wine.
+/// A wooden barrel with a cavity for wine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cask {
     /// Outer surface.
@@ -181,18 +181,18 @@ impl Revolved {
 }
 
 impl Cask {
-    /// Returns the room for wine, and all that the staves enclose.
+    /// Returns the cavity for wine, and the whole space inside the staves.
     fn rooms(&self) -> [Revolved; 2] {
         let end = self.barrel.half_length + self.barrel.rounding;
         [end - self.chime - self.wall, end].map(|end| within(&self.barrel, self.wall, end))
     }
 
-    /// Returns the volume (m³) of the room for wine.
+    /// Returns the volume (m³) of the cavity for wine.
     pub fn capacity(&self) -> f64 {
         self.rooms()[0].volume
     }
 
-    /// Returns the wood: staves, and two heads between them.
+    /// Returns the wood: the staves, and the two heads between them.
     fn staves_and_heads(&self) -> Revolved {
         let [room, open] = self.rooms();
         let outer_face = self.barrel.half_length + self.barrel.rounding - self.chime;
@@ -207,10 +207,10 @@ impl Cask {
 
     /// Returns the mass distribution of wood and contents.
     ///
-    /// Wine does not turn about the axis of a rolling barrel, since its boundary layer is thin; about a transverse
-    /// axis it turns like that in a spheroid of the same moments, with `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb,
-    /// Hydrodynamics, on the ellipsoidal shell filled with liquid). Its mass is at its place: the returned second
-    /// moments are those of an equivalent rigid body.
+    /// Wine does not rotate about the axis of a rolling barrel, since its boundary layer is thin. About a transverse
+    /// axis it rotates like the liquid in a spheroid of the same moments, with `(∫ x² − ∫ y²)² / (∫ x² + ∫ y²)` (Lamb,
+    /// Hydrodynamics, on the ellipsoidal shell filled with liquid). Mass and center of mass include the wine; the
+    /// returned second moments are those of an equivalent rigid body.
     pub fn bulk(&self, fill: Fill) -> Bulk {
         let wood = self.staves_and_heads();
         let wood = wood.of_density(self.wood / wood.volume);
@@ -219,7 +219,7 @@ impl Cask {
             Fill::Empty => wood,
             Fill::Frozen => Bulk::sum([wood, room.of_density(self.density)]),
             Fill::Fluid => {
-                // No moment about the axis; about others that of the spheroid.
+                // The wine adds no moment about the axis, and that of the spheroid about transverse axes.
                 let (across, along) = (room.across, room.along);
                 let turning = (along - across) * (along - across) / (along + across);
                 let wine = Revolved { volume: room.volume, along: turning, across: 0.0 };
@@ -228,15 +228,15 @@ impl Cask {
         }
     }
 
-    /// Returns mass and position of wine at rest in a lying barrel, `filled` (0 to 1) of its room, at the bottom with
-    /// a level surface; `z` is up.
+    /// Returns the mass distribution of wine at rest in a lying barrel whose cavity is filled to the fraction `filled`
+    /// (0 to 1); `z` is up.
     ///
-    /// It stays there while the barrel rolls.
+    /// The wine lies at the bottom with a level surface, and stays there while the barrel rolls.
     pub fn wine_at_rest(&self, filled: f64) -> Bulk {
         let room = self.rooms()[0];
         let end = self.barrel.half_length + self.barrel.rounding - self.chime - self.wall;
         let radius = |x: f64| stave(&self.barrel, x) - self.wall;
-        // The level (m above the axis) of that volume.
+        // Bisection for the level (m above the axis) at that volume.
         let (mut low, mut high) = (-radius(0.0), radius(0.0));
         for _ in 0..60 {
             let level = 0.5 * (low + high);
@@ -261,7 +261,7 @@ fn stave(barrel: &Barrel, x: f64) -> f64 {
     (arc * arc - x * x).sqrt() - barrel.stave_offset
 }
 
-/// Integrates over an interval, by five Gauss points in each of many parts.
+/// Integrates over an interval by Gauss quadrature, with five points in each of 16 parts.
 fn integral<const N: usize>((from, to): (f64, f64), of: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     const PARTS: u32 = 16;
     let inner = (5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
@@ -294,7 +294,7 @@ fn disc(x: f64, r: f64) -> [f64; 3] {
     [area, area * x * x, 0.25 * area * r * r]
 }
 
-/// Doubles the integrals of one half.
+/// Doubles the integrals of one half of a symmetric body.
 fn doubled([volume, along, across]: [f64; 3]) -> Revolved {
     Revolved { volume: 2.0 * volume, along: 2.0 * along, across: 2.0 * across }
 }
@@ -304,7 +304,7 @@ fn revolved(barrel: &Barrel) -> Revolved {
     let grown = barrel.rounding;
     let arc = barrel.stave_radius + grown;
     let turn = math::asin(barrel.half_length / barrel.stave_radius);
-    // By the angle of the normal, so that the integrand is smooth to the end of the chime.
+    // Integrated over the angle of the normal, so that the integrand is smooth up to the end of the chime.
     let of_stave = integral((0.0, turn), |angle| {
         let (sin, cos) = (math::sin(angle), math::cos(angle));
         disc(arc * sin, arc * cos - barrel.stave_offset).map(|part| part * arc * cos)
@@ -317,13 +317,16 @@ fn revolved(barrel: &Barrel) -> Revolved {
     doubled(std::array::from_fn(|i| of_stave[i] + of_chime[i]))
 }
 
-/// Integrates the inside of the staves of a barrel, of a thickness (m), up to an end (m from its middle).
+/// Integrates the space inside the staves of a barrel with a wall thickness (m), up to the distance `end` (m) on both
+/// sides of the middle.
 fn within(barrel: &Barrel, wall: f64, end: f64) -> Revolved {
     doubled(integral((0.0, end), |x| disc(x, stave(barrel, x) - wall)))
 }
 
-/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part below
-/// a level (m above the axis) within a radius up to an end (m).
+/// Returns volume, first moment upward, and second moments along, across and upward about the axis, of the part of a
+/// body of revolution below a level (m above the axis).
+///
+/// `radius` returns the radius (m) at a position along the axis, up to `end` (m) on both sides of the middle.
 fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
     let section = |x: f64| {
         let r = radius(x);
@@ -336,7 +339,7 @@ fn below(level: f64, end: f64, radius: &impl Fn(f64) -> f64) -> [f64; 5] {
         let across = 0.25 * r * r * area + h * cube / 6.0;
         [area, -2.0 / 3.0 * cube, area * x * x, across, upward]
     };
-    // The formula of the section changes where the level meets the staves.
+    // The formula of the section changes where the level meets the staves, so the integral is split there.
     let (mut inside, mut outside) = (0.0, end);
     for _ in 0..60 {
         let x = 0.5 * (inside + outside);

@@ -1,11 +1,10 @@
 //! Boundaries in space: ball, half-space, capsule, block, barrel of revolution, and the dish.
 //!
-//! All but the dish are convex cores grown by a radius, so that at the depths of contact the cores are separate, and
-//! only distances of separate convex bodies are needed.
-//! A target computes the distance of a point ([`Surface::gap`]); a capsule, a block or a barrel touches as a whole
-//! ([`Rounded`]), a ball with its center ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs with
-//! their points ([`Nodes::Fixed`](crate::body::Nodes::Fixed)).
-//! Each file has one solid; [`Solid`] lists them.
+//! All but the dish are convex cores grown by a radius. At usual penetrations the cores remain separate, so only
+//! distances of separate convex bodies are needed. A target computes the distance of a point ([`Surface::gap`]); a
+//! capsule, a block or a barrel touches as a whole ([`Rounded`]), a ball with its center
+//! ([`Nodes::Rolling`](crate::body::Nodes::Rolling)), and feet and legs with their points
+//! ([`Nodes::Fixed`](crate::body::Nodes::Fixed)). Each file has one solid; [`Solid`] lists them.
 
 mod barrel;
 mod block;
@@ -42,7 +41,7 @@ impl<R: Real> Ball<R> {
     }
 }
 
-/// A hollow ball about the origin, with matter all around it: a dish, touched by points only.
+/// A hollow sphere about the origin with matter all around it: the dish of a bearing, which only points can touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dish<R = f64> {
     /// Radius (m).
@@ -57,17 +56,17 @@ impl<R: Real> Dish<R> {
     }
 }
 
-/// A tube with round ends about the origin, along `x`.
+/// A tube with round ends, along `x`, centered at the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule<R = f64> {
-    /// Half the length (m) of its axis; it is longer by its radius at both ends.
+    /// Half the length (m) of the axis; the tube extends beyond the axis by its radius at both ends.
     pub half_length: R,
     /// Radius (m).
     pub radius: R,
 }
 
 impl<R: Real> Capsule<R> {
-    /// Returns one lane.
+    /// Returns the capsule in one lane.
     fn lane(&self, lane: usize) -> Capsule {
         Capsule { half_length: self.half_length.lane(lane), radius: self.radius.lane(lane) }
     }
@@ -81,9 +80,10 @@ impl<R: Real> Capsule<R> {
 }
 
 impl Capsule {
-    /// Returns the position of the point closest to the axis on the line from `middle` (m), position 0, to `middle +
-    /// half`, position 1: beside the axis the distance grows with the transverse part, beyond an end with the axial
-    /// part as well. NaN if the line is parallel.
+    /// Returns the position of the point closest to the capsule's axis on a line, which is at `middle` (m) at position
+    /// 0 and at `middle + half` at position 1; NaN if the line is parallel to the axis.
+    ///
+    /// Beside the axis only the transverse distance counts, beyond an end of it the axial distance as well.
     #[inline(always)]
     fn nearest_on_line(&self, middle: Vec3, half: Vec3) -> f64 {
         let across = half.y * half.y + half.z * half.z;

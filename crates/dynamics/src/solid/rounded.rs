@@ -11,7 +11,7 @@ use crate::shape::{
 };
 use crate::space::{Rotation3, Spatial, Vec3, Wrench};
 
-/// A solid that touches as a whole, about the origin, along `x`.
+/// A convex solid that touches with its deepest points, centered at the origin and along `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hull<R = f64> {
     /// A tube with round ends.
@@ -27,18 +27,18 @@ pub enum Hull<R = f64> {
 pub struct Rounded<R = f64> {
     /// The hull.
     pub hull: Hull<R>,
-    /// Its origin (m) in the body frame, from the center of mass.
+    /// Origin (m) of the hull in the body frame, from the center of mass.
     pub center: Vec3<R>,
-    /// Rotation of its frame in the body frame.
+    /// Rotation of the hull's frame in the body frame.
     pub rotation: Rotation3<R>,
-    /// Tributary length of boundary (m) of each of its contacts.
+    /// Tributary length of boundary (m) of each contact.
     pub tributary_length: R,
 }
 
-/// Number of sticks of a patch: one at the center of pressure, and two along each of its axes.
+/// Number of sticks of a line and of a face: one at the center of pressure, and two along each axis of the patch.
 const OF_LINE: usize = 3;
 const OF_FACE: usize = 5;
-/// A block touches the half-space with each of its corners.
+/// Number of sticks of a block, which touches the half-space with each of its corners.
 const CORNERS: usize = 8;
 
 impl<R: Real> Rounded<R> {
@@ -78,7 +78,7 @@ impl<R: Real> Whole<Spatial<R>> for Rounded<R> {
                     visit(Patch { first, deepest, spread: None });
                 }
             }
-            // A concave surface is touched by points only.
+            // Only points can touch a concave surface.
             (_, Solid::Dish(_)) => {}
             (hull, Solid::Ball(_) | Solid::Capsule(_) | Solid::Barrel(_) | Solid::Block(_)) => {
                 let mut patch = meeting(hull, surface, origin, frame);
@@ -150,8 +150,8 @@ fn on_plane<R: Real>(center: Vec3<R>, radius: R) -> Touch<Spatial<R>> {
 
 /// Returns the patch of a barrel on the half-space: its deepest point, and the middle of its lower head.
 ///
-/// Energy and force of a standing barrel are those of four points of its rim, the deepest and three more a quarter
-/// turn apart: smooth in height and tilt, though the direction of lean is undefined when upright.
+/// Energy and force of a standing barrel are those of four points of its rim: the deepest point and three more, a
+/// quarter turn apart. They are smooth in height and tilt, although an upright barrel has no deepest point.
 #[inline(always)]
 fn standing<R: Real>(
     barrel: &Barrel<R>,
@@ -168,7 +168,7 @@ fn standing<R: Real>(
         shares: Shares { deepest: one, others: one, aside: one },
         radius: barrel.head_radius,
         axes: Axes::Face([frame.apply(y), frame.apply(z)]),
-        // The middle is a material point of the barrel, and all weights are constant.
+        // The slopes are zero, since the middle is a material point of the barrel and all weights are constant.
         slopes: Slopes::default(),
     };
     Patch { first: 0, deepest: place(barrel.furthest(down)), spread: Some(spread) }
@@ -289,7 +289,7 @@ fn put<R: Real>(vector: &mut Vec3<R>, lane: usize, single: Vec3) {
 }
 
 impl<R: Real> Hull<R> {
-    /// Returns one lane.
+    /// Returns the hull in one lane.
     fn lane(&self, lane: usize) -> Hull {
         match self {
             Self::Capsule(capsule) => Hull::Capsule(capsule.lane(lane)),
@@ -328,7 +328,7 @@ impl Hull {
         }
     }
 
-    /// Returns the support point (m) of the core in a direction of length one.
+    /// Returns the support point (m) of the core in the direction of a unit vector.
     pub(super) fn furthest(&self, direction: Vec3) -> Vec3 {
         match self {
             Self::Capsule(capsule) => {
@@ -340,7 +340,7 @@ impl Hull {
     }
 }
 
-/// Returns a bounded convex surface in one lane, a ball as a capsule without length; `None` for others.
+/// Returns a bounded convex surface in one lane, with a ball as a capsule of zero length; `None` for other surfaces.
 fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     match surface {
         Solid::HalfSpace | Solid::Dish(_) => None,
@@ -353,8 +353,9 @@ fn bounded<R: Real>(surface: &Solid<R>, lane: usize) -> Option<Hull> {
     }
 }
 
-/// Returns the closest points of a contactor with its origin at `at` (m) and a target, in the frame of the target, to
-/// which `frame` transforms from that of the contactor.
+/// Returns the closest points of a contactor and a target, in the frame of the target.
+///
+/// `at` is the origin (m) of the contactor, and `frame` the rotation from its frame to that of the target.
 fn closest(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Closest {
     f64::scope(
         #[inline(always)]
@@ -407,9 +408,9 @@ fn closest_of(contactor: &Hull, target: &Hull, at: Vec3, frame: Rotation3) -> Cl
 }
 
 impl Rounded {
-    /// Returns its closest point to a surface; `position` and `rotation` as in [`Whole::meet`].
+    /// Returns the closest points of the hull and a surface; `position` and `rotation` are as in [`Whole::meet`].
     ///
-    /// `None` for the half-space, on which it may lie with more than one point, and for a dish.
+    /// Returns `None` for the half-space, which the hull may touch with several points, and for a dish.
     pub fn closest(&self, surface: &Solid, position: Vec3, rotation: Rotation3) -> Option<Closest> {
         let origin = position + rotation.apply(self.center);
         let target = bounded(surface, 0)?;

@@ -1,7 +1,7 @@
-//! Kinematics of rigid motion in a number of dimensions.
+//! Kinematics of rigid motion in two and three dimensions.
 //!
-//! Contact laws, the contact loop, the integrators, the energy ledger and the run loop are generic over [`Space`] and
-//! independent of the dimension. [`Planar`] is the vertical plane of the paper, [`Spatial`] the space around it.
+//! Contact laws, the contact loop, the integrators, the energy ledger and the run loop are generic over [`Space`], and
+//! so independent of the dimension. [`Planar`] is motion in a vertical plane, [`Spatial`] motion in space.
 
 mod planar;
 mod spatial;
@@ -36,9 +36,9 @@ pub trait Linear<R>:
     fn dot(self, other: Self) -> R;
 }
 
-/// Rigid motion in a number of dimensions.
+/// Rigid motion in two or three dimensions: the types and operations on which the physics is generic.
 pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
-    /// `true` if bodies have so many solids that the kinematics of two bodies often serve several pairs.
+    /// `true` if bodies often have several solids, so that the kinematics of two bodies are reused for several pairs.
     const SOLIDS_SHARE: bool;
 
     /// The scalar.
@@ -55,17 +55,17 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     type Inertia: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// A displacement (m), velocity (m/s) or force (N) in the plane tangent to a contact.
     type Tangent: Linear<Self::Real>;
-    /// Data stored with a tangent, so that it can be carried along a surface that turns: the normal in space, nothing
-    /// in the plane, where a tangent is a number.
+    /// Data stored with a tangent, so that it can be transported along a curved surface: the normal in space, and
+    /// nothing in the plane, where a tangent is a number.
     type TangentPlane: Copy + Debug + Default + PartialEq + Send + Sync + 'static;
     /// Viscous damping matrix of a body.
     type Damping: Copy + Debug + PartialEq + Send + Sync + 'static;
     /// Shapes whose surface can be a contact target.
     type Surface: crate::shape::Surface<Self>;
-    /// Convex bodies that touch as a whole; empty in the plane, which has round pieces instead.
+    /// Convex solids that touch with their deepest points; empty in the plane, which has round pieces instead.
     type Whole: crate::shape::Whole<Self>;
 
-    /// Returns the rotation of an orientation.
+    /// Returns the rotation from the body frame of an orientation.
     fn rotation(orientation: Self::Orientation) -> Self::Rotation;
     /// Transforms a vector from the rotated frame to the outer frame.
     fn rotate(rotation: Self::Rotation, vector: Self::Vector) -> Self::Vector;
@@ -83,7 +83,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn velocity_at(spin: Self::Spin, arm: Self::Vector) -> Self::Vector;
     /// Returns an upper bound of the length of a vector, cheaper than the length and close to it for most vectors.
     fn length_bound(vector: Self::Vector) -> Self::Real;
-    /// Returns the first coordinate of a vector, along which bodies are swept for neighbors.
+    /// Returns the first coordinate of a vector, along which bodies are sorted to find neighbors.
     fn first_coordinate(vector: Self::Vector) -> Self::Real;
     /// Returns the magnitude of a spin.
     fn spin_magnitude(spin: Self::Spin) -> Self::Real;
@@ -95,7 +95,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         time: Self::Real,
     ) -> Self::Orientation;
-    /// Returns the rotation (rad) from one orientation to another near it, as the spin for a unit of time.
+    /// Returns the rotation (rad) from one orientation to a nearby one, as the spin that makes it in a unit of time.
     fn turn_between(from: Self::Orientation, to: Self::Orientation) -> Self::Spin;
     /// Returns the angle (rad) between two orientations, or an upper bound.
     fn angle_between(a: Self::Orientation, b: Self::Orientation) -> Self::Real;
@@ -106,8 +106,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         rotation: Self::Rotation,
         moment: Self::Spin,
     ) -> Self::Spin;
-    /// Returns the quantity that is conserved without moments, up to a constant factor: the angular momentum in
-    /// space, the spin itself in the plane.
+    /// Returns the rotational quantity that is conserved without moments, up to a constant factor: the angular momentum
+    /// in space, the spin itself in the plane.
     fn momentum(inertia: Self::Inertia, rotation: Self::Rotation, spin: Self::Spin) -> Self::Spin;
     /// Returns the spin of a body from its angular momentum, [`Space::momentum`].
     fn spin_of(
@@ -122,11 +122,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
         spin: Self::Spin,
         time: Self::Real,
     ) -> (Self::Orientation, Self::Spin);
-    /// Returns the rate of the rotation vector that leads from one orientation to another, once it is `turned`, at a
-    /// spin.
+    /// Returns the rate of a rotation vector whose current value is `turned`, for a body with a spin.
     ///
-    /// Rotations do not add in space, so the integral of a spin over time is not a rotation vector; the integral of
-    /// this is.
+    /// Rotations do not add in space, so the integral of a spin over time is not a rotation vector, but the integral of
+    /// this rate is.
     fn turn_rate(turned: Self::Spin, spin: Self::Spin) -> Self::Spin;
     /// Returns the smallest principal moment of inertia (kg·m²) in one lane.
     fn least_inertia(inertia: Self::Inertia, lane: usize) -> f64;
@@ -138,7 +137,7 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     ) -> Self::Real;
     /// Returns the part of a vector that is tangent to a surface with this unit normal.
     fn tangential(vector: Self::Vector, normal: Self::Vector) -> Self::Tangent;
-    /// Returns a tangent as a vector.
+    /// Returns a tangent as a vector, for a surface with this unit normal.
     fn along(tangent: Self::Tangent, normal: Self::Vector) -> Self::Vector;
     /// Returns the data stored with tangents of a surface with this unit normal in a rotated frame.
     fn tangent_plane(rotation: Self::Rotation, normal: Self::Vector) -> Self::TangentPlane;
@@ -152,8 +151,9 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn rotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
     /// Rotates a tangent from the inertial frame to a rotated one.
     fn unrotate_tangent(rotation: Self::Rotation, tangent: Self::Tangent) -> Self::Tangent;
-    /// Returns the rate (m/s) at which a stick turns about its normal, in the inertial frame: with the mean spin of both
-    /// bodies, given as the spin (rad/s) of one and that of the other relative to it, in a rotated frame.
+    /// Returns the rate (m/s) of a stick in the inertial frame due to its rotation about the normal, with the mean spin
+    /// of both bodies. `spins` are the spin (rad/s) of one body and the spin of the other relative to it, in a rotated
+    /// frame.
     fn stick_turn(
         displacement: Self::Tangent,
         plane: Self::TangentPlane,
@@ -239,7 +239,7 @@ impl<S: Space> Pose<S> {
         (Self { position, orientation }, Twist { linear: twist.linear, angular })
     }
 
-    /// Returns the displacement to another pose near it (m and rad), as the twist for a unit of time.
+    /// Returns the displacement (m and rad) to a nearby pose, as the twist that makes it in a unit of time.
     #[inline(always)]
     #[must_use]
     pub fn way_to(self, other: Self) -> Twist<S> {

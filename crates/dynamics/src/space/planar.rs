@@ -6,12 +6,12 @@ use super::{Linear, Space};
 use crate::math;
 use crate::real::Real;
 
-/// A vector of the plane.
+/// A vector in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec2<R = f64> {
-    /// To the right.
+    /// Component to the right.
     pub x: R,
-    /// Up.
+    /// Component upward.
     pub z: R,
 }
 
@@ -123,14 +123,14 @@ impl<R: Real> Rotation2<R> {
     pub fn apply(self, v: Vec2<R>) -> Vec2<R> {
         Vec2::new(self.cos * v.x - self.sin * v.z, self.sin * v.x + self.cos * v.z)
     }
-    /// Rotates a vector back.
+    /// Applies the inverse rotation to a vector.
     #[inline(always)]
     pub fn unapply(self, v: Vec2<R>) -> Vec2<R> {
         Vec2::new(self.cos * v.x + self.sin * v.z, self.cos * v.z - self.sin * v.x)
     }
 }
 
-/// The vertical plane of the paper, with one number or a bundle of lanes as its scalar.
+/// Motion in a vertical plane, with a number or a bundle of lanes as its scalar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Planar<R = f64>(std::marker::PhantomData<R>);
 
@@ -145,8 +145,8 @@ impl<R: Real> Space for Planar<R> {
     type Inertia = R;
     type Tangent = R;
     type TangentPlane = ();
-    /// Rows of the symmetric matrix of eq. 2.8, acting on `(ẋ, ż, θ̇)`:
-    /// N·s/m in the upper left block, N·m·s in the last entry.
+    /// Rows of the symmetric matrix of eq. 2.8, which acts on `(ẋ, ż, θ̇)`: N·s/m in the upper left block, N·m·s in the
+    /// last entry.
     type Damping = [[R; 3]; 3];
     type Surface = crate::shape::Shape<R>;
     type Whole = crate::shape::NoWhole;

@@ -4,9 +4,9 @@ use super::{Linear, Quaternion, Rotation3, Space, Vec3};
 use crate::real::{Mask, Real};
 use crate::solid::{Rounded, Solid};
 
-/// Space, with one number or a bundle of lanes as its scalar.
+/// Motion in space, with a number or a bundle of lanes as its scalar.
 ///
-/// The body frame is that of the principal axes, so the inertia is three numbers. Spins and moments are in the
+/// The axes of the body frame are the principal axes, so the inertia is three numbers. Spins and moments are in the
 /// inertial frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spatial<R = f64>(std::marker::PhantomData<R>);
@@ -21,7 +21,7 @@ impl<R: Real> Space for Spatial<R> {
     type Rotation = Rotation3<R>;
     /// The principal moments of inertia (kg·m²) about the axes of the body frame.
     ///
-    /// A body of revolution has its axis along `x`, so that its free rotation is exact.
+    /// A body of revolution must have its axis along `x`; its free rotation is then exact.
     type Inertia = Vec3<R>;
     type Tangent = Vec3<R>;
     type TangentPlane = Vec3<R>;
@@ -62,7 +62,7 @@ impl<R: Real> Space for Spatial<R> {
     fn velocity_at(spin: Vec3<R>, arm: Vec3<R>) -> Vec3<R> {
         spin.cross(arm)
     }
-    /// The length itself, with a margin for rounding.
+    /// Returns the length itself, with a margin for rounding.
     #[inline(always)]
     fn length_bound(vector: Vec3<R>) -> R {
         vector.length() * R::splat(1.0 + 1e-15)
@@ -83,8 +83,8 @@ impl<R: Real> Space for Spatial<R> {
     fn turn(orientation: Quaternion<R>, spin: Vec3<R>, time: R) -> Quaternion<R> {
         Quaternion::turn(spin * time).after(orientation).normalized()
     }
-    /// The rotation vector, by the series of `asin s / s`: better than 1e-14 rad below 0.2 rad, and an underestimate
-    /// of larger rotations.
+    /// Returns the rotation vector, by the series of `asin s / s`: accurate to 1e-14 rad below 0.2 rad, and too small
+    /// for larger rotations.
     #[inline(always)]
     fn turn_between(from: Quaternion<R>, to: Quaternion<R>) -> Vec3<R> {
         let turn = to.after(from.back());
@@ -98,7 +98,8 @@ impl<R: Real> Space for Spatial<R> {
         // A quaternion and its negative are the same rotation.
         turn.v * (series * R::select(turn.w.lt(R::zero()), -two, two))
     }
-    /// From the chord `d = 2 sin(θ/4)` between the quaternions, at most √2, where the arc is 1.1108 times as long.
+    /// Computes an upper bound from the chord `d = 2 sin(θ/4)` between the quaternions. The chord is at most √2, where
+    /// the arc is 1.1108 times as long.
     #[inline(always)]
     fn angle_between(a: Quaternion<R>, b: Quaternion<R>) -> R {
         let square = |w: R, v: Vec3<R>| w * w + v.dot(v);
@@ -113,7 +114,8 @@ impl<R: Real> Space for Spatial<R> {
     fn momentum(inertia: Vec3<R>, rotation: Rotation3<R>, spin: Vec3<R>) -> Vec3<R> {
         rotation.apply(rotation.unapply(spin).times(inertia))
     }
-    /// Refined once: a matrix is orthogonal up to rounding, and a systematic error would accumulate over a run.
+    /// Refines the result once: a rotation matrix is orthogonal only up to rounding, and a systematic error would
+    /// accumulate over a run.
     #[inline(always)]
     fn spin_of(inertia: Vec3<R>, orientation: Quaternion<R>, momentum: Vec3<R>) -> Vec3<R> {
         let rotation = orientation.matrix();
@@ -121,16 +123,17 @@ impl<R: Real> Space for Spatial<R> {
         let missing = momentum - Self::momentum(inertia, rotation, spin);
         spin + Self::spin_rate(inertia, rotation, missing)
     }
-    /// Free rotation in momentum form: the angular momentum **L** is conserved, and the kinetic energy
+    /// Computes the free rotation in momentum form: the angular momentum **L** is conserved, and the kinetic energy
     ///
     /// ```text
     /// T = ½ (Π₁²/I₁ + (Π₂² + Π₃²)/I₂) + ½ Π₃² (1/I₃ − 1/I₂)      Π = Rᵀ L
     /// ```
     ///
-    /// is the sum of that of a body of revolution, whose motion is exact (rotation about **L** at `L/I₂` and about
-    /// its own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates it about its third axis. Half of the
-    /// remainder, the body of revolution, the other half: symplectic, reversible, of second order, and exact for a
-    /// body of revolution (after Touma and Wisdom 1994, and Fassò 2003).
+    /// is the sum of that of a body of revolution, whose motion is exact (rotation about **L** at `L/I₂` and about its
+    /// own axis at `Π₁ (1/I₁ − 1/I₂)`), and of a remainder, which rotates the body about its third axis. A step applies
+    /// half of the remainder, the body of revolution, and the other half of the remainder. This splitting is
+    /// symplectic, reversible, of second order, and exact for a body of revolution (after Touma and Wisdom 1994, and
+    /// Fassò 2003).
     #[inline(always)]
     fn coast(
         inertia: Vec3<R>,
@@ -162,8 +165,8 @@ impl<R: Real> Space for Spatial<R> {
         let turned = turned.normalized();
         (turned, Self::spin_of(inertia, turned, momentum))
     }
-    /// The inverse of the derivative of the exponential map, to the order that methods of fourth order need: `ω − ½ u
-    /// × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
+    /// Applies the inverse of the derivative of the exponential map, to the order that fourth-order methods need: `ω −
+    /// ½ u × ω + ¹⁄₁₂ u × (u × ω)` (Munthe-Kaas 1999).
     #[inline(always)]
     fn turn_rate(turned: Vec3<R>, spin: Vec3<R>) -> Vec3<R> {
         let once = turned.cross(spin);
@@ -171,7 +174,7 @@ impl<R: Real> Space for Spatial<R> {
     }
     fn least_inertia(inertia: Vec3<R>, lane: usize) -> f64 {
         let Vec3 { x, y, z } = inertia.lane(lane);
-        // `min` would drop NaN, which must be reported as the smallest.
+        // `min` would drop a NaN, which must be returned so that the model is rejected.
         if x.is_nan() || y.is_nan() || z.is_nan() { f64::NAN } else { x.min(y).min(z) }
     }
     #[inline(always)]
@@ -191,11 +194,11 @@ impl<R: Real> Space for Spatial<R> {
     fn tangent_plane(rotation: Rotation3<R>, normal: Vec3<R>) -> Vec3<R> {
         rotation.apply(normal)
     }
-    /// Turns the vector by the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n · n′)`: a vector
-    /// in the old plane keeps its length, and the result is always in the new plane.
+    /// Rotates the vector by the smallest rotation from one normal to the other, `s′ = s − (n + n′) (s · n′) / (1 + n ·
+    /// n′)`: a vector in the old plane keeps its length, and the result is always in the new plane.
     #[inline(always)]
     fn carry(tangent: Vec3<R>, from: Vec3<R>, to: Vec3<R>) -> Vec3<R> {
-        // For opposite normals, the tangent lies in both planes.
+        // For opposite normals the two planes coincide, so the tangent lies in both.
         let least = R::splat(1e-9);
         let scale = (R::splat(1.0) + from.dot(to)).max(least);
         tangent - (from + to) * (tangent.dot(to) / scale)

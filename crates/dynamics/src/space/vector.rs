@@ -1,4 +1,4 @@
-//! Vectors of space and their rotations: unit quaternions, which are integrated, and matrices.
+//! Vectors in space and their rotations: unit quaternions, which are integrated, and matrices.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
@@ -6,14 +6,14 @@ use super::Linear;
 use crate::math;
 use crate::real::Real;
 
-/// A vector of space.
+/// A vector in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vec3<R = f64> {
-    /// To the right.
+    /// Component to the right.
     pub x: R,
-    /// Away from the viewer.
+    /// Component away from the viewer.
     pub y: R,
-    /// Up.
+    /// Component upward.
     pub z: R,
 }
 
@@ -68,7 +68,7 @@ impl<R: Real> Vec3<R> {
             R::select(mask, yes.z, no.z),
         )
     }
-    /// Returns the unit vector in its direction; `instead` if it has no length.
+    /// Returns the unit vector in the direction of this vector; `instead` if its length is zero.
     #[inline(always)]
     #[must_use]
     pub fn unit_or(self, instead: Self) -> Self {
@@ -126,7 +126,7 @@ impl<R: Real> Linear<R> for Vec3<R> {
     }
 }
 
-/// A unit quaternion: from the body frame to the outer frame.
+/// A unit quaternion, which rotates from the body frame to the outer frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion<R = f64> {
     /// Cosine of half the angle.
@@ -142,7 +142,7 @@ impl<R: Real> Quaternion<R> {
         Self { w: R::splat(1.0), v: Vec3::default() }
     }
 
-    /// Creates the rotation about a vector by its length (rad), right-handed.
+    /// Creates the right-handed rotation about a vector by the angle (rad) of its length.
     #[inline(always)]
     pub fn turn(turn: Vec3<R>) -> Self {
         let square = turn.dot(turn) * R::splat(0.25);
@@ -160,7 +160,7 @@ impl<R: Real> Quaternion<R> {
         }
     }
 
-    /// Normalizes the length: every product of two adds a rounding error.
+    /// Returns the quaternion with unit length, since every product of two adds a rounding error.
     #[inline(always)]
     #[must_use]
     pub fn normalized(self) -> Self {
@@ -175,8 +175,8 @@ impl<R: Real> Quaternion<R> {
         Self { w: self.w, v: -self.v }
     }
 
-    /// Returns the rotation matrix, corrected for a length that rounding has changed: a systematic error of 1e-16
-    /// would be a drift of the angular momentum.
+    /// Returns the rotation matrix, corrected for the rounding error of the length, since a systematic error of 1e-16
+    /// would make the angular momentum drift.
     #[inline(always)]
     pub fn matrix(self) -> Rotation3<R> {
         let (w, Vec3 { x, y, z }) = (self.w, self.v);
@@ -204,10 +204,10 @@ impl<R: Real> Quaternion<R> {
     }
 }
 
-/// A rotation matrix of space.
+/// A rotation matrix in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation3<R = f64> {
-    /// Its rows.
+    /// Rows of the matrix.
     pub rows: [Vec3<R>; 3],
 }
 
@@ -223,7 +223,7 @@ impl<R: Real> Rotation3<R> {
         let [x, y, z] = self.rows;
         Vec3::new(x.dot(v), y.dot(v), z.dot(v))
     }
-    /// Rotates a vector back.
+    /// Applies the inverse rotation to a vector.
     #[inline(always)]
     pub fn unapply(self, v: Vec3<R>) -> Vec3<R> {
         let [x, y, z] = self.rows;
@@ -242,11 +242,11 @@ impl<R: Real> Rotation3<R> {
     #[inline(always)]
     #[must_use]
     pub fn after(self, inner: Self) -> Self {
-        // Not by `map`, which the compiler turns into calls.
+        // Written without `map`, which the compiler does not inline here.
         let [x, y, z] = self.rows;
         Self { rows: [inner.unapply(x), inner.unapply(y), inner.unapply(z)] }
     }
-    /// Returns one lane.
+    /// Returns the matrix in one lane.
     pub fn lane(self, lane: usize) -> Rotation3 {
         let [x, y, z] = self.rows;
         Rotation3 { rows: [x.lane(lane), y.lane(lane), z.lane(lane)] }

@@ -1,4 +1,4 @@
-//! Helpers shared by the suites.
+//! Helpers shared by the test modules.
 #![allow(dead_code, unused_imports, unreachable_pub, reason = "every suite uses its own share")]
 
 use barrelstack_dynamics::space::Linear as _;
@@ -8,7 +8,7 @@ use proptest::test_runner::{Config as ProptestConfig, RngSeed};
 pub use barrelstack_scenes::GRAVITY;
 pub use barrelstack_scenes::scene::*;
 
-/// Returns every method, the adaptive one with a tolerance (m).
+/// Returns all integration methods, the adaptive one with a tolerance (m).
 pub fn every_method(tolerance: f64) -> [Method; 4] {
     [
         Method::SemiImplicitEuler,
@@ -31,7 +31,7 @@ pub fn bits(state: &State<Planar>) -> Vec<u64> {
     bits
 }
 
-/// Returns the six numbers of a body's motion.
+/// Returns the six numbers that describe the pose and twist of a body.
 pub fn numbers(pose: &Pose<Planar>, twist: &Twist<Planar>) -> [f64; 6] {
     [
         pose.position.x,
@@ -55,7 +55,7 @@ pub fn assert_close(what: &str, found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// Settings of random tests: a few cases, always the same.
+/// Returns the settings of property tests with a number of cases, which are the same in every run.
 pub fn cases(cases: u32) -> ProptestConfig {
     ProptestConfig {
         cases,
@@ -65,7 +65,7 @@ pub fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Pseudorandom numbers between -1 and 1, always the same.
+/// Generator of pseudorandom numbers between -1 and 1, which are the same in every run.
 pub struct Dice(pub u64);
 
 impl Dice {

@@ -1,4 +1,4 @@
-//! Errors of the ground motion of a scenario.
+//! Errors in reading or scaling the ground motion of a scenario.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub enum GroundError {
     Unreadable {
         /// The path that was tried.
         path: PathBuf,
-        /// Message of the system.
+        /// Message of the operating system.
         reason: String,
         /// Advice on obtaining the file, as a clause that continues the reason; may be empty.
         obtain: String,
@@ -20,13 +20,13 @@ pub enum GroundError {
     /// The file is not a record.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The record lacks the component, or cannot be scaled so.
+    /// The record lacks the component, or cannot be scaled as specified.
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The record has no vertical component of the requested name.
-    #[error("{error}; for a record without one say `motion.vertical = false`")]
+    #[error("{error}; for a record without a vertical component set `motion.vertical = false`")]
     Vertical {
-        /// The missing and the available components.
+        /// Error that names the missing component and the available ones.
         error: MotionError,
     },
     /// There is no bundled record of this name.
@@ -37,9 +37,9 @@ pub enum GroundError {
         /// The available names.
         known: String,
     },
-    /// A unit that no file uses.
+    /// The unit is not one of acceleration files.
     #[error(
-        "motion.unit = {unit} m/s² is no unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
+        "motion.unit = {unit} m/s² is not a unit of acceleration files: use 1 g, 0.1 g, 1 m/s^2, \
          1 cm/s^2, 1 mm/s^2, 1 ft/s^2 or 1 in/s^2"
     )]
     Unit {

@@ -24,8 +24,8 @@ pub(super) fn harmonic(sine: &Sine) -> Result<GroundMotion, MotionError> {
 
 /// Creates a pulse with the peak that the scenario states.
 ///
-/// Each form is defined by an amplitude of acceleration or of velocity; if the scenario states
-/// the other one, the pulse is scaled to it.
+/// Each form is defined by an amplitude of acceleration or of velocity. If the scenario states another quantity, the
+/// pulse is scaled to it.
 pub(super) fn pulsed(pulse: &Pulse) -> Result<GroundMotion, MotionError> {
     let period = pulse.period;
     let (acceleration, velocity) = (1.0, 1.0);

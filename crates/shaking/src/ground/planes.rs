@@ -1,13 +1,14 @@
-//! The two horizontal components of a record, one for each plane of a stack.
+//! The other horizontal component of a record, for the other plane of a stack.
 
 use super::record::read;
 use super::{GroundError, component_of, of_spec};
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, Scale};
 
-/// Returns the motion of the other horizontal component of the record, with the same factor; `None` if there is none.
+/// Returns the motion of the other horizontal component of the record, with the same scale factor; `None` if there is
+/// none.
 ///
 /// # Errors
-/// If the record cannot be read, or cannot be scaled accordingly.
+/// If the record cannot be read, or cannot be scaled as specified.
 pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundError> {
     let MotionSource::Record(record) = &spec.source else { return Ok(None) };
     let Some(component) = other(record)? else { return Ok(None) };
@@ -27,7 +28,7 @@ pub fn other_component(spec: &MotionSpec) -> Result<Option<MotionSpec>, GroundEr
 }
 
 /// Returns the clockwise angle (degrees, 0 to 360, viewed from above) from the component of a motion to the other
-/// horizontal one; `None` if no file states it.
+/// horizontal component; `None` if no file states it.
 ///
 /// # Errors
 /// If the record cannot be read, or lacks the requested component.
@@ -43,8 +44,8 @@ pub fn turn_to_other(spec: &MotionSpec) -> Result<Option<f64>, GroundError> {
     Ok(own.zip(other).map(|(own, other)| (other - own).rem_euclid(360.0)))
 }
 
-/// Returns the name of the other horizontal: of another channel that is not vertical, or of the perpendicular
-/// direction if the motion is rotated from two channels.
+/// Returns the name of the other horizontal component: that of another channel that is not vertical or, if the motion
+/// is rotated from two channels, that of the perpendicular direction.
 fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
     let record = read(spec)?;
     let own = record.component(&component_of(&record, spec.component.as_deref())?)?;
@@ -52,7 +53,7 @@ fn other(spec: &RecordMotion) -> Result<Option<String>, GroundError> {
         let across = own.direction.azimuth.map(|azimuth| (azimuth + 90.0).rem_euclid(360.0));
         return Ok(across.map(|azimuth| format!("az:{azimuth}")));
     };
-    // By number, since names may repeat.
+    // Channels are named by number, since their names may repeat.
     let mut others = record.channels.iter().enumerate().filter(|(other, _)| *other != at);
     let other = others.find(|(_, channel)| !channel.is_vertical());
     Ok(other.filter(|_| !own.is_vertical()).map(|(other, _)| format!("#{}", other + 1)))

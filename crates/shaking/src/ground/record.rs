@@ -1,4 +1,4 @@
-//! The record of a scenario: fetched, loaded, read.
+//! Loading and reading of the record of a scenario.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -10,10 +10,10 @@ use barrelstack_motion::{
 use super::GroundError;
 use crate::motion::{MotionSource, MotionSpec, RecordMotion, RecordSource, Vertical};
 
-/// Size (bytes) of the largest record that is read; the longest strong-motion files have a tenth of it.
+/// Size (bytes) of the largest record that is read; the longest strong-motion files are a tenth of that size.
 pub const RECORD_LIMIT: usize = 256 << 20;
 
-/// Returns a record as a loaded file.
+/// Returns a reference to a file in memory that contains a record.
 ///
 /// # Errors
 /// If the record has no channel, or channels of different steps.
@@ -23,26 +23,25 @@ pub fn held(record: &Record) -> Result<FileRef, MotionError> {
     Ok(file)
 }
 
-/// Reads a file from disk, for [`MotionSpec::with_files`]; `records.zip/a.AT2` is
-/// the file `a.AT2` inside an archive.
+/// Reads a file from disk, for [`MotionSpec::with_files`]; `records.zip/a.AT2` is the file `a.AT2` in an archive.
 ///
 /// # Errors
-/// A message if it cannot be read, or is larger than any record.
+/// A message if the file cannot be read, or is larger than [`RECORD_LIMIT`].
 pub fn from_disk(path: &Path) -> Result<Vec<u8>, String> {
     let Some((archive, inner)) = Archive::path_inside(path).filter(|_| !path.exists()) else {
         return system::read(path, RECORD_LIMIT);
     };
     let bytes = system::read(&archive, RECORD_LIMIT)?;
     let opened = Archive::open(bytes, &archive.display().to_string()).map_err(|e| e.to_string())?;
-    let opened = opened.ok_or_else(|| format!("{} is no archive", archive.display()))?;
+    let opened = opened.ok_or_else(|| format!("{} is not an archive", archive.display()))?;
     opened.file(&inner).map_err(|error| error.to_string())
 }
 
 impl MotionSpec {
-    /// Returns the motion with its files loaded by `fetch`, which is called with their paths; loaded files are not
-    /// fetched again.
+    /// Returns the motion with its files loaded by `fetch`, which is called with their paths; files that are already
+    /// loaded are not fetched again.
     ///
-    /// The error of `fetch` is a message like that of the system, such as "there is no such file".
+    /// The error of `fetch` is a message in the style of the operating system, such as "there is no such file".
     ///
     /// # Errors
     /// If `fetch` fails.
@@ -63,7 +62,7 @@ impl MotionSpec {
     }
 }
 
-/// Loads a file, unless it is loaded.
+/// Loads a file, unless it is already loaded.
 fn hold(
     file: &mut FileRef,
     obtain: &str,
@@ -147,8 +146,9 @@ pub(super) fn read_file(
     })
 }
 
-/// Returns whether a file lies outside the folder of the file that names it: a scenario of someone else must not
-/// make a message quote such a file.
+/// Returns `true` if a file lies outside the folder of the file that names it.
+///
+/// Messages do not quote such a file, since a scenario from someone else could name a private one.
 fn is_outside(file: &FileRef) -> bool {
     if file.is_of_caller() {
         return false;

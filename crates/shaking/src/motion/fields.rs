@@ -33,7 +33,7 @@ pub fn record_names() -> Vec<&'static str> {
     barrelstack_motion::BUNDLED.to_vec()
 }
 
-/// Periods from a microsecond to an hour.
+/// Periods, from a microsecond to an hour.
 const PERIOD: Kind =
     Kind::Quantity(&[Dimension::TIME], Range { least: 1e-6, above: false, greatest: 3600.0 });
 const FREQUENCY: Kind = Kind::Quantity(
@@ -122,17 +122,17 @@ table! {
 }
 
 table! {
-    /// Scaling of all components by one factor; one of the fields.
+    /// Scaling of all components by one factor, given by one of the fields.
     pub static SCALE = "scale";
-    /// Factor; a negative one turns the motion around.
+    /// Factor; a negative factor reverses the motion.
     factor = Kind::Number(Range { least: -1e6, above: false, greatest: 1e6 }),
-        Default::Derived("1 where nothing else scales the motion");
+        Default::Derived("1 unless another field scales the motion");
     /// Peak horizontal acceleration to reach.
     pga = Kind::Quantity(&[Dimension::ACCELERATION], Range::up_to(1e4)), Default::Nothing;
     /// Peak horizontal velocity to reach.
     pgv = Kind::Quantity(&[Dimension::VELOCITY], Range::up_to(1e3)), Default::Nothing;
-    /// Any other measure that grows with the motion, whose `value` shall be reached: `pgd`, `arias`, `cav`, `cav-std`,
-    /// `rms`, `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in seconds, damping 5 %) or `sa(1.0,0.02)`.
+    /// Any other measure that grows with the motion, to be scaled to `value`: `pgd`, `arias`, `cav`, `cav-std`, `rms`,
+    /// `housner`, `asi`, `vsi`, `fiv3(1.0)`, `sa(1.0)` (period in seconds, damping 5 %) or `sa(1.0,0.02)`.
     measure = Kind::Text, Default::Nothing;
     /// Value of `measure` to reach.
     value = Kind::Quantity(&[Dimension::ACCELERATION, Dimension::VELOCITY, Dimension::LENGTH], Range::up_to(1e4)),
@@ -157,7 +157,7 @@ table! {
     sine = Kind::Table(&SINE), Default::Nothing;
     /// A pulse.
     pulse = Kind::Table(&PULSE), Default::Nothing;
-    /// True for a ground at rest.
+    /// True for ground at rest.
     none = Kind::Flag, Default::Nothing;
     /// Horizontal component: a name, an azimuth, `horizontal-1` or `horizontal-2`.
     component = Kind::Label, Default::Derived("the first horizontal component");

@@ -1,4 +1,4 @@
-//! Specification of the ground motion: its source and its scaling.
+//! Specification of the ground motion of a scenario: its source and its scaling.
 
 use barrelstack_input::{FileRef, named};
 use barrelstack_motion::IntensityMeasure;
@@ -34,7 +34,7 @@ named! {
     pub enum Processing {
         /// The default processing of the motion library.
         Default = "default",
-        /// Samples as they are.
+        /// No processing: samples are used as they are.
         None = "none",
     }
 }
@@ -54,14 +54,14 @@ pub struct RecordMotion {
     pub unit: Option<f64>,
     /// Counts per m/s² for files that contain counts (s²/m).
     pub sensitivity: Option<f64>,
-    /// Processing.
+    /// Signal processing.
     pub processing: Processing,
     /// Advice on obtaining the file, for users who do not have it.
     pub obtain: Option<String>,
 }
 
 impl RecordMotion {
-    /// Specifies the first horizontal component of a record, with default processing.
+    /// Creates the specification of the first horizontal component of a record, with default processing.
     pub fn of(source: RecordSource) -> Self {
         Self {
             source,
@@ -181,17 +181,17 @@ pub enum MotionSource {
 /// Scaling of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
-    /// Multiplied by a factor; 1 leaves the motion as it is.
+    /// The motion is multiplied by a factor; 1 leaves it as it is.
     Factor(f64),
-    /// To this peak horizontal acceleration (m/s²).
+    /// The motion is scaled to this peak horizontal acceleration (m/s²).
     Pga(f64),
-    /// To this peak horizontal velocity (m/s).
+    /// The motion is scaled to this peak horizontal velocity (m/s).
     Pgv(f64),
-    /// To a value of any measure that grows with the motion.
+    /// The motion is scaled to a value of any measure that grows with it.
     Measure {
         /// The measure.
         measure: IntensityMeasure,
-        /// Its value to reach (SI).
+        /// Value of the measure to reach (SI units).
         value: f64,
         /// The component or components measured.
         of: MeasuredOn,
@@ -219,8 +219,8 @@ pub struct MotionSpec {
     pub source: MotionSource,
     /// Scaling, of all components by the same factor.
     pub scale: Scale,
-    /// Length scale `λ` of Froude similitude applied to the motion alone: time by `√λ`,
-    /// accelerations unchanged.
+    /// Length scale `λ` of Froude similitude, applied to the motion alone: times are multiplied by `√λ`, accelerations
+    /// are unchanged.
     pub similitude: f64,
 }
 

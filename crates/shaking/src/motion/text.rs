@@ -1,4 +1,4 @@
-//! Reads and writes `[motion]`.
+//! Reading and writing of the table `[motion]`.
 
 use barrelstack_input::reader::Reader;
 use barrelstack_input::tree::Table;
@@ -12,7 +12,7 @@ use super::{
     Scale, Sine, Vertical,
 };
 
-/// Returns a ground at rest.
+/// Returns the specification of ground at rest.
 pub fn rest() -> MotionSpec {
     MotionSpec { source: MotionSource::None, scale: Scale::Factor(1.0), similitude: 1.0 }
 }
@@ -114,8 +114,8 @@ fn read_measured(reader: &Reader<'_>) -> Result<Option<Scale>, InputError> {
         .map_err(|error: MotionError| reader.inconsistent("measure", error.to_string()))?;
     let Some(dimension) = dimension_of(measure) else {
         let message = format!(
-            "`{}`: {measure} cannot be scaled to; take a measure that grows with the motion and has a \
-             unit of acceleration, velocity or length",
+            "`{}`: a motion cannot be scaled to {measure}; choose a measure that grows with the motion \
+             and has a unit of acceleration, velocity or length",
             reader.path_of("measure")
         );
         return Err(reader.inconsistent("measure", message));

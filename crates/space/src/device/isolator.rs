@@ -1,7 +1,8 @@
-//! Isolators in space: a platform under every bottom rack on a bearing at each of its corners, flat or in a dish.
+//! Isolators in space: a platform under every bottom rack, with a bearing at each of its corners on a flat surface or
+//! in a dish.
 //!
-//! Springs and stops act at the middles of its four sides, so that they resist its rotation as well; with stops on
-//! all four, the corner of the range is further than the stroke.
+//! Springs and stops act at the middles of the four sides of the platform, so that they resist its rotation as well.
+//! Since they act separately across and along, the platform may travel farther than the stroke in a diagonal direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Isolators, Path};
@@ -15,7 +16,7 @@ use crate::builder::{Builder, TRIBUTARY};
 use crate::part::Part;
 use crate::stack::Stack;
 
-/// Raises the stack and installs the platforms under it.
+/// Raises the stack and installs the platforms under its bottom racks.
 pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     let Some(law) = builder.laws.bearing else { return };
     builder.raise(Isolators::BEARING + Isolators::PLATE);
@@ -39,7 +40,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
             }
         }
         for (side, end) in builder.sides(half.x, half.y) {
-            // The ends to the left and right guide along the barrels, those near and far across them.
+            // The ends to the left and right guide along the barrels, the near and far ends across them.
             let across = end.x == 0.0;
             let axis = if across { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
             let link = Link {
@@ -53,7 +54,7 @@ pub(super) fn place(device: &Isolators, builder: &mut Builder<'_>) {
     }
 }
 
-/// Adds a platform of half sides (m) about its center (m), on which a rack stands.
+/// Adds the platform of a rack, from its center (m) and half its sides (m).
 fn platform(
     device: &Isolators,
     builder: &mut Builder<'_>,

@@ -1,5 +1,4 @@
-//! Lids in space: as in both planes, and round, so that a barrel is released when it is out from under its lid to any
-//! side.
+//! Lids in space, which are round: a barrel is released once it has moved out from under its lid in any direction.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Lids, lowest};
@@ -8,7 +7,7 @@ use barrelstack_dynamics::{Link, Vec3};
 use super::Loose;
 use crate::builder::Builder;
 
-/// Installs one over every barrel of its levels.
+/// Installs a lid over every barrel of the protected levels.
 pub(super) fn place(device: &Lids, builder: &mut Builder<'_>) {
     for barrel in
         builder.on_levels_from(PartKind::Barrel, lowest(device.levels, builder.spec.levels))

@@ -1,7 +1,8 @@
-//! Devices on a stack in space: their attachment, one file each.
+//! Devices on a stack in space: how each of them is attached, one file each.
 //!
-//! The definition, loads, cost and words of a device are those of the plane; what acts in both planes acts in both
-//! directions here. Chocks come with the racks ([`tubes`](crate::rack::tubes)), pads with the contact laws.
+//! The definition, loads, cost and words of a device are those of the plane. A device that acts in both planes acts in
+//! both directions in space. Chocks are part of the racks ([`tubes`](crate::rack::tubes)), pads part of the contact
+//! laws.
 
 mod isolator;
 mod lid;
@@ -19,13 +20,13 @@ use barrelstack_dynamics::{
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// An element that is not fitted to the stack at rest yet.
+/// An element that has not yet been fitted to the stack at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
     element: Element<Spatial>,
-    /// Excess (m) of its length over the distance of its ends; negative under pretension.
+    /// Excess (m) of the length of the element over the distance of its ends; negative under pretension.
     give: f64,
-    /// `true` for a guide on a body that turns about its axis.
+    /// `true` for a guide on a body that may turn about the axis of the guide.
     about_axis: bool,
     words: &'static Words,
 }
@@ -35,7 +36,7 @@ impl Loose {
         Self { element: element.into(), give, about_axis: false, words }
     }
 
-    /// Fits the element to the stack as it stands.
+    /// Fits the element to the stack at rest.
     fn tighten(self, state: &State<Spatial>) -> Element<Spatial> {
         let Self { mut element, give, about_axis, .. } = self;
         element.fit(state, give);
@@ -70,7 +71,7 @@ impl Builder<'_> {
         self.turned(body).unapply(place - self.bodies[body].pose.position)
     }
 
-    /// Draws a line through positions (m) in the stack on a body.
+    /// Adds a line to the drawing of a body, through positions (m) in the stack.
     fn draw(&mut self, body: BodyId, line: &[Vec3]) {
         let line = line.iter().map(|place| self.within(body, *place)).collect();
         self.parts[body].lines.push(line);
@@ -85,7 +86,7 @@ impl Builder<'_> {
     /// Returns names and positions of the left and right ends at `±across` (m), and of the near and far ends at
     /// `±along` (m).
     ///
-    /// Mirroring swaps left and right, and with them the order of summation.
+    /// In a mirrored stack the right end comes before the left one, so that the order of summation is mirrored, too.
     fn sides(&self, across: f64, along: f64) -> [(&'static str, Vec3); 4] {
         let [left, right] =
             [("left", -across), ("right", across)].map(|(side, x)| (side, Vec3::new(x, 0.0, 0.0)));
@@ -94,7 +95,7 @@ impl Builder<'_> {
         if self.spec.mirror { [right, left, near, away] } else { [left, right, near, away] }
     }
 
-    /// Returns the rack at an offset of columns and rows from another, on its level.
+    /// Returns the rack on the same level at an offset of columns and rows from another rack.
     fn beside(&self, rack: BodyId, [columns, rows]: [i64; 2]) -> Option<BodyId> {
         let at = |id: BodyId| {
             let part = &self.parts[id];
@@ -107,7 +108,7 @@ impl Builder<'_> {
 }
 
 impl Stack {
-    /// Fits the elements to the stack as it stands in `state`; returns `true` if some are under load.
+    /// Fits the elements to the stack at rest in `state`; returns `true` if any of them is under load.
     pub(crate) fn fasten(&mut self, state: &mut State<Spatial>) -> Result<bool, ModelError> {
         let loose = std::mem::take(&mut self.loose);
         if loose.is_empty() {

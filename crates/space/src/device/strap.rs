@@ -1,10 +1,9 @@
-//! Straps in space: those of both planes, each at a position where it is vertical on the stack as drawn.
+//! Straps in space: those of both planes, each at a position where the strap is vertical on the undeformed stack.
 //!
-//! A strap over a barrel lies on its round at half its length, as in the plane across the barrels: attached at the
-//! ends of the horizontal diameter, and from there straight down to the rack.
-//! Where levels are tied together every rack has one strap down the middle of each of its four sides: those to the
-//! left and right are those of the plane across the barrels, those at the near and far sides those of the plane along
-//! them.
+//! A strap over a barrel runs around the barrel at half its length, as in the plane across the barrels: it is attached
+//! at the ends of the horizontal diameter, and leads from there straight down to the rack. Where levels are tied
+//! together, every rack has one strap down the middle of each of its four sides. Those to the left and right are the
+//! straps of the plane across the barrels, those at the near and far sides the straps of the plane along them.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Straps, Ties, lowest};
@@ -49,7 +48,7 @@ pub(super) fn place(device: &Straps, builder: &mut Builder<'_>) -> Result<(), As
     Ok(())
 }
 
-/// Adds one from a side of the upper body straight down to the lower one.
+/// Adds a strap from a side of the upper body straight down to the lower body.
 fn strap(
     device: &Straps,
     builder: &mut Builder<'_>,

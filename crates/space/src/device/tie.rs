@@ -1,5 +1,5 @@
-//! Ties in space: from the middles of the four sides of a rack; those to the left and right as in the plane across
-//! the barrels, those at the near and far sides as in the plane along them, whose left is near.
+//! Ties in space, from the middles of the four sides of a rack. Those to the left and right are as in the plane across
+//! the barrels, those at the near and far sides as in the plane along them, whose left side is the near side.
 
 use barrelstack::assemble::{AssembleError, PartKind, Similitude};
 use barrelstack::device::{Anchor, AnchorTies, Side, lowest};
@@ -9,7 +9,7 @@ use super::Loose;
 use crate::builder::Builder;
 use crate::stack::Stack;
 
-/// A side of a rack, before mirroring.
+/// A side of a rack in a stack that is not mirrored.
 struct End {
     name: &'static str,
     on: Side,

@@ -1,4 +1,4 @@
-//! Tuned masses in space: they swing in both directions, in each with the spring, damper and stops of a plane.
+//! Tuned masses in space, which swing in both directions, in each with the spring, damper and stops of a plane.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::TunedMass;
@@ -7,7 +7,7 @@ use barrelstack_dynamics::{Body, Link, Pose, Quaternion, Vec3};
 use crate::builder::Builder;
 use crate::part::Part;
 
-/// Installs one on every rack of its level, at the center of mass of the rack.
+/// Installs a tuned mass on every rack of one level, at the center of mass of the rack.
 pub(super) fn place(device: &TunedMass, builder: &mut Builder<'_>) {
     if !device.is_on() {
         return;
@@ -19,7 +19,7 @@ pub(super) fn place(device: &TunedMass, builder: &mut Builder<'_>) {
         }
         let name = format!("mass on {}", builder.parts[rack].name);
         let [half, rise] = TunedMass::HALF;
-        // Every force passes through its center, so it never turns.
+        // Every force passes through the center of the mass, so the mass never rotates and its inertia is irrelevant.
         let inertia = device.mass * half * half;
         let position = builder.bodies[rack].pose.position;
         let pose = Pose { position, orientation: Quaternion::identity() };

@@ -1,9 +1,8 @@
-//! Stops in space that keep racks from walking on the barrels below.
+//! Walking stops in space, which keep racks from walking on the barrels below.
 //!
-//! A hook acts along the axis of its barrel, which turns under it, at the height of the rack: it disengages once the
-//! rack is further from that axis, upward or around the barrel, than at rest by its lip.
-//! A saddle acts across the barrel, wherever along it the rack lies, and disengages once the rack has risen by its
-//! lip.
+//! A hook acts along the axis of its barrel, which may turn under the hook, at the height of the rack. It disengages
+//! once the distance of the rack from that axis exceeds the distance at rest by the lip. A saddle acts across the
+//! barrel, at any position of the rack along the barrel, and disengages once the rack has risen by the lip.
 
 use barrelstack::assemble::{PartKind, Similitude};
 use barrelstack::device::{Holds, WalkingStops, lowest};
@@ -13,7 +12,7 @@ use super::Loose;
 use crate::builder::Builder;
 use crate::rack::Heights;
 
-/// Installs stops between racks and each of the barrels below.
+/// Installs stops between every rack and each of the barrels below.
 pub(super) fn place(device: &WalkingStops, builder: &mut Builder<'_>) {
     if !device.is_on() {
         return;
@@ -68,7 +67,7 @@ fn saddle(device: &WalkingStops, builder: &mut Builder<'_>, [rack, barrel]: [Bod
     let top = builder.bodies[barrel].pose.position + Vec3::new(0.0, 0.0, size);
     for side in [-1.0, 1.0] {
         let at = |x: f64, z: f64| top + Vec3::new(side * x, 0.0, z);
-        // On the round, at the lateral reach of a saddle.
+        // On the surface of the barrel, at the lateral reach of a saddle.
         let foot = 0.7 * size + device.gap;
         builder.draw(rack, &[at(foot, 0.0), at(foot, -device.lip.max(0.25 * size))]);
     }

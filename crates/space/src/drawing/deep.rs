@@ -1,4 +1,4 @@
-//! A run in three dimensions, which a reader turns on a page.
+//! Three-dimensional scene of a run, which the reader of a page can turn.
 
 use barrelstack::assemble::PartKind;
 use barrelstack_dynamics::{Body, Element, Solid, Spatial, Vec3};
@@ -11,10 +11,10 @@ use crate::run::Run;
 /// Half the thickness (m) of parts of devices that are drawn as lines: an assumption.
 const PLATE: f64 = 0.012;
 
-/// Number of parts of the profile of a barrel.
+/// Number of steps of the profile of a barrel.
 const PARTS: u32 = 12;
 
-/// Returns the bodies at the frames of a picture, with the events of all views.
+/// Returns the bodies of a run at some frames, with the events of all views.
 pub(super) fn depth(run: &Run, frames: &[usize]) -> Depth {
     let bodies = run.stack.parts.iter().zip(run.stack.model.bodies());
     let own: Vec<usize> = (0..run.stack.parts.len()).collect();
@@ -43,7 +43,8 @@ fn point(of: Vec3) -> Point3 {
     [of.x, of.y, of.z]
 }
 
-/// Returns a body with its solids. Half-spaces are the floor of the picture, and dishes lie in it.
+/// Returns a body with its solids, without half-spaces, which are the floor of the picture, and dishes, which lie in
+/// the floor.
 fn drawn(part: &Part, body: &Body<Spatial>) -> DepthBody {
     let mut volumes: Vec<Volume> = Vec::new();
     let mut barrel = false;

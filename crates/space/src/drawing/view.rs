@@ -1,4 +1,4 @@
-//! Drawing of a body from a direction: outlines of its solids, and lines that show its rotation.
+//! Drawing of a body in a view direction: the outlines of its solids, and lines that show its rotation.
 
 use std::f64::consts::TAU;
 
@@ -8,10 +8,10 @@ use barrelstack_report::{Point, Polyline, Role, SceneBody};
 
 use crate::part::Part;
 
-/// Number of steps of direction per right angle.
+/// Number of steps of the view direction per right angle.
 const STEPS: f64 = 10.0;
 
-/// View of a body.
+/// View direction of a body, rounded to steps.
 pub(super) struct BodyView {
     /// Right and up axes of its drawing, in the body frame.
     axes: [Vec3; 2],
@@ -101,7 +101,7 @@ impl BodyView {
                         rings.flat_map(ring).map(|p| flat(place(p))).collect(),
                     )));
                     if from.x.abs() > 0.999 && self.kind == PartKind::Barrel {
-                        // As in the plane.
+                        // Same marks as in the plane.
                         marks = SceneBody::barrel(name, radius(0.0)).marks;
                     } else if self.kind == PartKind::Barrel {
                         // Hoops, on the visible side.
@@ -133,7 +133,7 @@ impl BodyView {
                             (axes[one] * cos + axes[other] * sin) * ball.radius
                         };
                         let near = |at: &u32| placed.rotation.apply(on(*at)).dot(from) >= -1e-9;
-                        // The visible half is one stretch: it starts after a hidden point.
+                        // The visible half is one stretch, which starts after a hidden point.
                         let start = (0..32).find(|at| near(at) && !near(&((at + 31) % 32)));
                         let start = start.unwrap_or(0);
                         let visible = (0..=32).map(|at| (start + at) % 32).take_while(near);

@@ -1,7 +1,7 @@
-//! The demo with the soft seats of the paper's contact nodes, on which stacks fall in a few seconds.
+//! The demo with seats as soft as the contact nodes of Candia et al. (2008), on which stacks fall within a few seconds.
 use barrelstack::Scenario;
 
-/// Constants of one contact node of the paper for every seat, and the friction of its cases.
+/// Changes that give every seat the constants of one contact node of Candia et al. (2008), and their friction.
 const SOFT: [&str; 12] = [
     "interface.rack-ground.basis=node",
     "interface.rack-ground.stiffness=980 kN/m",
@@ -19,7 +19,7 @@ const SOFT: [&str; 12] = [
 
 /// Returns the demo on soft seats, with further changes.
 pub(crate) fn soft_demo(changes: &[String]) -> Scenario {
-    // A change of the law of barrels on racks replaces all of it.
+    // A change of the law of barrels on racks replaces the whole law.
     let own = changes.iter().any(|change| change.starts_with("interface.barrel-rack."));
     let kept = |change: &&&str| !(own && change.starts_with("interface.barrel-rack."));
     let soft = SOFT.iter().filter(kept).map(|&change| change.to_owned());

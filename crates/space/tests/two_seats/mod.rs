@@ -1,5 +1,5 @@
-//! The smallest model of a rack that walks: a rigid block on two seats, each a spring with a damper that acts on approach and
-//! friction with an elastic stick, on ground that moves to and fro.
+//! The smallest model of a rack that walks: a rigid block on two seats, on oscillating ground. Each seat is a spring
+//! with a damper that acts on approach, and friction with an elastic stick.
 //!
 //! It shares no line with the program; its integrator is the semi-implicit one of Euler with steps of a microsecond.
 
@@ -11,12 +11,12 @@ pub(crate) const GRAVITY: f64 = 9.806_65;
 pub(crate) struct Cycle {
     /// Largest acceleration (m/s²).
     pub(crate) amplitude: f64,
-    /// Its time (s).
+    /// Period (s).
     pub(crate) period: f64,
 }
 
 impl Cycle {
-    /// Acceleration of the ground (m/s²) at a time (s) after the cycle begins.
+    /// Returns the acceleration of the ground (m/s²) at a time (s) after the cycle begins.
     pub(crate) fn acceleration(self, time: f64) -> f64 {
         if time < self.period {
             self.amplitude * (std::f64::consts::TAU * time / self.period).sin()
@@ -26,21 +26,22 @@ impl Cycle {
     }
 }
 
-/// Displacement (m) that a cycle leaves to a rigid block on rigid ground, which slides and does not rock (Newmark 1965).
+/// Returns the displacement (m) of a rigid block on rigid ground after one cycle; the block slides and does not rock
+/// (Newmark 1965).
 pub(crate) fn newmark(friction: f64, cycle: Cycle) -> f64 {
     let (step, limit) = (1e-6, friction * GRAVITY);
     let (mut x, mut v, mut time) = (0.0, 0.0_f64, 0.0);
     while time < cycle.period + 5.0 {
         let pull = -cycle.acceleration(time + 0.5 * step);
         if v == 0.0 && pull.abs() <= limit {
-            // It sticks, for good once the ground is still.
+            // The block sticks; once the ground is still, it stays.
             if time > cycle.period {
                 break;
             }
         } else {
             let way = if v == 0.0 { pull.signum() } else { v.signum() };
             let next = v + step * (pull - limit * way);
-            // Friction stops it and does not turn it round.
+            // Friction stops the block and does not reverse its motion.
             let next = if next * way < 0.0 { 0.0 } else { next };
             x += 0.5 * step * (v + next);
             v = next;
@@ -68,9 +69,10 @@ pub(crate) struct TwoSeats {
 }
 
 impl TwoSeats {
-    /// Displacement of the center of mass (m) that a cycle leaves, a second after it has ended; it starts at rest.
+    /// Returns the displacement of the center of mass (m) one second after the end of a cycle; the block starts at
+    /// rest.
     pub(crate) fn walk(self, cycle: Cycle) -> f64 {
-        // Springs are followed with at least a hundred steps to their period.
+        // Steps resolve the period of the springs with at least a hundred steps.
         let fastest = (2.0 * self.stiffness * (1.0 + self.stick) / self.mass).sqrt();
         let step = (0.02 / fastest).min(1e-5);
         let sunk = 0.5 * self.mass * GRAVITY / self.stiffness;

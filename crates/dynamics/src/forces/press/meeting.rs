@@ -12,7 +12,7 @@ use crate::state::State;
 /// Relative kinematics of two bodies in the frame of a surface of one of them.
 #[derive(Clone, Debug)]
 pub(crate) struct PairKinematics<S: Space> {
-    /// The contactor, the target, and the index of its surface.
+    /// The contactor, the target, and the index of the target's surface.
     of: [usize; 3],
     pub(super) frame: PairFrame<S>,
     motion: Motion<S>,
@@ -53,7 +53,7 @@ impl<S: Space> PairKinematics<S> {
         Self { of: [pair.contactor, pair.target, pair.surface], frame, motion }
     }
 
-    /// Returns the kinematics of a pair, reusing those of the pair before it if equal.
+    /// Returns the kinematics of a pair; reuses those of the previous pair if it has the same bodies and surface.
     #[inline(always)]
     pub(super) fn shared<'a>(
         last: &'a mut Option<Self>,
@@ -74,7 +74,7 @@ impl<S: Space> PairKinematics<S> {
     }
 }
 
-/// Two bodies at their contact, in the frame of the target's surface.
+/// Frame and relative motion of two bodies at their contact, in the frame of the target's surface.
 #[derive(Clone, Copy)]
 pub(super) struct Meeting<'a, S: Space> {
     frame: &'a PairFrame<S>,
@@ -93,7 +93,7 @@ impl<'a, S: Space> Meeting<'a, S> {
         self.motion.spin
     }
 
-    /// Returns the spin (rad/s) of the target, and that of the contactor relative to it.
+    /// Returns the spin (rad/s) of the target, and the spin of the contactor relative to the target.
     #[inline(always)]
     pub(super) fn spins(&self) -> [S::Spin; 2] {
         [self.motion.target_spin, self.motion.spin]
@@ -107,8 +107,8 @@ impl<'a, S: Space> Meeting<'a, S> {
 
     /// Returns the contact of a node at `node` (m, in the surface's frame), with kinematics but without forces.
     ///
-    /// The force acts on both bodies at the companion point of `node`, and both velocities are taken there, so the pair
-    /// conserves momentum, and force times relative velocity is the power it loses.
+    /// The force acts on both bodies at the companion point of `node`, and both velocities are taken there. So the pair
+    /// conserves momentum, and the power that it loses is the force times the relative velocity.
     #[inline(always)]
     pub(super) fn contact(
         &self,
@@ -138,7 +138,8 @@ impl<'a, S: Space> Meeting<'a, S> {
         }
     }
 
-    /// Returns the wrenches on contactor and target, in the inertial frame, of a wrench of the contactor's contacts.
+    /// Converts the wrench of all contacts on the contactor to the wrenches on contactor and target, in the inertial
+    /// frame.
     #[inline(always)]
     pub(super) fn on_bodies(&self, wrench: Wrench<S>) -> (Wrench<S>, Wrench<S>) {
         let rotation = self.frame.rotation;

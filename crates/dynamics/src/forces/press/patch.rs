@@ -31,7 +31,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Detects springs and dampers that change too abruptly for a whole step, and hard impacts.
+    /// Requests substeps in lanes where spring and damper would change too abruptly in a whole step, and detects hard
+    /// impacts.
     #[inline(always)]
     fn look_at_speed(&mut self, node: S::Vector, gap: Gap<S>) {
         let Some(fast) = self.fast else { return };
@@ -67,7 +68,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         ];
         let weight = S::Real::select(touching, self.elements.weights[first], zero);
         let (mut forces, mut stiffness) = ([(zero, zero); 3], zero);
-        // Energies at full share.
+        // Energies at a share of 1.
         let mut energies = [zero; 3];
         for (((depth, rate, count), (total, damped)), energy) in
             springs.into_iter().zip(&mut forces).zip(&mut energies)
@@ -131,10 +132,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         self.resist_rolling(normal_force);
     }
 
-    /// Adds the forces of points that bear together, whose sticks start at `first` in the list of elements.
+    /// Adds the forces of points that act like parallel springs, whose sticks start at `first` in the list of elements.
     ///
-    /// Friction acts about the center of pressure, at the root-mean-square distance of the points: so it carries
-    /// their moment, and its sticks persist whichever points bear.
+    /// Friction acts about the center of pressure, at the root-mean-square distance of the points. So it transfers the
+    /// same moment as friction at the points, and its sticks persist when other points touch.
     #[inline(always)]
     pub(super) fn points(&mut self, first: usize, points: &Points<S>) {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -216,7 +217,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Adds a share of the friction of a patch, `aside` (m) of its center of pressure.
+    /// Adds a share of the friction of a patch, at the offset `aside` (m) from its center of pressure.
     #[inline(always)]
     fn stick(&mut self, element: usize, at: &Pressure<S>, aside: S::Vector, share: S::Real) {
         let meeting = self.meeting;
@@ -260,7 +261,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
 }
 
 impl<S: Space> Spread<S> {
-    /// Returns the lanes in which more than the deepest point bears, at its distance (m).
+    /// Returns the lanes in which more than the deepest point is in contact, from the distance (m) of the deepest
+    /// point.
     #[inline(always)]
     fn bears(&self, deepest: S::Real) -> <S::Real as Real>::Mask {
         let (zero, middle) = (S::Real::zero(), self.middle.gap.distance);
@@ -279,7 +281,7 @@ struct Pressure<S: Space> {
     center: S::Vector,
     normal: S::Vector,
     normal_force: S::Real,
-    /// Factor of the constants of its sticks.
+    /// Factor of the constants of the sticks.
     stiffness: S::Real,
     depth: S::Real,
     rate: S::Real,

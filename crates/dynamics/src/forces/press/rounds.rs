@@ -6,18 +6,18 @@ use crate::real::{Mask, Real};
 use crate::shape::{Facing, Nearest, Surface};
 use crate::space::{Linear, Space, Wrench};
 
-/// Extra length (m) of a side for a corner of the body that leads, relative to one of the other: where two corners
-/// coincide, exactly one contact is counted.
+/// Length (m) by which a side is extended for corners of the leading body, and shortened for corners of the other body.
+/// So exactly one contact is counted where two corners coincide.
 const SLACK: f64 = 1e-9;
 
-/// Distance (m) from the end of a side beyond which a corner counts in full, whatever else is inside there.
+/// Distance (m) from the end of a side beyond which a corner counts in full, even if another corner is inside there.
 const COMPANION: f64 = 0.01;
 
 /// Sine of the angle past the limits of a round piece up to which it faces a side: 45°.
 const FACES: f64 = 0.7;
 
-/// Distance (m) outside of a core within which the center of a round piece still counts on the sides that it faces:
-/// where two bodies are flush, one of two nearly coincident corners lies there.
+/// Distance (m) outside of a core within which the center of a round piece still bears on the sides that the piece
+/// faces. Where two bodies are flush, one of two nearly coincident corners lies there.
 const NEARLY_INSIDE: f64 = 1e-5;
 
 /// Tolerance of the normal beyond the limits of a round piece, toward another round piece.
@@ -26,9 +26,9 @@ const LIMIT: f64 = 2e-7;
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     /// Adds the contacts of the round pieces of a convex boundary, each with its deepest point.
     ///
-    /// A round piece against a straight side is a contact of this pair wherever it is deepest or ends straight;
-    /// against a round piece it is one if each lies in the limits of the other, and then it belongs to the pair whose
-    /// contactor [leads](Press::leads).
+    /// A round piece touches a straight side wherever the piece is deepest or ends straight. Two round pieces touch if
+    /// each lies within the limits of the other; this contact belongs to the pair whose contactor
+    /// [leads](Press::leads).
     #[inline(always)]
     pub(super) fn rounds(&mut self, rounds: &[Round<S>], group: &Group, surface: &S::Surface) {
         let zero = S::Real::zero();
@@ -84,8 +84,8 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         }
     }
 
-    /// Returns the piece of a surface nearest to the center (m) of a round piece; if the center is inside the core,
-    /// the nearest piece that it can bear on.
+    /// Returns the piece of a surface nearest to the center (m) of a round piece; if the center is inside the core, the
+    /// nearest piece on which the round piece can bear.
     #[inline(always)]
     fn nearest(
         &self,
@@ -106,15 +106,15 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         surface.bearing(center, &facing, nearest)
     }
 
-    /// Returns the share with which a corner counts on a side near whose end the corner of the other body may itself
-    /// bear on a side of this one.
+    /// Returns the share of a corner that bears on a side near its end, where the corner at that end may bear on a side
+    /// of this body as well.
     ///
     /// Where two faces overlap slightly, both corners at the ends of the overlap are inside the other body. They are
-    /// one contact, which splits into two as they separate. The corner nearer to the end of the side before it, which
-    /// is the shallower of the two, has a share that decreases with its distance to that end, the other counts in
-    /// full; so neither begins or ends with a jump, at any depth.
-    /// Where two faces end together, one beyond the other by less than rounding, their corners coincide, and the one
-    /// further inside the other face is the contact; if neither is, that of the body that leads.
+    /// one contact, which splits into two as the overlap grows. The corner nearer to the end of the side that it bears
+    /// on, which is the shallower of the two, has a share that decreases to zero toward that end, and the other corner
+    /// counts in full. So neither begins or ends with a jump, at any depth. Where two faces end together to within
+    /// rounding, their corners coincide. The contact is then the corner that lies further inside the other face or, if
+    /// neither does, that of the leading body.
     #[inline(always)]
     fn share(&self, round: &Round<S>, nearest: &Nearest<S>, slack: S::Real) -> Share<S::Real> {
         let (zero, one) = (S::Real::zero(), S::Real::splat(1.0));
@@ -122,7 +122,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
         let near_end = to_end.lt(S::Real::splat(COMPANION));
         let mut partly = <S::Real as Real>::Mask::default();
         if near_end.any() {
-            // From this corner to the one at the end of the side before it.
+            // Vector from this corner to the corner at the end of the side on which it bears.
             let apart = nearest.toward_end * to_end - nearest.gap.normal * nearest.core;
             let apart = self.frame.to_contactor(apart);
             let toward = self.frame.to_contactor(-nearest.gap.normal);
@@ -135,7 +135,7 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
             }
             partly = partly & near_end;
         }
-        // 3 u² − 2 u³, so that the force begins and ends at zero.
+        // The share is 3 u² − 2 u³, so that the force begins and ends at zero.
         let u = to_end.max(zero) * S::Real::splat(1.0 / COMPANION);
         let slope = S::Real::splat(6.0 / COMPANION) * u * (one - u);
         Share {
@@ -145,10 +145,10 @@ impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
     }
 }
 
-/// Share of a contact in its energy.
+/// Share of a contact, and its derivative.
 struct Share<R> {
     value: R,
-    /// Derivative of the share with respect to the distance (1/m) to the end of the side: the corresponding decrease
-    /// of the energy is a force toward the end.
+    /// Derivative of the share (1/m) with respect to the distance to the end of the side. Since the energy changes with
+    /// the share, there is a force toward the end.
     slope: R,
 }

@@ -1,8 +1,8 @@
-//! Rows of nodes that bear as one seat.
+//! Rows of nodes that act as one seat.
 //!
-//! The depth of the seat is that of its deepest node: the laws are evaluated there, and their forces are divided
-//! among the touching nodes in proportion to their depths. So the number of nodes affects the location of the
-//! pressure, but not stiffness, damping or friction.
+//! The depth of the seat is that of its deepest node. The laws are evaluated at this depth, and their forces are
+//! divided among the touching nodes in proportion to the depths of the nodes. So the number of nodes affects the
+//! location of the pressure, but not stiffness, damping or friction.
 
 use crate::pair_frame::AtFace;
 use crate::real::Real;
@@ -11,7 +11,7 @@ use crate::space::Space;
 
 use super::{Laws, Press};
 
-/// Returns the gap if it counts, and an open gap otherwise.
+/// Returns the gap in lanes where the contact filter accepts it, and an open gap elsewhere.
 #[inline(always)]
 pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) -> Gap<S> {
     if let Some(face) = counted {
@@ -20,7 +20,7 @@ pub(super) fn counting<S: Space>(counted: Option<AtFace<S>>, mut gap: Gap<S>) ->
     gap
 }
 
-/// A row of nodes that bears as one seat.
+/// A row of nodes that acts as one seat.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Row<R> {
     /// The depth (m) of the deepest node.
@@ -30,7 +30,7 @@ pub(super) struct Row<R> {
 }
 
 impl<R: Real> Row<R> {
-    /// Adds a node whose gap counts.
+    /// Adds a node by its gap after [`counting`].
     #[inline(always)]
     pub(super) fn add<S: Space<Real = R>>(&mut self, gap: Gap<S>) {
         let depth = (-gap.distance).max(R::zero());
@@ -40,7 +40,7 @@ impl<R: Real> Row<R> {
 }
 
 impl<S: Space, L: Fn() -> Laws<S::Real>> Press<'_, S, L> {
-    /// Adds the forces of a node of a row that bears as one seat.
+    /// Adds the forces of a node of a row that acts as one seat.
     #[inline(always)]
     pub(super) fn of_row(
         &mut self,
