@@ -148,7 +148,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
     let turned = |axes: &str| -> Vec<(String, f64, f64)> {
         let out = folder.path().join(format!("{}.txt", axes.replace(':', "-")));
         let all = ["process", text(&file), "--chain", "none", "--rotate", axes, "-o", text(&out)];
-        assert!(printed(&all).contains("turned to"), "{axes}");
+        assert!(printed(&all).contains("rotated to"), "{axes}");
         let printed = printed(&["info", "--json", text(&out)]);
         let document: Value = serde_json::from_str(&printed).unwrap();
         let channel = |channel: &Value| {

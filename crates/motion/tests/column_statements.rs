@@ -184,7 +184,7 @@ fn pairs_of_time_and_value_beside_each_other_are_no_channels() {
             .collect()
     };
     let rows: String = (0..200).map(|k| row(k).trim_end_matches(", ").to_owned() + "\n").collect();
-    refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time to a row");
+    refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time per row");
 }
 
 #[test]

@@ -213,15 +213,15 @@ fn velocities_and_displacements_are_named_and_left_out() {
         let unit = if header.contains("m/s2") { 1.0 } else { 9.80665 };
         let peak = record.channels[0].pga() / unit;
         assert!((peak - 1.9).abs() < 0.1, "{header}: {peak}");
-        assert!(record.warnings.iter().any(|w| w.message.starts_with("left out")), "{header}");
+        assert!(record.warnings.iter().any(|w| w.message.contains("were ignored")), "{header}");
     }
     let tabs = "Time [sec]\tAcceleration [g]\tVelocity [cm/sec]\tDisplacement [cm]";
     assert_eq!(
         given(&format!("{tabs}\n{}", avd(1.0, "\t")), &ReadOptions::default()).channels.len(),
         1
     );
-    // Without names the numbers themselves show that one is the integral of another.
-    refused(&avd(1.0, " "), "is the integral of another");
+    // Without names the numbers themselves show that one the integral of another.
+    refused(&avd(1.0, " "), "the integral of another");
     refused(&format!("Time (s),Velocity (cm/s)\n{}", pairs(1.0)), "give the acceleration history");
     refused(&format!("Time (s),Acceleration (m/s)\n{}", pairs(1.0)), "a unit of acceleration");
 }
@@ -245,7 +245,10 @@ fn times_are_taken_in_their_unit_and_every_fault_has_its_own_reason() {
         assert!((record.channels[0].time_step / 0.005 - 1.0).abs() < 1e-9, "{header}");
         assert!((record.channels[0].pga() - 1.5 * 9.80665).abs() < 1e-3, "{header}");
     }
-    refused(&format!("time,acc (g)\n{}", pairs(1e3)), "a time column whose unit is stated");
+    refused(
+        &format!("time,acc (g)\n{}", pairs(1e3)),
+        "a time column with steps of a strong-motion record",
+    );
     refused(
         &format!("time (days),acc (g)\n{}", pairs(1.0)),
         "a time column in s, ms, us, ns or min",
@@ -256,8 +259,8 @@ fn times_are_taken_in_their_unit_and_every_fault_has_its_own_reason() {
     let rows = pairs(1.0);
     let lines: Vec<&str> = rows.lines().collect();
     let again = [&lines[..100], &lines[99..]].concat().join("\n");
-    refused(&format!("time (s),acc (g)\n{again}"), "0.495 s once more");
-    refused(&again, "0.495 s once more");
+    refused(&format!("time (s),acc (g)\n{again}"), "0.495 s again");
+    refused(&again, "0.495 s again");
     refused("time (s),acc (g)\n0.0,0.5\n", "a single row");
     for word in ["inf", "NaN", "-inf", "#N/A"] {
         for row in [0, 50] {
@@ -372,7 +375,7 @@ fn dates_that_cannot_be_read_are_reported_in_every_format_that_states_them() {
             record
                 .warnings
                 .iter()
-                .any(|warning| warning.message.contains("no date and time of a first sample"))
+                .any(|warning| warning.message.contains("not a date and time of the first sample"))
         };
         assert!(!warned(&before), "{file}");
         assert!(warned(&after), "{file}: {:?}", after.warnings);

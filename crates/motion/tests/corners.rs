@@ -73,18 +73,21 @@ fn a_record_without_noise_is_refused_corners_with_the_reason() {
     };
     let good = known(0.1, 12.0, 1);
     assert!(
-        refusal(&good, 0.5).contains("0.50 s of noise before the shaking, where 1 s are needed")
+        refusal(&good, 0.5).contains("0.50 s of noise before the shaking; at least 1 s are needed")
     );
-    assert!(refusal(&good, 77.0).contains("3.00 s after the arrival, where 5 s are needed"));
+    assert!(
+        refusal(&good, 77.0)
+            .contains("3.00 s of shaking after the arrival; at least 5 s are needed")
+    );
     let mut silent = good.clone();
     silent.acceleration[..2000].fill(0.0);
-    assert!(refusal(&silent, ARRIVAL).contains("below the file's last digit"));
+    assert!(refusal(&silent, ARRIVAL).contains("below the resolution of the file"));
     let weak = Channel {
         acceleration: good.acceleration.iter().take(2000).cycle().take(8000).copied().collect(),
         ..good
     };
     assert!(
-        refusal(&weak, ARRIVAL).contains("signal over noise falls to"),
+        refusal(&weak, ARRIVAL).contains("the signal-to-noise ratio falls to"),
         "{}",
         refusal(&weak, ARRIVAL)
     );
@@ -100,5 +103,5 @@ fn the_bundled_record_has_the_corners_of_an_independent_program() {
     assert!(octaves(east.high_pass, 0.1122).abs() < 1.0 / 3.0, "{east:?}");
     assert_eq!(east.low_pass, 40.0);
     let sentence = east.sentence(&NoiseCriterion::default());
-    assert!(sentence.contains("so short a noise says little below 0.35 Hz"), "{sentence}");
+    assert!(sentence.contains("too short to resolve frequencies below 0.35 Hz"), "{sentence}");
 }

@@ -32,7 +32,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
     for file in ["smc/corrected.smc", "smc/uncorrected.smc"] {
         let mut rows = bytes(file);
         rows.extend(b" 1.0000E+0 2.0000E+0 3.0000E+0 4.0000E+0\n 1.0000E+0\n");
-        same(file, &rows, "5 numbers stand behind");
+        same(file, &rows, "5 numbers follow");
         let mut zeros = bytes(file);
         zeros.extend([0_u8; 512]);
         assert_eq!(given(&zeros).channels, given(&bytes(file)).channels);
@@ -40,7 +40,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
         both.extend(b" 1.0000E+0\n");
         both.extend([0_u8; 80]);
         both.extend(b"\n");
-        same(file, &both, "1 numbers stand behind");
+        same(file, &both, "1 numbers follow");
         let mut words = bytes(file);
         words.extend(b"end of file\n");
         same(file, &words, "from this line to the last");
@@ -49,7 +49,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
         let cut: Vec<&str> = text.lines().collect();
         let cut = cut[..cut.len() - 2].join("\n");
         let error = read(cut.as_bytes(), "cut", &ReadOptions::default()).unwrap_err();
-        assert!(error.to_string().contains("the file is cut"), "{error}");
+        assert!(error.to_string().contains("the file is truncated"), "{error}");
     }
 }
 
@@ -63,15 +63,15 @@ fn numbers_in_excess_on_the_last_line_are_left_out() {
     let mut more: Vec<String> = lines.iter().map(ToString::to_string).collect();
     more[last] += "   .000000";
     more.insert(last + 1, "   .000000   .000000".to_owned());
-    same(file, more.join("\n").as_bytes(), "3 numbers stand behind the 103");
+    same(file, more.join("\n").as_bytes(), "3 numbers follow the 103");
 }
 
 #[test]
 fn formats_that_count_their_rows_leave_the_rest_out() {
     for (file, row, word) in [
-        ("afad/example.txt", "0.1 0.2 0.3\n", "the last 7 are left out"),
-        ("esm/example.ACC.ASC", "0.1\n", "the last 7 are left out"),
-        ("peer/nga-west2.AT2", " .1\n", "the last 7 are left out"),
+        ("afad/example.txt", "0.1 0.2 0.3\n", "the last 7 are ignored"),
+        ("esm/example.ACC.ASC", "0.1\n", "the last 7 are ignored"),
+        ("peer/nga-west2.AT2", " .1\n", "the last 7 are ignored"),
     ] {
         let mut more = bytes(file);
         for _ in 0..7 {

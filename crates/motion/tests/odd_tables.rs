@@ -188,7 +188,7 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
             },
         );
     let booked = format!("Time (s),Acceleration (m/s2)\n{booked}");
-    obeyed(&booked, "without marks around it", &whole);
+    obeyed(&booked, "write only the number", &whole);
     let thousands = whole.replacen("1.4", "1.013.4", 1);
     obeyed(&thousands, "several points", &whole);
     let quoted = format!(

@@ -198,7 +198,7 @@ fn parts_of_a_step_are_shifted() {
 #[test]
 fn channels_without_a_common_span_are_refused() {
     let error = Record::gather(&[wave("N", 0.0, 10), wave("E", 20.0, 10)]).unwrap_err();
-    assert!(error.to_string().contains("no span in common"), "{error}");
+    assert!(error.to_string().contains("no common time span"), "{error}");
 }
 
 /// Returns the sample with its channel's last letter, second of the start and location changed.
@@ -228,7 +228,7 @@ fn channels_of_one_seed_file_begin_together() {
     assert!(record.notes.join("\n").contains("begins 1.0000 s before"));
     let apart = [seed(b'E', 0, *b"00"), seed(b'N', 50, *b"00")].concat();
     let error = read(&apart, "apart.mseed", &options()).unwrap_err();
-    assert!(error.to_string().contains("no span in common"), "{error}");
+    assert!(error.to_string().contains("no common time span"), "{error}");
     // Two sensors in one file are read, but not combined.
     let sensors = [seed(b'E', 0, *b"00"), seed(b'N', 0, *b"10")].concat();
     let record = read(&sensors, "sensors.mseed", &options()).unwrap();
@@ -262,9 +262,7 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     refused(&one, &copy, "formats peer and smc");
     // On request they are combined, and the record states it.
     let mixed = Record::gather_mixed(&[one.clone(), copy]).unwrap();
-    assert!(
-        mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
-    );
+    assert!(mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("combined although")));
     // AT2 cannot represent commas and parentheses; it is the same event.
     let named = Record {
         event: "Somewhere, Valley (M 6.1), \u{d1}u\u{f1}oa".to_owned(),
@@ -279,7 +277,7 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     let again = read(write::at2(&unnamed).unwrap().as_bytes(), "n.at2", &options()).unwrap();
     assert_eq!((again.event.as_str(), again.station.as_str()), ("", ""));
     let kin = Record::gather(&[one, sample("peer/cut-header.AT2")]).unwrap();
-    assert!(kin.notes.join("\n").contains("taken for simultaneous"));
+    assert!(kin.notes.join("\n").contains("assumed to be simultaneous"));
 }
 
 #[test]
