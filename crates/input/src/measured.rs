@@ -214,7 +214,7 @@ impl Table {
     /// replaces a number, or empty.
     ///
     /// # Errors
-    /// The same as [`Table::required`]; empty cells and the word are accepted.
+    /// The same as for [`Table::required`]; empty cells and the word are accepted.
     pub fn entries(
         &self,
         name: &str,
@@ -294,7 +294,7 @@ impl Table {
     /// Returns the values of a required column (SI units), which must all be positive.
     ///
     /// # Errors
-    /// The same as [`Table::required`], and if a value is not positive.
+    /// The same as for [`Table::required`], and if a value is not positive.
     pub fn positive(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let values = self.required(name, dimension)?;
         if let Some(row) = values.iter().position(|value| *value <= 0.0) {

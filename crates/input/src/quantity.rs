@@ -89,7 +89,8 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or malformed.
+    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or
+    /// malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         match Self::readings(text, &[])?.as_slice() {
             [one] => Ok(*one),
@@ -132,7 +133,7 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// The same as [`Quantity::parse`], and if the dimension is not one of `wanted`.
+    /// The same as for [`Quantity::parse`], and if the dimension is not one of `wanted`.
     pub fn parse_as(text: &str, wanted: &[Dimension]) -> Result<Self, QuantityError> {
         let readings = Self::readings(text, wanted)?;
         if let Some(quantity) = readings.iter().find(|q| wanted.contains(&q.dimension)) {

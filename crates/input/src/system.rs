@@ -140,7 +140,7 @@ pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
 /// Reads a file of a results folder; unlike an input, the file may be replaced afterwards.
 ///
 /// # Errors
-/// The same as [`read`].
+/// The same as for [`read`].
 pub fn read_result(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     all_of(open_file(path)?, limit)
 }
@@ -305,7 +305,7 @@ pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// earlier versions untouched.
 ///
 /// # Errors
-/// The same as [`store`], with the path that failed.
+/// The same as for [`store`], with the path that failed.
 pub fn store_all<'a>(
     files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
 ) -> Result<(), (PathBuf, io::Error)> {

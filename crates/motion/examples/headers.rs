@@ -1,5 +1,5 @@
-//! Checks a million random tables and a million damaged headers. Run it with `cargo run --release
-//! --example headers -p barrelstack-motion -- 1000000`.
+//! Checks a million random tables and a million damaged headers. Run it with
+//! `cargo run --release --example headers -p barrelstack-motion -- 1000000`.
 
 #![allow(
     clippy::unwrap_used,

@@ -17,7 +17,7 @@ impl Channel {
     /// Returns the channel as a sampled motion that starts with the channel's initial velocity.
     ///
     /// # Errors
-    /// As [`Sampled::new`].
+    /// The same as for [`Sampled::new`].
     pub fn sampled(&self) -> Result<Sampled, MotionError> {
         let acceleration = self.acceleration.clone();
         Sampled::with_initial_velocity(self.time_step, acceleration, self.initial_velocity)
@@ -78,7 +78,7 @@ impl Record {
     /// With `nearly`, the best motion is accepted if the tolerance is not reached.
     ///
     /// # Errors
-    /// As [`GroundMotion::match_spectrum`], and if there is no such channel.
+    /// The same as for [`GroundMotion::match_spectrum`], and if there is no such channel.
     pub fn matched(
         &self,
         place: usize,
@@ -151,8 +151,8 @@ impl Record {
     /// is not reached.
     ///
     /// # Errors
-    /// As [`Record::horizontal_pair`]; if a setting is out of range, the measure is not `RotD50` or
-    /// `RotD100`, the motion does not move, or the tolerance is not reached.
+    /// The same as for [`Record::horizontal_pair`]; if a setting is out of range, the measure is
+    /// not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
     pub fn matched_pair(
         &self,
         measure: Horizontals,

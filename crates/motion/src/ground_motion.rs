@@ -51,7 +51,7 @@ impl GroundMotion {
     /// Creates a horizontal motion from equally spaced accelerations (m/s²), integrated from rest.
     ///
     /// # Errors
-    /// As [`Sampled::new`].
+    /// The same as for [`Sampled::new`].
     pub fn from_acceleration(
         name: impl Into<String>,
         time_step: f64,
@@ -107,7 +107,7 @@ impl GroundMotion {
     /// units).
     ///
     /// # Errors
-    /// As [`GroundMotion::scale_to`].
+    /// The same as for [`GroundMotion::scale_to`].
     pub fn scale_factor(&self, measure: IntensityMeasure, target: f64) -> Result<f64, MotionError> {
         measure.factor(target, &self.name, |factor| {
             if factor == 1.0 {

@@ -49,8 +49,8 @@ pub struct Processing {
     pub high_pass: Option<f64>,
     /// Low-pass corner (Hz), from one over the duration to the Nyquist frequency.
     pub low_pass: Option<f64>,
-    /// Order `n` of the Butterworth filter, applied forward and backward: gain `1/(1 +
-    /// (fc/f)^(2n))`, zero phase, half amplitude at the corner.
+    /// Order `n` of the Butterworth filter, applied forward and backward: gain
+    /// `1/(1 + (fc/f)^(2n))`, zero phase, half amplitude at the corner.
     pub order: u32,
     /// Treatment of the zero pads at both ends, `1.5 n/fc` seconds in total (Converse and Brady
     /// 1992).

@@ -123,7 +123,7 @@ impl Channel {
     /// Creates a channel by sampling a synthetic motion at steps of at most `time_step` (s).
     ///
     /// # Errors
-    /// As [`History::sampled`].
+    /// The same as for [`History::sampled`].
     pub fn of_history(
         name: &str,
         direction: Direction,
@@ -280,7 +280,7 @@ impl Record {
     /// provenance of the motion. The default processing leaves the numbers unchanged.
     ///
     /// # Errors
-    /// As [`History::sampled`].
+    /// The same as for [`History::sampled`].
     pub fn of_motion(motion: &GroundMotion, time_step: f64) -> Result<Self, MotionError> {
         let mut record = Self::new("synthetic", &motion.name, Stage::Corrected);
         record.event.clone_from(&motion.name);

@@ -106,7 +106,7 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
 /// The longer component is cut to the shorter one.
 ///
 /// # Errors
-/// As [`crate::response()`].
+/// The same as for [`crate::response()`].
 pub fn rotated_spectrum(
     time_step: f64,
     first: &[f64],

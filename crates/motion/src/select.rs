@@ -246,7 +246,8 @@ impl Record {
     /// Returns the channels of [`Record::horizontal_pair`], processed and cut to the same length.
     ///
     /// # Errors
-    /// As [`Record::horizontal_pair`]; if the time steps differ or a setting is out of range.
+    /// The same as for [`Record::horizontal_pair`]; if the time steps differ or a setting is out of
+    /// range.
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
         let (first, second) = self.horizontal_pair()?;
         let (mut first, mut second) = (first.clone(), second.clone());
@@ -260,7 +261,7 @@ impl Record {
     /// one, with the default processing for the record's stage.
     ///
     /// # Errors
-    /// As [`Record::ground_motion`].
+    /// The same as for [`Record::ground_motion`].
     pub fn default_motion(&self) -> Result<GroundMotion, MotionError> {
         let vertical = self.channels.iter().any(Channel::is_vertical);
         self.ground_motion(

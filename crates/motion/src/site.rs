@@ -56,8 +56,8 @@ impl Site {
     }
 }
 
-/// Parses latitude and longitude (degrees) from a text such as `35.525N, 117.365W`, `37.73 N 47.80
-/// E` or `34 25 09N, 118 25 34W`.
+/// Parses latitude and longitude (degrees) from a text such as `35.525N, 117.365W`,
+/// `37.73 N 47.80 E` or `34 25 09N, 118 25 34W`.
 pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     let upper = text.to_ascii_uppercase();
     let part = |letters: [char; 2]| {

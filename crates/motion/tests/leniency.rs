@@ -43,7 +43,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
         same(file, &both, "1 numbers follow");
         let mut words = bytes(file);
         words.extend(b"end of file\n");
-        same(file, &words, "from this line to the last");
+        same(file, &words, "from this line to the end");
         // A missing row stays an error.
         let text = String::from_utf8(bytes(file)).unwrap();
         let cut: Vec<&str> = text.lines().collect();

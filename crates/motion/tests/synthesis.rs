@@ -200,8 +200,8 @@ fn provenance_says_how_a_motion_was_made_in_words_and_units() {
     let fault = NearFault { pulse, start: 1.0, rest, crossover: 1.2 };
     assert_eq!(
         fault.motion(0.01, 3).unwrap().provenance[0],
-        "near-fault motion: Ricker wavelet of 2 m/s2 and period 0.5 s from 1 s on, around it the \
-         stochastic method above 1.2 of the pulse's frequency: magnitude 6 at 20 km, stress \
+        "near-fault motion: Ricker wavelet of 2 m/s2 and period 0.5 s from 1 s on, plus the \
+         stochastic method above 1.2 times the pulse frequency: magnitude 6 at 20 km, stress \
          parameter 70 bar, 3.5 km/s and 2.8 g/cm3 at the source, Q = 180 f^0.45, kappa 0.04 s, no \
          site amplification, seed 3"
     );

@@ -33,8 +33,8 @@ pub enum Pulse {
         /// Length of the half-wave (s).
         duration: f64,
     },
-    /// Acceleration `a = A sin(w t)` over one period; ends at rest with a displacement of `A
-    /// T²/(2π)`.
+    /// Acceleration `a = A sin(w t)` over one period; ends at rest with a displacement of
+    /// `A T²/(2π)`.
     OneSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
@@ -55,8 +55,8 @@ pub enum Pulse {
         /// Length of the pulse (s).
         duration: f64,
     },
-    /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, middle at `2 T` and length `4
-    /// T`.
+    /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, middle at `2 T` and length
+    /// `4 T`.
     ///
     /// Velocity and displacement return to zero, which makes this the safest pulse for tests.
     Ricker {
@@ -65,8 +65,8 @@ pub enum Pulse {
         /// Period `T` of the spectral peak (s).
         period: f64,
     },
-    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)` with middle at `2 γ T` and length `4 γ
-    /// T`.
+    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)` with middle at `2 γ T` and length
+    /// `4 γ T`.
     Gabor {
         /// Velocity amplitude `V` (m/s).
         velocity: f64,
@@ -93,11 +93,11 @@ pub enum Pulse {
         /// Period `T` (s).
         period: f64,
     },
-    /// Cycloidal pulse of type C with `cycles` main cycles in displacement: `v = V sin(w t + φ) - V
-    /// sin φ` up to `(n + 1/2 - φ/π) T` (Makris and Chang 2000).
+    /// Cycloidal pulse of type C with `cycles` main cycles in displacement:
+    /// `v = V sin(w t + φ) - V sin φ` up to `(n + 1/2 - φ/π) T` (Makris and Chang 2000).
     ///
-    /// The phase `φ` is chosen so that the displacement returns to zero; the peak velocity is `V (1
-    /// + sin φ)`.
+    /// The phase `φ` is chosen so that the displacement returns to zero; the peak velocity is
+    /// `V (1 + sin φ)`.
     CycloidC {
         /// Velocity amplitude `V` (m/s).
         velocity: f64,
@@ -406,8 +406,8 @@ fn mavroeidis_papageorgiou(
     }
 }
 
-/// Evaluates a Gabor wavelet. With `b = π/(γT)`: `∫ exp(-b²s²) cos(ws + ν) ds = Re[e^{iν} e^{-γ²}
-/// √π/(2b) erf(bs - iγ)]`.
+/// Evaluates a Gabor wavelet. With `b = π/(γT)`:
+/// `∫ exp(-b²s²) cos(ws + ν) ds = Re[e^{iν} e^{-γ²} √π/(2b) erf(bs - iγ)]`.
 fn gabor(velocity: f64, period: f64, gamma: f64, phase: f64, t: f64) -> Kinematics {
     let b = PI / (gamma * period);
     let w = TAU / period;

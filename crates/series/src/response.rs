@@ -230,7 +230,7 @@ impl ResponseSpectrum {
     /// Computes the response spectrum of accelerations (m/s²) with step `time_step` (s).
     ///
     /// # Errors
-    /// As [`response`].
+    /// The same as for [`response`].
     pub fn new(
         time_step: f64,
         acceleration: &[f64],

@@ -69,7 +69,7 @@ impl Sampled {
     /// Some corrected records state an initial velocity. The velocity then jumps at t = 0.
     ///
     /// # Errors
-    /// As [`Sampled::new`], or if the velocity is not finite.
+    /// The same as for [`Sampled::new`], or if the velocity is not finite.
     pub fn with_initial_velocity(
         time_step: f64,
         acceleration: Vec<f64>,

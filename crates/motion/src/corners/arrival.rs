@@ -12,9 +12,9 @@ const BEHIND: f64 = 0.1;
 /// the record.
 ///
 /// The record up to its first strong motion is modeled as two intervals of constant variance. They
-/// fit best if they meet at the arrival, where Akaike's criterion `k ln var(a₁…k) + (n − k − 1) ln
-/// var(a₍k₊₁₎…n)` is smallest (Maeda 1985). A second search, which ends shortly after the first
-/// result, finds a weak first arrival before a strong second one.
+/// fit best if they meet at the arrival, where Akaike's criterion
+/// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` is smallest (Maeda 1985). A second search, which
+/// ends shortly after the first result, finds a weak first arrival before a strong second one.
 pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     let level = math::mean(&a[..a.len().min(100)]);
     let peak = a.iter().fold(0.0_f64, |peak, a| peak.max((a - level).abs()));

@@ -150,9 +150,9 @@ fn read_block(
     source.end_of_channel(next, "UNCORRECTED ACCELEROGRAM")
 }
 
-/// Reads equally spaced values below a data line such as `31932 Accelerogram points at 100 pts/sec
-/// in units of g. Format: (8f9.6)` or `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.
-/// (UNITS: G)`.
+/// Reads equally spaced values below a data line such as
+/// `31932 Accelerogram points at 100 pts/sec in units of g. Format: (8f9.6)` or
+/// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC. (UNITS: G)`.
 fn read_equal(
     source: &Source<'_>,
     record: &mut Record,

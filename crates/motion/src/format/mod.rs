@@ -85,7 +85,7 @@ impl Format {
     /// reader on the same bytes.
     ///
     /// # Errors
-    /// As [`read`].
+    /// The same as for [`read`].
     pub fn read(
         &self,
         bytes: &[u8],

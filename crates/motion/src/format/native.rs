@@ -164,8 +164,8 @@ fn places(
     }
 }
 
-/// Parses a start and a site, such as `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude
-/// -122.28, sensor surface`.
+/// Parses a start and a site, such as
+/// `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.
 fn place(words: &str) -> Option<(Option<Utc>, Site)> {
     let (mut start, mut site) = (None, Site::default());
     for part in words.split(',').map(str::trim).filter(|part| !part.is_empty()) {

@@ -1,8 +1,9 @@
 //! Reader of TSPAIR and SLIST text, as written by FDSN web services, irisws-timeseries and `ObsPy`.
 //!
-//! Every block begins with the line `TIMESERIES NET_STA_LOC_CHA_Q, n samples, r sps, start, TSPAIR
-//! or SLIST, type, unit`. Lines of time and value, or values alone, follow. Spec: `EarthScope`,
-//! timeseries web service, output formats `ascii`, `ascii1` and `ascii2`.
+//! Every block begins with the line
+//! `TIMESERIES NET_STA_LOC_CHA_Q, n samples, r sps, start, TSPAIR or SLIST, type, unit`. Lines of
+//! time and value, or values alone, follow. Spec: `EarthScope`, timeseries web service, output
+//! formats `ascii`, `ascii1` and `ascii2`.
 
 use super::counts::{self, Samples, Unit};
 use super::source::{Source, parse_number, quoted};

@@ -60,8 +60,8 @@ const WINDOW_PEAK: f64 = 0.2;
 const WINDOW_END: f64 = 0.05;
 
 impl BooreSource {
-    /// Returns a source typical of western North America: 70 bar, 3.5 km/s, 2.8 g/cm³, `Q = 180
-    /// f^0.45`, κ = 0.04 s. `magnitude` is the moment magnitude and `distance` is in km.
+    /// Returns a source typical of western North America: 70 bar, 3.5 km/s, 2.8 g/cm³,
+    /// `Q = 180 f^0.45`, κ = 0.04 s. `magnitude` is the moment magnitude and `distance` is in km.
     pub fn western(magnitude: f64, distance: f64) -> Self {
         Self {
             magnitude,
@@ -191,7 +191,7 @@ impl BooreSource {
     /// 0.05 Hz).
     ///
     /// # Errors
-    /// As [`BooreSource::acceleration`].
+    /// The same as for [`BooreSource::acceleration`].
     pub fn motion(&self, time_step: f64, seed: u64) -> Result<GroundMotion, MotionError> {
         let a = self.acceleration(time_step, seed)?;
         let corner = (0.2 * self.corner_frequency()).max(0.05);

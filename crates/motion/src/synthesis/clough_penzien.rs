@@ -201,7 +201,7 @@ impl CloughPenzien {
     /// rest at its initial position.
     ///
     /// # Errors
-    /// As [`CloughPenzien::acceleration`].
+    /// The same as for [`CloughPenzien::acceleration`].
     pub fn motion(
         &self,
         envelope: &Envelope,

@@ -15,10 +15,16 @@
 //! There is one column per channel. Numbers have the fewest digits that read back to the same
 //! double.
 //!
-//! `# recorded:` states the start (UTC), location and sensor, once or for each channel: `start
-//! 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor
-//! surface, station Napa`. Unknown values are omitted. `# initial_velocity:` (m/s, one per channel)
-//! is written if any of them is not zero.
+//! `# recorded:` states the start (UTC), location and sensor, in one line for all channels or one
+//! line for each (wrapped here):
+//!
+//! ```text
+//! # recorded: start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12,
+//!             vs30 330, sensor surface, station Napa
+//! ```
+//!
+//! Unknown values are omitted. `# initial_velocity:` (m/s, one per channel) is written if any of
+//! them is not zero.
 //!
 //! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive
 //! upward; `horizontal` is a horizontal direction of unknown azimuth; a name alone has an unknown

@@ -59,8 +59,8 @@ pub(super) fn refuse(
     Ok(())
 }
 
-/// Returns `true` if a line about accelerations or their unit contains a factor, such as `acc*100
-/// (g)`, `acceleration x 1000`, `Acc. (1e-3 g)` or `in g, multiplied by 1000`.
+/// Returns `true` if a line about accelerations or their unit contains a factor, such as
+/// `acc*100 (g)`, `acceleration x 1000`, `Acc. (1e-3 g)` or `in g, multiplied by 1000`.
 fn is_multiplied(lower: &str) -> bool {
     let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
     let marks = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];

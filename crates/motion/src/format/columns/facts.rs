@@ -183,8 +183,8 @@ fn number_with_comma(text: &str) -> (String, Option<usize>) {
     }
 }
 
-/// Converts a header line (UTF-8, else Latin-1) to lower case without accents: `Pas
-/// d'échantillonnage` gives `pas d'echantillonnage`.
+/// Converts a header line (UTF-8, else Latin-1) to lower case without accents:
+/// `Pas d'échantillonnage` gives `pas d'echantillonnage`.
 pub(in crate::format) fn folded(raw: &[u8]) -> String {
     let text = std::str::from_utf8(raw).map_or_else(|_| latin1(raw), str::to_owned);
     text.trim().to_lowercase().chars().filter_map(plain_letter).collect()
@@ -263,8 +263,8 @@ pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
     Some((count(text)? as f64, step(text)?))
 }
 
-/// Returns the step (s) from a line that does not name it, such as `Sampling: 200 Hz`, `interval 5
-/// ms`, or `200 Hz` alone.
+/// Returns the step (s) from a line that does not name it, such as `Sampling: 200 Hz`,
+/// `interval 5 ms`, or `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
     let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
