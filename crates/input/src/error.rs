@@ -110,7 +110,7 @@ pub enum Problem {
     UnknownKey {
         /// The unknown key.
         key: String,
-        /// Table that contains the key, as labeled in messages.
+        /// Label of the table that contains the key, such as `[run]`.
         section: String,
         /// The most similar valid key.
         nearest: Option<String>,
@@ -122,7 +122,7 @@ pub enum Problem {
     ForeignKey {
         /// The key.
         key: String,
-        /// Table that contains the key, as labeled in messages.
+        /// Label of the table that contains the key, such as `[run]`.
         section: String,
         /// Name of the tag field.
         tag: String,
@@ -136,9 +136,9 @@ pub enum Problem {
     /// A required field is missing.
     #[error("`{field}` is missing from {section}; add {example}")]
     Missing {
-        /// The field.
+        /// Path of the field.
         field: String,
-        /// Table that lacks the field, as labeled in messages.
+        /// Label of the table that lacks the field, such as `[run]`.
         section: String,
         /// Text to add, with a valid value.
         example: String,
@@ -146,7 +146,7 @@ pub enum Problem {
     /// A value of the wrong type.
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// Expected type.
         expected: String,
@@ -156,7 +156,7 @@ pub enum Problem {
     /// A number without a unit, where a quantity is required.
     #[error("`{field}` needs a unit, found {found}; write for example {example}")]
     BareNumber {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// Value found.
         found: String,
@@ -166,7 +166,7 @@ pub enum Problem {
     /// A text that is not a quantity of the required dimension.
     #[error("`{field}`: {reason}; write for example {example}")]
     Quantity {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// The reason why the text is rejected.
         reason: QuantityError,
@@ -176,7 +176,7 @@ pub enum Problem {
     /// A number outside its range.
     #[error("`{field}` must be {range}, found {found}")]
     OutOfRange {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// The permitted range, in words.
         range: String,
@@ -186,7 +186,7 @@ pub enum Problem {
     /// A name that is not in the list of valid names.
     #[error("`{field}`: there is no \"{found}\"{}", suggestion(nearest.as_deref()))]
     UnknownName {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// Name found.
         found: String,
@@ -198,7 +198,7 @@ pub enum Problem {
     /// Two mutually exclusive fields are given.
     #[error("{section} has both `{first}` and `{second}`; keep one")]
     Exclusive {
-        /// Table that contains the fields, as labeled in messages.
+        /// Label of the table that contains the fields, such as `[run]`.
         section: String,
         /// Name of the first field.
         first: String,
@@ -208,7 +208,7 @@ pub enum Problem {
     /// None of several alternative fields is given.
     #[error("{section} needs one of {choices}")]
     OneOf {
-        /// Table that lacks the field, as labeled in messages.
+        /// Label of the table that lacks the field, such as `[run]`.
         section: String,
         /// The alternatives, joined.
         choices: String,

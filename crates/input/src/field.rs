@@ -160,7 +160,7 @@ impl Range {
         let bounds = (self.above, self.least == -VAST, self.greatest == VAST);
         let (least, greatest) = (plain(self.least), plain(self.greatest));
         match bounds {
-            (_, true, true) => format!("a number no larger than 1e12{unit} in size"),
+            (_, true, true) => format!("a number no larger than 1e12{unit} in magnitude"),
             (true, _, true) => format!("greater than {least}{unit} and below 1e12{unit}"),
             (false, _, true) => format!("at least {least}{unit} and below 1e12{unit}"),
             (true, _, false) => format!("greater than {least}{unit} and at most {greatest}{unit}"),

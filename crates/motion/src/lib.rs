@@ -54,7 +54,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
-    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
+    reason = "`!(x > 0.0)` also rejects NaN"
 )]
 
 #[macro_use]

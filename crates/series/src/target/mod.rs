@@ -54,11 +54,11 @@ pub enum TargetSpectrum {
     /// transition. Other damping ratios use the factor `B_M` of table 17.5-1, except for the peak
     /// ground acceleration.
     Asce7 {
-        /// `S_DS` (g).
+        /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,
-        /// `S_D1` (g).
+        /// Spectral acceleration at 1 s, `S_D1` (g).
         sd1: f64,
-        /// `T_L` (s).
+        /// Long-period transition `T_L` (s).
         long_period: f64,
         /// Damping ratio, 0.02 to 0.5.
         damping: f64,
@@ -107,7 +107,7 @@ pub enum TargetSpectrum {
     /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests, 5
     /// % damping. Defined from 0.1 Hz, where it is a tenth of the plateau, to 33.3 Hz.
     Ac156 {
-        /// `S_DS` (g).
+        /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,
         /// Height of attachment divided by roof height, 0 to 1.
         height_ratio: f64,
