@@ -52,10 +52,7 @@
 // Results must be bit-identical on every machine, so the system's transcendental functions are not
 // used (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-#![allow(
-    clippy::neg_cmp_op_on_partial_ord,
-    reason = "`!(x > 0.0)` also rejects NaN"
-)]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` also rejects NaN")]
 
 #[macro_use]
 mod printed;

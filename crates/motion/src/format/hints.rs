@@ -109,7 +109,9 @@ impl<'a> Hints<'a> {
         }
         let SeedName { network, station, location, channel } = seed;
         let at = start.map_or_else(String::new, |start| format!(" at {start}"));
-        format!("none for {network}.{station}.{location}.{channel}{at} among the {count} given")
+        format!(
+            "none for {network}.{station}.{location}.{channel}{at} among {count} channels with metadata"
+        )
     }
 
     pub(super) fn recorded(&self) -> Option<Quantity> {
