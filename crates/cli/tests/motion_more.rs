@@ -129,7 +129,7 @@ fn a_code_without_a_damping_correction_says_so() {
     let (file, out) = (record(folder.path()), folder.path().join("out.txt"));
     let to = "nzs1170:z=0.3,site=C,damping=0.1";
     let error = refused(&["match", text(&file), "--to", to, "-o", text(&out)]);
-    assert!(error.contains("for 5 % of damping"), "{error}");
+    assert!(error.contains("applies to 5 % damping only"), "{error}");
 }
 
 #[test]
