@@ -250,7 +250,7 @@ impl Processing {
         for (pass, corner) in [("high", corner), ("low", self.low_pass)] {
             steps.extend(corner.map(|fc| {
                 format!(
-                    "zero-phase Butterworth {pass}-pass, order {} forth and back, at {fc:.4} Hz",
+                    "zero-phase Butterworth {pass}-pass, order {} forward and backward, at {fc:.4} Hz",
                     self.order
                 )
             }));

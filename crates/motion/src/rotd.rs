@@ -30,7 +30,7 @@ impl RotatedPeak {
     ///
     /// ```
     /// use barrelstack_motion::{Direction, rotated_peak};
-    /// A motion to the north-west and to the south-east, by components N and E.
+    /// // A motion to the north-west and to the south-east, by components N and E.
     /// let peak = rotated_peak(&[1.0, -1.0], &[-1.0, 1.0]);
     /// let (north, east) = (Direction::parse("N"), Direction::parse("E"));
     /// assert_eq!(peak.azimuth(&north, &east), Some(135.0));
