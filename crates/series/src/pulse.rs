@@ -6,9 +6,10 @@ use crate::sampled::Kinematics;
 
 /// A motion given by a formula, starting at t = 0 from zero displacement.
 ///
-/// Every pulse ends at [`Pulse::duration`]. Afterwards the acceleration is zero, the velocity is
-/// constant and the displacement grows linearly; only after a sine does the ground stand still. In
-/// the formulas, `T` is the period, `w = 2π/T`, and `s` is the time from the middle of the pulse.
+/// Every pulse ends at [`Pulse::duration`]. Afterwards the acceleration is zero, the velocity keeps
+/// its final value and the displacement grows linearly. A [`Pulse::Sine`] is the exception: its
+/// velocity is zero after the end. In the formulas, `T` is the period, `w = 2π/T`, and `s` is the
+/// time from the middle of the pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pulse {
     /// Harmonic displacement `d = A sin(w t)` over `cycles` periods, with half-cosine ramps over

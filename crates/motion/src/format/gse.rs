@@ -85,7 +85,7 @@ fn section(source: &Source<'_>, head: usize) -> Result<(Samples, usize), ReadErr
         return Err(source.damaged((head, 48), expected, integers.len().to_string(), AGAIN));
     }
     let stated = source.number_after(end, "CHK2").ok_or_else(|| {
-        source.damaged(end, "a checksum behind CHK2", quoted(&source.text(end)), AGAIN)
+        source.damaged(end, "a checksum after CHK2", quoted(&source.text(end)), AGAIN)
     })?;
     let found = checksum(&integers);
     if stated != found as f64 {

@@ -86,7 +86,7 @@ fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
     };
     source.not_acceleration(
         (),
-        format!("an accelerometer behind channel {}", seed.channel),
+        format!("an accelerometer as the source of channel {}", seed.channel),
         found,
         "give the channel of an accelerometer, or correct InputUnits in its StationXML",
     )
