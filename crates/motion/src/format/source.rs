@@ -345,7 +345,7 @@ impl<'a> Source<'a> {
                 next,
                 format!(
                     "{more} numbers follow the {count} that the header states; they are \
-                     out"
+                     ignored"
                 ),
             );
         }
