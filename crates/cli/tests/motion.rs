@@ -425,7 +425,10 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["convert", columns], &["time step", "--time-step"]),
         (&["convert", timed], &["unit", "--unit"]),
         (&["convert", unstated, "--unit", "g"], &["line 3", "\"# unit: ...\"", "add the line"]),
-        (&["convert", columns, "--time-step", "0 s", "--unit", "g"], &["above 0", "give another"]),
+        (
+            &["convert", columns, "--time-step", "0 s", "--unit", "g"],
+            &["above 0", "give a positive number"],
+        ),
         (&["convert", timed, "--unit", "furlong"], &["--unit", "furlong", "cm/s2"]),
         (&["convert", columns, "--time-step", "0.01"], &["--time-step", "no unit", "0.01 s"]),
         (&["convert", first, "--component", "west"], &["west", "\"Up\""]),
@@ -443,7 +446,7 @@ fn mistakes_are_one_error_and_nothing_is_written() {
         (&["process", first, "--high-pass", "200 Hz"], &["high-pass", "Nyquist", "100 Hz"]),
         (
             &["process", first, "--low-pass", "1e-9 Hz"],
-            &["channel E: low-pass", "one over the duration, 0.02", "give a value in that range"],
+            &["channel E: low-pass", "one over the duration, 0.02", "give a value in this range"],
         ),
         (&["process", first, "--chain", "none"], &["does nothing"]),
         (&["match", first, "--to", "asce8:a=1"], &["asce8", "nzs1170"]),

@@ -129,7 +129,7 @@ fn a_code_without_a_damping_correction_says_so() {
     let (file, out) = (record(folder.path()), folder.path().join("out.txt"));
     let to = "nzs1170:z=0.3,site=C,damping=0.1";
     let error = refused(&["match", text(&file), "--to", to, "-o", text(&out)]);
-    assert!(error.contains("for 5 % of damping"), "{error}");
+    assert!(error.contains("applies to 5 % damping only"), "{error}");
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn horizontals_are_turned_to_a_fault_and_to_the_fastest_direction() {
     let turned = |axes: &str| -> Vec<(String, f64, f64)> {
         let out = folder.path().join(format!("{}.txt", axes.replace(':', "-")));
         let all = ["process", text(&file), "--chain", "none", "--rotate", axes, "-o", text(&out)];
-        assert!(printed(&all).contains("turned to"), "{axes}");
+        assert!(printed(&all).contains("rotated to"), "{axes}");
         let printed = printed(&["info", "--json", text(&out)]);
         let document: Value = serde_json::from_str(&printed).unwrap();
         let channel = |channel: &Value| {

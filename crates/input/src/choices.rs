@@ -1,4 +1,4 @@
-//! Closed sets in files: plain names, and variants with fields of their own.
+//! Closed sets in input files: plain names, and variants with fields of their own.
 
 use crate::InputError;
 use crate::field::{Section, Variant};
@@ -6,13 +6,13 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A variant of several, each with its own fields in the table that selects it; declared by
+/// A closed set of variants, each with its own fields in the table that selects it. Declared with
 /// [`choices!`](crate::choices!).
 pub trait Chosen: Sized {
     /// Returns all variants.
     fn variants() -> &'static [Variant];
 
-    /// Returns their names.
+    /// Returns the names of all variants.
     fn names() -> Vec<&'static str> {
         Self::variants().iter().map(|variant| variant.name).collect()
     }
@@ -20,13 +20,13 @@ pub trait Chosen: Sized {
     /// Returns the name of this variant.
     fn name(&self) -> &'static str;
 
-    /// Reads the variant that a table selects, with its fields.
+    /// Reads the variant that a table selects, including its fields.
     fn read_chosen(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes the fields of the variant.
+    /// Writes the fields of this variant.
     fn write_chosen(&self, writer: &mut Writer);
 
-    /// Writes a table that has only these fields.
+    /// Writes a complete table that has only the tag field and the fields of this variant.
     fn write_as(&self, section: &'static Section) -> Table {
         let mut writer = Writer::chosen(section, self.name());
         self.write_chosen(&mut writer);
@@ -34,7 +34,7 @@ pub trait Chosen: Sized {
     }
 }
 
-/// Declares a closed set whose members have names in files, in the order in which they are listed.
+/// Declares an enum whose members are written by name in files.
 ///
 /// ```
 /// use barrelstack_input::field::{Named, names};
@@ -70,11 +70,12 @@ macro_rules! named {
     };
 }
 
-/// Declares a type that is one of several with fields of their own: each with its name in files and its help, which
-/// is its doc comment, and its fields as in [`section!`](crate::section).
+/// Declares an enum whose variants have fields of their own in files.
 ///
-/// The variants are in the static that is named.
-/// A choice declared `among` the fields of a table stands in the field that chooses it there.
+/// Each variant is listed with its name in files and its fields, which are written as in
+/// [`section!`](crate::section). Its doc comment is also its help text. The definitions of the
+/// variants are stored in the static that is declared after the enum. A type declared
+/// `among the fields of` a table can be used as the type of the tag field of that table.
 ///
 /// ```
 /// use barrelstack_input::choices::Chosen;
@@ -155,11 +156,11 @@ macro_rules! choices {
                     $($name => Self::$variant $({
                         $($field: $crate::declared::Held::read(reader, stringify!($field))?,)+
                     })?,)+
-                    other => panic!("\"{other}\" is none of those declared"),
+                    other => panic!("\"{other}\" is not a declared variant"),
                 })
             }
 
-            #[allow(unused_variables, reason = "where none has fields")]
+            #[allow(unused_variables, reason = "unused if no variant has fields")]
             fn write_chosen(&self, writer: &mut $crate::writer::Writer) {
                 match self {
                     $(Self::$variant $({ $($field),+ })? => {
@@ -170,7 +171,7 @@ macro_rules! choices {
         }
 
         $(
-            #[doc = concat!("Read from the table `", stringify!($holder), "`, at whose end its own fields are written.")]
+            #[doc = concat!("Stored in the fields of the table `", stringify!($holder), "` itself.")]
             impl $crate::declared::Held for $type {
                 fn read(
                     reader: &$crate::reader::Reader<'_>,

@@ -1,4 +1,4 @@
-//! Single declaration of a table: the type, its fields, and how they are read and written.
+//! Declares a table once: its type, its fields, and how they are read and written.
 
 use crate::error::InputError;
 use crate::field::{Kind, Named, Section};
@@ -6,18 +6,18 @@ use crate::reader::Reader;
 use crate::tree::Table;
 use crate::writer::Writer;
 
-/// A type declared together with its fields in files; declared by [`section!`](crate::section).
+/// A type declared together with the fields of its table by [`section!`](crate::section).
 pub trait Declared: Sized {
     /// Returns the definition of the table.
     fn section() -> &'static Section;
 
-    /// Reads the fields; the caller checks their consistency and calls [`Reader::finish`].
+    /// Reads the fields. The caller checks that they are consistent and calls [`Reader::finish`].
     fn read_fields(reader: &Reader<'_>) -> Result<Self, InputError>;
 
-    /// Writes the fields, except those of the selected variant.
+    /// Writes the common fields, without those of the selected variant.
     fn write_fields(&self, writer: &mut Writer);
 
-    /// Starts the table.
+    /// Creates a writer for the table.
     fn start(&self) -> Writer {
         Writer::new(Self::section())
     }
@@ -25,14 +25,14 @@ pub trait Declared: Sized {
     /// Writes the fields of the selected variant.
     fn write_chosen(&self, _: &mut Writer) {}
 
-    /// Reads a table that has only these fields and no constraints between them.
+    /// Reads a table without constraints between its fields.
     fn read(reader: Reader<'_>) -> Result<Self, InputError> {
         let read = Self::read_fields(&reader)?;
         reader.finish();
         Ok(read)
     }
 
-    /// Writes a table that has only these fields.
+    /// Writes the complete table: the common fields, then those of the selected variant.
     fn write(&self) -> Table {
         let mut writer = self.start();
         self.write_fields(&mut writer);
@@ -41,25 +41,25 @@ pub trait Declared: Sized {
     }
 }
 
-/// A type that a field of a declared type may have.
+/// A Rust type that can hold the value of a field.
 pub trait Held: Sized {
-    /// Reads the field.
+    /// Reads the value of a field.
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError>;
 
-    /// Writes the field.
+    /// Writes the value of a field.
     fn write(&self, writer: &mut Writer, name: &'static str);
 
-    /// Reads the field; `None` if it is absent.
+    /// Reads the value of a field; returns `None` if the field is absent.
     fn read_optional(reader: &Reader<'_>, name: &'static str) -> Result<Option<Self>, InputError> {
         (!reader.leaves_out(name)).then(|| Self::read(reader, name)).transpose()
     }
 
-    /// Omits the field.
+    /// Marks a field as intentionally not written.
     fn omit(writer: &mut Writer, name: &'static str) {
         writer.omit(&[name]);
     }
 
-    /// Reads the field, falling back to `known`.
+    /// Reads the value of a field, or clones `known` if the field is absent.
     fn read_over(reader: &Reader<'_>, name: &'static str, known: &Self) -> Result<Self, InputError>
     where
         Self: Clone,
@@ -68,7 +68,7 @@ pub trait Held: Sized {
     }
 }
 
-/// A plain number, or a quantity in SI.
+/// A plain number, or a quantity in SI units.
 impl Held for f64 {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         if is_plain(reader.kind_of(name)) { reader.number(name) } else { reader.quantity(name) }
@@ -106,7 +106,7 @@ fn is_plain(kind: Kind) -> bool {
     matches!(kind, Kind::Number(_))
 }
 
-/// An optional field, or one that allows a word in place of the value.
+/// An optional value, or a field that accepts a word in place of the value.
 impl<T: Held> Held for Option<T> {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         T::read_optional(reader, name)
@@ -124,7 +124,7 @@ fn has_word(kind: Kind) -> bool {
     matches!(kind, Kind::WordOr(..))
 }
 
-/// Implements [`Held`] for a type by a reading and a writing function.
+/// Implements [`Held`] for types, each with its reading and its writing function.
 macro_rules! held {
     ($($type:ty: $read:expr, $write:expr;)*) => {$(
         impl Held for $type {
@@ -161,7 +161,8 @@ impl<T: Declared> Held for Vec<T> {
     }
 }
 
-/// A member of a closed set; if absent with a derived default, the first member, which the caller corrects.
+/// A member of a closed set. If the field is absent and its default is derived, the first member is
+/// returned as a placeholder, which the caller replaces.
 impl<T: Named> Held for T {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         if reader.leaves_out(name) { Ok(T::NAMES[0].1) } else { reader.choice(name) }
@@ -172,10 +173,11 @@ impl<T: Named> Held for T {
     }
 }
 
-/// Declares a type with the table that it is read from: each field once, with its type, its kind, its default
-/// and its doc comment, which is its help; `as` gives its key in files, if that differs.
+/// Declares a type and the table it is read from.
 ///
-/// A table whose further fields are selected `by` one of its fields says so, and the type of that field is declared by
+/// Each field is listed once with its type, its kind and its default; its doc comment is also its
+/// help text. `as` gives the key in files where it differs from the Rust name. `by` names the field
+/// that selects a variant with further fields; the type of that field is declared with
 /// [`choices!`](crate::choices!).
 ///
 /// ```
@@ -184,14 +186,14 @@ impl<T: Named> Held for T {
 /// use barrelstack_input::{Dimension, section};
 ///
 /// section! {
-///     /// A spring that ends when it tears.
+///     /// A spring that fails when its strength is exceeded.
 ///     #[derive(Clone, Debug, PartialEq)]
 ///     pub struct Spring;
 ///     /// A spring.
 ///     pub static SPRING = "spring";
 ///     /// Force per elongation.
 ///     stiffness: f64 = Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Required;
-///     /// Force above which it tears; without it it never does.
+///     /// Force above which the spring fails; unlimited if absent.
 ///     strength: Option<f64> = Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 /// }
 ///
@@ -280,27 +282,30 @@ macro_rules! section {
     };
 }
 
-/// Declares a table that is read by hand: each field once, with what it holds, what an absent one means, and its help,
-/// which is its doc comment; then the fields that depend on one of them, listed here or
-/// by [`choices!`](crate::choices!), and those of which at most one may be given.
+/// Declares a table that is read by hand-written code.
+///
+/// Each field is listed once with its kind and its default; its doc comment is its help text. `by`
+/// names the field that selects a variant, followed by the fields of each variant, or `of` refers
+/// to variants declared with [`choices!`](crate::choices!). `at most one of` lists mutually
+/// exclusive fields.
 ///
 /// ```
 /// use barrelstack_input::field::{Default, Field, Kind, Range};
 /// use barrelstack_input::table;
 ///
-/// const COUNT: Field = Field::new("count", Kind::Integer(1, 9), Default::Required, "How many.");
+/// const COUNT: Field = Field::new("count", Kind::Integer(1, 9), Default::Required, "Count.");
 ///
 /// table! {
-///     /// How values are drawn.
+///     /// Source of the values.
 ///     static DRAW = "draw";
-///     /// The form.
+///     /// Kind of source.
 ///     kind = Kind::Text, Default::Required;
 ///     by kind {
-///         /// One after the other.
+///         /// Values from a list.
 ///         "list" with [COUNT] {}
-///         /// At random.
+///         /// Random values.
 ///         "random" {
-///             /// Start of all numbers.
+///             /// Seed of the random numbers.
 ///             seed = Kind::Integer(0, 9), Default::Value("1");
 ///         } then [COUNT]
 ///     }
@@ -308,7 +313,7 @@ macro_rules! section {
 /// }
 ///
 /// let random = &DRAW.variants.as_ref().unwrap().list[1];
-/// assert_eq!((DRAW.fields[0].help, random.help), ("The form.", "At random."));
+/// assert_eq!((DRAW.fields[0].help, random.help), ("Kind of source.", "Random values."));
 /// assert_eq!(random.fields.iter().map(|field| field.name).collect::<Vec<_>>(), ["seed", "count"]);
 /// ```
 #[macro_export]
@@ -351,8 +356,8 @@ macro_rules! table {
     };
 }
 
-/// A list of fields in the words of [`table!`](crate::table): each once, under its name or the key in its place, between
-/// others that are known.
+/// Expands to an array of fields in the syntax of [`table!`](crate::table), between the existing
+/// fields listed after `with` and `then`.
 #[macro_export]
 macro_rules! fields {
     (
@@ -373,7 +378,7 @@ macro_rules! fields {
     };
 }
 
-/// The first of some, for what may be left out of a declaration.
+/// Expands to the first of its arguments; used for optional parts of declarations.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! first {

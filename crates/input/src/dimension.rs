@@ -1,9 +1,10 @@
-//! Physical dimensions, as exponents of length, mass, time and angle.
+//! Physical dimensions, represented by their exponents of length, mass, time and angle.
 
 use std::fmt;
 use std::ops::{Add, Neg};
 
-/// Exponents of length, mass, time and angle, **in halves**, which includes the Hertz stiffness (N/m^1.5).
+/// A physical dimension: exponents of length, mass, time and angle, **in halves**, since the Hertz
+/// stiffness (N/m^1.5) has a half power of length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
     length: i8,
@@ -12,7 +13,7 @@ pub struct Dimension {
     angle: i8,
 }
 
-/// A dimension with a name and a unit.
+/// A dimension that has a name, an SI unit and an example.
 struct Known {
     dimension: Dimension,
     name: &'static str,
@@ -85,7 +86,8 @@ impl Dimension {
         self.known().map_or_else(|| format!("1 {}", self.si_unit()), |k| k.example.to_owned())
     }
 
-    /// Returns the exponents times `halves / 2`; `None` if they overflow or are not multiples of a half.
+    /// Returns the dimension raised to the power `halves / 2`, or `None` if an exponent overflows
+    /// or is not a multiple of a half.
     pub(crate) fn power(self, halves: i8) -> Option<Self> {
         let scale = |exponent: i8| -> Option<i8> {
             let doubled = i16::from(exponent) * i16::from(halves);
@@ -128,7 +130,7 @@ impl Neg for Dimension {
     }
 }
 
-/// Writes the name and the SI unit: `a stiffness (N/m)`.
+/// Writes the name and the SI unit, such as `a stiffness (N/m)`.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.known() {

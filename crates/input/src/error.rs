@@ -1,4 +1,4 @@
-//! Errors of input files: problem, place and remedy.
+//! Errors in input files: the problem, its place and a remedy.
 
 use std::fmt;
 
@@ -7,35 +7,35 @@ use crate::quantity::QuantityError;
 /// The place of an error in the input.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
-    /// In a file.
+    /// A position in a file.
     File {
         /// Name of the file as given.
         file: String,
-        /// Line, from 1.
+        /// Line number, from 1.
         line: usize,
         /// Column in characters, from 1.
         column: usize,
-        /// Length in characters of the faulty text on that line.
+        /// Number of characters of the faulty text on this line.
         width: usize,
-        /// The line.
+        /// Content of the line.
         text: String,
     },
-    /// In an override, `path=value`.
+    /// An override, written `path=value`.
     Override {
         /// The override as given.
         text: String,
     },
-    /// In a file as a whole.
+    /// A file as a whole.
     Whole {
         /// Name of the file as given.
         file: String,
     },
-    /// In no text of the user, but in a default.
+    /// A default value, which has no place in the user's texts.
     Unknown,
 }
 
 impl Place {
-    /// Returns the place of a byte range of a text.
+    /// Returns the place of a byte range in the text of a file.
     pub(crate) fn in_text(file: &str, text: &str, start: usize, end: usize) -> Self {
         let start = floor_boundary(text, start);
         let end = floor_boundary(text, end).max(start);
@@ -61,7 +61,7 @@ fn floor_boundary(text: &str, at: usize) -> usize {
     at
 }
 
-/// Writes the short form: `file:line:column`, or the override.
+/// Writes the place in short form: `file:line:column`, the override, or the name of the file.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -92,7 +92,7 @@ pub enum Problem {
         offset: usize,
     },
     /// The file is far larger than any valid one.
-    #[error("the file has {size} bytes, at most {limit} are read; is it a record?")]
+    #[error("the file has {size} bytes, at most {limit} are read; is it a motion record?")]
     TooLarge {
         /// Size in bytes.
         size: usize,
@@ -102,33 +102,33 @@ pub enum Problem {
     /// The file cannot be read.
     #[error("cannot read the file: {reason}; correct the path")]
     Unreadable {
-        /// Message of the system.
+        /// Reason, in plain words.
         reason: String,
     },
-    /// An unknown key.
+    /// A key that the table does not have.
     #[error("unknown key `{key}` in {section}{}", suggestion(nearest.as_deref()))]
     UnknownKey {
-        /// The key.
+        /// The unknown key.
         key: String,
-        /// Table that contains it.
+        /// Label of the table that contains the key, such as `[run]`.
         section: String,
         /// The most similar valid key.
         nearest: Option<String>,
         /// All valid keys.
         valid: Vec<String>,
     },
-    /// A field of another variant.
+    /// A key that belongs to another variant than the selected one.
     #[error("`{key}` does not belong to `{tag} = \"{variant}\"` in {section}, only to {owners}")]
     ForeignKey {
         /// The key.
         key: String,
-        /// Table that contains it.
+        /// Label of the table that contains the key, such as `[run]`.
         section: String,
-        /// The field that selects the variant.
+        /// Name of the tag field.
         tag: String,
-        /// The variant selected.
+        /// Name of the selected variant.
         variant: String,
-        /// The variants that have the field.
+        /// Names of the variants that have this field, quoted and joined.
         owners: String,
         /// All valid keys.
         valid: Vec<String>,
@@ -136,39 +136,39 @@ pub enum Problem {
     /// A required field is missing.
     #[error("`{field}` is missing from {section}; add {example}")]
     Missing {
-        /// The field.
+        /// Path of the field.
         field: String,
-        /// Table that needs it.
+        /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// Text to add.
+        /// Text to add, with a valid value.
         example: String,
     },
     /// A value of the wrong type.
     #[error("`{field}` must be {expected}, found {found}")]
     WrongType {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// Expected type.
         expected: String,
         /// Value found.
         found: String,
     },
-    /// A number where a quantity is needed.
+    /// A number without a unit, where a quantity is required.
     #[error("`{field}` needs a unit, found {found}; write for example {example}")]
     BareNumber {
-        /// The field.
+        /// Path of the field.
         field: String,
         /// Value found.
         found: String,
-        /// The field with a valid value.
+        /// Text to write instead, with a valid value.
         example: String,
     },
-    /// A text that is not the quantity required.
+    /// A text that is not a quantity of the required dimension.
     #[error("`{field}`: {reason}; write for example {example}")]
     Quantity {
-        /// The field.
+        /// Path of the field.
         field: String,
-        /// Reason.
+        /// The reason why the text is rejected.
         reason: QuantityError,
         /// A valid value.
         example: String,
@@ -176,47 +176,47 @@ pub enum Problem {
     /// A number outside its range.
     #[error("`{field}` must be {range}, found {found}")]
     OutOfRange {
-        /// The field.
+        /// Path of the field.
         field: String,
-        /// The range.
+        /// The permitted range, in words.
         range: String,
-        /// The value.
+        /// Value found.
         found: String,
     },
-    /// An unknown name.
+    /// A name that is not in the list of valid names.
     #[error("`{field}`: there is no \"{found}\"{}", suggestion(nearest.as_deref()))]
     UnknownName {
-        /// The field.
+        /// Path of the field.
         field: String,
-        /// The name.
+        /// Name found.
         found: String,
         /// The most similar valid name.
         nearest: Option<String>,
         /// All valid names.
         valid: Vec<String>,
     },
-    /// Two fields that exclude each other.
+    /// Two mutually exclusive fields are given.
     #[error("{section} has both `{first}` and `{second}`; keep one")]
     Exclusive {
-        /// Table that contains them.
+        /// Label of the table that contains the fields, such as `[run]`.
         section: String,
-        /// The first.
+        /// Name of the first field.
         first: String,
-        /// The second.
+        /// Name of the second field.
         second: String,
     },
-    /// None of several fields.
+    /// None of several alternative fields is given.
     #[error("{section} needs one of {choices}")]
     OneOf {
-        /// Table that needs one.
+        /// Label of the table that lacks the field, such as `[run]`.
         section: String,
-        /// The choices.
+        /// The alternatives, joined.
         choices: String,
     },
-    /// Values that are valid by themselves and inconsistent together.
+    /// Values that are valid by themselves but inconsistent with each other.
     #[error("{message}")]
     Inconsistent {
-        /// Message.
+        /// The message.
         message: String,
     },
 }
@@ -226,7 +226,7 @@ fn suggestion(nearest: Option<&str>) -> String {
 }
 
 impl Problem {
-    /// Returns the list of valid names or units, if that helps.
+    /// Returns a note with the valid names or units, if such a note helps.
     fn help(&self) -> Option<String> {
         if let Self::UnknownKey { valid, .. }
         | Self::ForeignKey { valid, .. }
@@ -257,15 +257,16 @@ impl Problem {
     }
 }
 
-/// An error in an input: a problem at a place.
+/// An input error: a problem and its place.
 ///
-/// `Display` writes the problem, the place, the line with a caret below the fault, and the
-/// valid names if there are any. [`InputError::sentence`] is the same on one line.
+/// `Display` writes the problem, the place, the line with a caret below the fault, and the valid
+/// names, if there are any. [`InputError::sentence`] returns a one-line form without the line and
+/// the names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError(Box<(Problem, Place)>);
 
 impl InputError {
-    /// Creates an error of a problem at a place.
+    /// Creates an error from a problem and its place.
     pub fn new(problem: Problem, place: Place) -> Self {
         Self(Box::new((problem, place)))
     }
@@ -280,7 +281,7 @@ impl InputError {
         &self.0.1
     }
 
-    /// Returns the error on one line: place, then problem.
+    /// Returns the error on one line: the place, then the problem.
     pub fn sentence(&self) -> String {
         printable(&format!("{}: {}", self.place(), self.problem()))
     }
@@ -323,7 +324,8 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// Returns the part of a line around the column that fits a terminal, with control characters as spaces.
+/// Returns the part of a line around the column that fits a terminal. Control characters are
+/// replaced by spaces.
 fn window(line: &str, column: usize, width: usize) -> (String, usize, usize) {
     const BEFORE: usize = 60;
     const TOTAL: usize = 100;

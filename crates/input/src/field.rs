@@ -1,6 +1,7 @@
 //! Definition of the fields of input files: name, kind, default and help.
 //!
-//! The reader, the writer, the reference and the JSON Schema are derived from it, so that they cannot disagree.
+//! The reader, the writer, the reference and the JSON Schema are all derived from these definitions
+//! and therefore always agree.
 
 use std::fmt;
 
@@ -10,82 +11,82 @@ use crate::quantity::plain;
 /// A table of an input file.
 #[derive(Debug)]
 pub struct Section {
-    /// Name in the reference and the schema, unique.
+    /// Unique name in the reference and the schema.
     pub name: &'static str,
-    /// Purpose, in one sentence.
+    /// Purpose of the table, in one sentence.
     pub help: &'static str,
     /// Fields common to all variants.
     pub fields: &'static [Field],
-    /// Fields that depend on the value of one field.
+    /// Further fields, selected by the value of one field.
     pub variants: Option<Variants>,
     /// Groups of mutually exclusive fields.
     pub exclusive: &'static [&'static [&'static str]],
 }
 
-/// Fields that depend on the value of one field.
+/// Sets of fields, one of them selected by the value of a tag field.
 #[derive(Debug)]
 pub struct Variants {
-    /// The field that selects the variant.
+    /// Name of the field that selects the variant.
     pub tag: &'static str,
     /// The variants.
     pub list: &'static [Variant],
 }
 
-/// Fields present for one value of the selecting field.
+/// Fields present for one value of the tag field.
 #[derive(Debug)]
 pub struct Variant {
-    /// The value.
+    /// Value of the tag field that selects this variant.
     pub name: &'static str,
-    /// Meaning, in one sentence.
+    /// Meaning of the variant, in one sentence.
     pub help: &'static str,
-    /// The fields.
+    /// Fields of the variant.
     pub fields: &'static [Field],
 }
 
-/// One field.
+/// Definition of one field of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Key in the file.
     pub name: &'static str,
-    /// Kind of value.
+    /// Kind of value that the field accepts.
     pub kind: Kind,
-    /// Meaning of an absent field.
+    /// What the reader uses when the field is absent.
     pub default: Default,
-    /// Meaning, in one sentence.
+    /// Meaning of the field, in one sentence.
     pub help: &'static str,
 }
 
-/// Meaning of an absent field.
+/// What the reader uses when a field is absent.
 #[derive(Debug, Clone, Copy)]
 pub enum Default {
-    /// It must be given.
+    /// The field is required.
     Required,
-    /// Absent.
+    /// The value is optional and stays absent.
     Nothing,
-    /// A value that depends on other fields, in words.
+    /// A value derived from other fields, described in words.
     Derived(&'static str),
-    /// A value, as TOML.
+    /// A fixed value, written as TOML.
     Value(&'static str),
 }
 
 /// Kind of value of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// Text.
+    /// A text.
     Text,
-    /// Text, or an integer, which is taken as text.
+    /// A text, or an integer that is read as a text.
     Label,
     /// `true` or `false`.
     Flag,
-    /// An integer.
+    /// An integer from the first to the second bound, both included.
     Integer(i64, i64),
     /// A plain number, or a percentage.
     Number(Range),
-    /// A quantity of one of these dimensions.
+    /// A quantity of one of the given dimensions.
     Quantity(&'static [Dimension], Range),
-    /// A word, or a quantity.
+    /// The given word, or a quantity.
     WordOr(&'static str, &'static [Dimension], Range),
-    /// A unit, or a quantity that serves as one.
+    /// A unit such as `kN`, or a quantity that serves as a unit.
     Unit(Dimension),
     /// Two quantities `[x, z]`.
     Point(Dimension),
@@ -93,27 +94,28 @@ pub enum Kind {
     Triple(Dimension),
     /// A list of points.
     Points(Dimension),
-    /// Two texts.
+    /// A list of two texts.
     Pair,
-    /// Text, or `false`.
+    /// A text, or `false`.
     TextOrFalse,
     /// One of a list of names.
     Choice(fn() -> Vec<&'static str>),
-    /// A table.
+    /// A nested table.
     Table(&'static Section),
-    /// A list of tables, referred to by name in overrides.
+    /// A list of tables; an override addresses an item by its name or its number.
     Tables(&'static Section),
     /// A list of texts.
     Texts,
-    /// A single value, whose kind depends on another field.
+    /// A single value whose kind depends on another field.
     Value,
-    /// A list of such values.
+    /// A list of single values whose kind depends on another field.
     Values,
-    /// One of a list of names, or a table; a name is short for a table with this key set to it.
+    /// One of a list of names, or a table. A name is short for a table in which the given key has
+    /// this value.
     ChoiceOrTable(fn() -> Vec<&'static str>, &'static str, &'static Section),
 }
 
-/// A range of numbers in SI units.
+/// A range of valid numbers, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Smallest value.
@@ -124,11 +126,12 @@ pub struct Range {
     pub greatest: f64,
 }
 
-/// Largest magnitude of a number without a limit of its own: far beyond any stack, far below overflow.
+/// Largest magnitude of a number without a limit of its own. It is far above any physical value and
+/// far below overflow.
 const VAST: f64 = 1e12;
 
 impl Range {
-    /// Any number of reasonable magnitude.
+    /// Any number up to 1e12 in magnitude.
     pub const ANY: Self = Self { least: -VAST, above: false, greatest: VAST };
     /// Greater than zero.
     pub const POSITIVE: Self = Self { least: 0.0, above: true, greatest: VAST };
@@ -145,19 +148,19 @@ impl Range {
         Self { least: 0.0, above: true, greatest }
     }
 
-    /// `true` if a number lies in the range; `false` for one that is not finite.
+    /// Returns `true` if a number lies in the range; a number that is not finite never does.
     pub fn contains(&self, value: f64) -> bool {
         let low = if self.above { value > self.least } else { value >= self.least };
         low && value <= self.greatest
     }
 
-    /// Describes the range in words, with a unit.
+    /// Describes the range in words, with the given unit.
     pub fn describe(&self, unit: &str) -> String {
         let unit = if unit.is_empty() || unit == "1" { String::new() } else { format!(" {unit}") };
         let bounds = (self.above, self.least == -VAST, self.greatest == VAST);
         let (least, greatest) = (plain(self.least), plain(self.greatest));
         match bounds {
-            (_, true, true) => format!("a number no larger than 1e12{unit} in size"),
+            (_, true, true) => format!("a number no larger than 1e12{unit} in magnitude"),
             (true, _, true) => format!("greater than {least}{unit} and below 1e12{unit}"),
             (false, _, true) => format!("at least {least}{unit} and below 1e12{unit}"),
             (true, _, false) => format!("greater than {least}{unit} and at most {greatest}{unit}"),
@@ -166,19 +169,19 @@ impl Range {
     }
 }
 
-/// A closed set whose members have names in files.
+/// A closed set of members that are written by name in files.
 pub trait Named: Copy + PartialEq + 'static {
-    /// All members with their names.
+    /// Every member with its name.
     const NAMES: &'static [(&'static str, Self)];
 
     /// Returns the name of the member.
     fn name(self) -> &'static str {
-        // Every member is in the list, as round-trip tests verify.
+        // Every member is in the list; round-trip tests verify it.
         Self::NAMES.iter().find(|(_, member)| *member == self).map_or("", |(name, _)| name)
     }
 }
 
-/// Returns the names of a closed set.
+/// Returns the names of all members of a closed set.
 pub fn names<T: Named>() -> Vec<&'static str> {
     T::NAMES.iter().map(|(name, _)| *name).collect()
 }
@@ -189,7 +192,7 @@ impl Field {
         Self { name, kind, default, help }
     }
 
-    /// Returns the field with a valid value, as a user would write it.
+    /// Returns the field with a valid value, as it would be written in a file.
     pub fn example(&self) -> String {
         if let Kind::Table(_) = self.kind {
             format!("a table `{}`", self.name)
@@ -202,7 +205,7 @@ impl Field {
 }
 
 impl Kind {
-    /// Returns the table inside a field, or of each item of its list.
+    /// Returns the section of a nested table, or of the items of a list of tables.
     pub fn section(&self) -> Option<&'static Section> {
         match self {
             Self::Table(section) | Self::Tables(section) | Self::ChoiceOrTable(_, _, section) => {
@@ -228,7 +231,7 @@ impl Kind {
         }
     }
 
-    /// Returns a valid value as TOML.
+    /// Returns a valid value, written as TOML.
     pub fn example(&self) -> String {
         match self {
             Self::Text => "\"…\"".to_owned(),
@@ -263,7 +266,7 @@ impl Kind {
     }
 }
 
-/// Writes the kind of value in words.
+/// Describes the kind of value in words.
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |dimensions: &[Dimension]| {
@@ -302,7 +305,7 @@ impl fmt::Display for Kind {
 }
 
 impl Section {
-    /// Returns the common fields with those of a variant, if given.
+    /// Returns the common fields, followed by those of the variant, if there is one.
     pub fn fields_of(
         &'static self,
         variant: Option<&'static Variant>,
@@ -310,7 +313,7 @@ impl Section {
         self.fields.iter().chain(variant.map_or(&[][..], |v| v.fields))
     }
 
-    /// Returns the field of a name in the section or any of its variants.
+    /// Returns the field with the given name in the section or any of its variants.
     pub fn any_field(&'static self, name: &str) -> Option<&'static Field> {
         self.all_fields().find(|field| field.name == name)
     }
@@ -321,7 +324,7 @@ impl Section {
         self.fields.iter().chain(variants)
     }
 
-    /// Returns the other fields of the exclusive groups that contain a field.
+    /// Returns the other fields of the exclusive groups that contain the given field.
     pub fn rivals(&'static self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.contains(&name));
         groups.flat_map(|group| group.iter().copied()).filter(move |rival| *rival != name)

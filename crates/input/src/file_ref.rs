@@ -1,4 +1,4 @@
-//! A file referred to by an input file: its path or its content.
+//! References from an input file to other files, by path or by content.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::{fnv1a, system};
 
-/// A file referred to by a scenario.
+/// A file referred to by an input file, such as the record of a scenario.
 ///
 /// ```
 /// use barrelstack_input::FileRef;
@@ -23,9 +23,9 @@ pub struct FileRef {
     pub path: String,
     /// Folder of the referring file; empty for the current folder.
     pub folder: PathBuf,
-    /// `true` if the caller named it, not a file.
+    /// `true` if the path was given by the caller, not by a file.
     is_of_caller: bool,
-    /// Its content, if loaded.
+    /// Content of the file, if loaded.
     bytes: Option<Arc<[u8]>>,
 }
 
@@ -35,12 +35,13 @@ impl FileRef {
         Self { path: path.into(), folder, is_of_caller: false, bytes: None }
     }
 
-    /// Creates a reference named by the caller, relative to the current folder.
+    /// Creates a reference given by the caller, relative to the current folder.
     pub fn of_caller(path: impl Into<String>) -> Self {
         Self { is_of_caller: true, ..Self::new(path, PathBuf::new()) }
     }
 
-    /// `true` if the caller named it, not a file: scenarios of others may refer to files, too.
+    /// Returns `true` if the path was given by the caller. A path in a file may come from someone
+    /// else.
     pub fn is_of_caller(&self) -> bool {
         self.is_of_caller
     }
@@ -50,20 +51,20 @@ impl FileRef {
         self.folder.join(&self.path)
     }
 
-    /// Stores the content, so that the file is no longer opened.
+    /// Stores the content, so that the file is not opened again.
     pub fn hold(&mut self, bytes: impl Into<Arc<[u8]>>) {
         self.bytes = Some(bytes.into());
     }
 
-    /// `true` if the content is loaded.
+    /// Returns `true` if the content is loaded.
     pub fn is_held(&self) -> bool {
         self.bytes.is_some()
     }
 
-    /// Returns the content: as stored, else read from the file, if that has at most `limit` bytes.
+    /// Returns the stored content, or reads the file, which may have at most `limit` bytes.
     ///
     /// # Errors
-    /// A message if the file cannot be read or is larger.
+    /// A message if the file cannot be read or is larger than `limit`.
     pub fn read(&self, limit: usize) -> Result<Arc<[u8]>, String> {
         match &self.bytes {
             Some(bytes) => Ok(Arc::clone(bytes)),
@@ -71,8 +72,8 @@ impl FileRef {
         }
     }
 
-    /// Returns a reference identified by its content, independent of path and name; unchanged if the content is not
-    /// loaded.
+    /// Returns a reference that identifies the file by its content instead of its path. Returned
+    /// unchanged if the content is not loaded.
     #[must_use]
     pub fn by_content(&self) -> Self {
         match &self.bytes {
@@ -82,18 +83,18 @@ impl FileRef {
     }
 }
 
-/// References are equal if their paths as written and their contents are equal, so that a scenario keeps
-/// its identity when its folder moves.
+/// References are equal if their paths as written and their contents are equal. The folder is not
+/// compared, so that a scenario keeps its identity when its folder moves.
 impl PartialEq for FileRef {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path && self.bytes == other.bytes
     }
 }
 
-/// Omits the content, which may be megabytes.
+/// Writes the length of the content only, since the content may be megabytes long.
 #[expect(
     clippy::missing_fields_in_debug,
-    reason = "keys of results hold this text, and who names a file changes no result"
+    reason = "this text is part of the keys of results, which do not depend on who named the file"
 )]
 impl fmt::Debug for FileRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,6 +1,6 @@
-//! A fingerprint of bytes that is the same on every machine.
+//! A hash of bytes that is the same on every machine.
 
-/// FNV-1a, 64 bits (Fowler, Noll and Vo).
+/// Returns the 64-bit FNV-1a hash of bytes (Fowler, Noll and Vo).
 pub fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)

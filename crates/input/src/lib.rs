@@ -1,17 +1,21 @@
-//! Input files with units: fields declared once, read with positions, merged, written out, listed.
+//! Reads, merges, writes and documents input files whose values carry units.
 //!
-//! A kind of file is a [`field::Section`]: its fields with their kinds, defaults, ranges and meaning, in nested
-//! tables.
-//! From it derive the [`reader`], whose errors name file, line and column, the expected value and the next
-//! move; the [`writer`] of resolved text, every default written out; [`merge`], which merges files and
-//! overrides; the [JSON Schema](schema); and the [`reference`](mod@reference).
-//! The meaning of a field for the domain is up to the caller.
+//! Each kind of file is declared once as a [`field::Section`]: nested tables of fields with their
+//! kinds, defaults, ranges and meanings. Everything else is derived from this declaration:
+//!
+//! - the [`reader`], whose errors name the file, line and column, the expected value and a remedy;
+//! - the [`writer`], which writes every default out;
+//! - [`merge`], which combines files and overrides;
+//! - the [JSON Schema](schema) for editors;
+//! - the [`reference`](mod@reference) in Markdown.
+//!
+//! What a field means to the domain is up to the caller.
 
-// Results must be bit-identical on every machine, so their input numbers must be, too (`clippy.toml`).
+// Results must be bit-identical on every machine, and so must the input numbers (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 #![allow(
     clippy::missing_errors_doc,
-    reason = "all that reads returns the first problem found, at its place"
+    reason = "every reading function returns the first problem found, with its place"
 )]
 
 pub mod choices;

@@ -1,4 +1,4 @@
-//! Flat list of all values of an input file, with their meanings and sources.
+//! Lists all values of an input file with their meanings and sources.
 
 use crate::field::{Default, Field, Section};
 use crate::quantity::Quantity;
@@ -6,12 +6,12 @@ use crate::reader::item_name;
 use crate::tree::{Origin, Table, Value, parse_value};
 use crate::writer::inline;
 
-/// One value of a file.
+/// One value of an input file, with its meaning and source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Its path as in an override, such as `interface.rack-ground.friction.coefficient`.
+    /// Path as in an override, such as `interface.rack-ground.friction.coefficient`.
     pub path: String,
-    /// The value, quantities in SI with their unit.
+    /// Value as text; quantities are in SI units.
     pub value: String,
     /// Meaning of the field.
     pub help: &'static str,
@@ -19,14 +19,15 @@ pub struct Setting {
     pub source: Source,
 }
 
-/// The source of a value, as far as the value itself reveals it.
+/// Source of a value, as far as it can be told from the value itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Written in the file, or in a file that it extends.
+    /// The value is written in the file, or in a file that it extends.
     Given,
-    /// The default of an absent field.
+    /// The value equals the default of the field.
     Default,
-    /// Written in the file, or derived as these words state for an absent field.
+    /// The value is written in the file, or the field was absent and the value was derived as
+    /// described by the text.
     Derived(&'static str),
 }
 
@@ -41,9 +42,10 @@ impl Source {
     }
 }
 
-/// Lists every value of a table with all defaults written out, in its order.
+/// Lists every value of a table in which all defaults are written out, in the order of the table.
 ///
-/// Items of lists are identified by their name or the pair they join, else by their number from 1, as in overrides.
+/// Items of lists are identified by their name or by the pair they join, otherwise by their number
+/// from 1, as in overrides.
 pub fn settings(table: &Table, section: &'static Section) -> Vec<Setting> {
     let mut settings = Vec::new();
     gather(&mut settings, table, section, "");
@@ -74,7 +76,7 @@ fn gather(list: &mut Vec<Setting>, table: &Table, section: &'static Section, pat
     }
 }
 
-/// Formats the value without the quotes of a file.
+/// Formats a value without the quotes that it has in a file.
 fn shown(value: &Value) -> String {
     if let Value::Text(text) = value { text.clone() } else { inline(value) }
 }
@@ -89,7 +91,8 @@ fn source(field: &Field, value: &Value) -> Source {
     }
 }
 
-/// `true` if two values are equal in meaning: quantities in SI, integers and floats alike.
+/// Returns `true` if two values have the same meaning: quantities are compared in SI units, and
+/// integers equal floats.
 fn same(a: &Value, b: &Value) -> bool {
     let number = |value: &Value| match value {
         Value::Integer(Some(value)) => Some(*value as f64),
@@ -100,7 +103,7 @@ fn same(a: &Value, b: &Value) -> bool {
         }
     };
     match (number(a), number(b)) {
-        // Converting a default to other units changes the last digit.
+        // The conversion of a default to other units may change the last digit.
         (Some(a), Some(b)) => (a - b).abs() <= 1e-12 * a.abs().max(b.abs()),
         _ => shown(a) == shown(b),
     }

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use crate::system;
 use crate::{Dimension, Quantity};
 
-/// Remedy for a cell without a number.
+/// Remedy for a cell that holds no number.
 const CORRECT: &str = "correct it, or remove the row (the decimal mark is a point)";
 
 /// Largest size of a file of measurements (bytes).
 const SIZE_LIMIT: usize = 64 << 20;
 
-/// A table of measurements.
+/// A table of measurements, read from CSV with a unit in the header of each column.
 ///
 /// Columns are separated by commas, or by semicolons or tabs if the header contains them.
 /// Empty lines and lines that start with `#` are skipped.
@@ -32,39 +32,39 @@ pub struct Table {
     rows: Vec<(usize, Vec<String>)>,
 }
 
-/// The reason why a table cannot be used.
+/// A reason why a table of measurements cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The file cannot be read.
     #[error("cannot read {path}: {reason}; correct the path", path = path.display())]
     Unreadable {
-        /// The path.
+        /// Path of the file.
         path: PathBuf,
-        /// Message of the system.
+        /// Reason, in plain words.
         reason: String,
     },
-    /// A cell or line is not as expected.
+    /// A cell or a line does not hold the expected content.
     #[error("{file}, line {line}{place}: expected {expected}, found {found}; {remedy}", place = in_column(column.as_deref()))]
     Cell {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// The line, from 1.
+        /// Number of the line, from 1.
         line: usize,
-        /// The column, as in the header; `None` if the whole line is meant.
+        /// Column as named in the header; `None` if the whole line is meant.
         column: Option<String>,
         /// Expected content.
         expected: Box<str>,
         /// Content found.
         found: Box<str>,
-        /// The next move.
+        /// Remedy for the user.
         remedy: Box<str>,
     },
-    /// The file is not such a table, or lacks required content.
+    /// The file is not a table of measurements, or lacks required content.
     #[error("{file}: {reason}")]
     Unsuited {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// The reason, with the next move.
+        /// Reason, with a remedy.
         reason: String,
     },
 }
@@ -73,18 +73,18 @@ fn in_column(column: Option<&str>) -> String {
     column.map(|name| format!(", column \"{name}\"")).unwrap_or_default()
 }
 
-/// Content of a cell of a column with gaps.
+/// Content of a cell in a column that may have gaps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
-    /// Empty.
+    /// An empty cell.
     Empty,
     /// The word that replaces a number.
     Word,
-    /// A value (SI).
+    /// A value, in SI units.
     Number(f64),
 }
 
-/// Header of a column.
+/// Name and unit of a column.
 #[derive(Clone, Debug)]
 struct Column {
     name: String,
@@ -92,7 +92,7 @@ struct Column {
 }
 
 impl Column {
-    /// Parses a header such as `force (kN)`.
+    /// Parses a header cell such as `force (kN)`.
     fn of(text: &str) -> Self {
         match text.strip_suffix(')').and_then(|text| text.rsplit_once('(')) {
             Some((name, unit)) => {
@@ -108,10 +108,10 @@ impl Column {
 }
 
 impl Table {
-    /// Reads a file.
+    /// Reads a table from a file.
     ///
     /// # Errors
-    /// If it cannot be read or is not a table.
+    /// If the file cannot be read or is not a table.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         let unreadable = |reason| TableError::Unreadable { path: path.to_owned(), reason };
         let bytes = system::read(path, SIZE_LIMIT).map_err(unreadable)?;
@@ -120,10 +120,11 @@ impl Table {
         Self::parse(&path.display().to_string(), &text)
     }
 
-    /// Parses a text; `file` is its name in errors.
+    /// Parses a table from text. `file` is the name used in errors.
     ///
     /// # Errors
-    /// Without a header or rows, or if a row has another number of columns.
+    /// If the text has no header or no rows, or if a row has a different number of columns than the
+    /// header.
     pub fn parse(file: &str, text: &str) -> Result<Self, TableError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text
@@ -162,13 +163,13 @@ impl Table {
         }
         if rows.is_empty() {
             return Err(unsuited(
-                "it has a header and no measurements below it; write a line for each",
+                "it has a header but no measurements; write one line per measurement below it",
             ));
         }
         Ok(Self { file: file.to_owned(), header_line, columns, rows })
     }
 
-    /// Returns the name of the file in errors.
+    /// Returns the name of the file used in errors.
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -178,27 +179,28 @@ impl Table {
         self.columns.iter().map(|column| column.name.as_str())
     }
 
-    /// `true` if there is a column of this name, ignoring case.
+    /// Returns `true` if a column has this name, ignoring case.
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|column| column.is(name))
     }
 
-    /// Returns a warning for every column that is not in `known`.
+    /// Returns a warning for each column whose name is not in `known`.
     pub fn unused(&self, known: &[&str]) -> Vec<String> {
         let unknown = |column: &&Column| !known.iter().any(|name| column.is(name));
         let columns = self.columns.iter().filter(unknown);
         columns.map(|column| format!("column \"{}\" is not used", column.name)).collect()
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows, without the header.
     pub fn count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Returns the values (SI) of a required column.
+    /// Returns the values of a required column, in SI units.
     ///
     /// # Errors
-    /// If it is missing, has no unit or a wrong one, or holds anything but numbers.
+    /// If the column is missing, has no unit or a unit of another dimension, or holds anything but
+    /// numbers.
     pub fn required(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let (at, unit) = self.place(name, dimension)?;
         let column = &self.columns[at].name;
@@ -208,10 +210,11 @@ impl Table {
         self.rows.iter().map(value).collect()
     }
 
-    /// Returns the cells of a required column, each a number (SI), the `word` that replaces one, or empty.
+    /// Returns the cells of a required column. Each is a number (SI units), the `word` that
+    /// replaces a number, or empty.
     ///
     /// # Errors
-    /// As [`Table::required`], for cells with any other content.
+    /// The same as for [`Table::required`]; empty cells and the word are accepted.
     pub fn entries(
         &self,
         name: &str,
@@ -241,11 +244,16 @@ impl Table {
         };
         let Some((at, column)) = found.next() else {
             let expected = format!("a column {}", example());
-            return Err(at_header(None, &expected, &listed(), "name the column so in the header"));
+            return Err(at_header(
+                None,
+                &expected,
+                &listed(),
+                "give the column this name in the header",
+            ));
         };
         if found.next().is_some() {
             let expected = format!("one column {}", example());
-            let remedy = "keep one of those with the same name";
+            let remedy = "keep one of the columns with this name";
             return Err(at_header(None, &expected, &listed(), remedy));
         }
         let named = Some(column.name.as_str());
@@ -283,10 +291,10 @@ impl Table {
         })
     }
 
-    /// Like [`Table::required`], for positive values.
+    /// Returns the values of a required column (SI units), which must all be positive.
     ///
     /// # Errors
-    /// As there, and for the first value that is not positive.
+    /// The same as for [`Table::required`], and if a value is not positive.
     pub fn positive(&self, name: &str, dimension: Dimension) -> Result<Vec<f64>, TableError> {
         let values = self.required(name, dimension)?;
         if let Some(row) = values.iter().position(|value| *value <= 0.0) {
@@ -296,8 +304,10 @@ impl Table {
         Ok(values)
     }
 
-    /// Returns the values of a column of annual rates, whose unit is `1/year`, `1/yr` or `1/a`; rates stay per year,
-    /// since a year is no SI unit.
+    /// Returns the values of a column of annual rates (1/year).
+    ///
+    /// The unit in the header must be `1/year`, `1/yr` or `1/a`. The rates are not converted, since
+    /// a year is not an SI unit.
     ///
     /// # Errors
     /// If the column is missing, has another unit, or holds anything but numbers.
@@ -311,7 +321,7 @@ impl Table {
             });
             let (expected, found) =
                 (format!("a column `{name} (1/year)`"), heads.collect::<Vec<_>>().join(", "));
-            let remedy = "name the column so in the header";
+            let remedy = "give the column this name in the header";
             return Err(self.refuse(self.header_line, None, &expected, &found, remedy));
         };
         let number = |(line, row): &(usize, Vec<String>)| {
@@ -323,7 +333,7 @@ impl Table {
         self.rows.iter().map(number).collect()
     }
 
-    /// Creates an error at a value of a row, counted from 0.
+    /// Creates an error about one cell; rows are counted from 0.
     pub fn at(
         &self,
         row: usize,
@@ -336,7 +346,7 @@ impl Table {
         self.refuse(line, Some(column), expected, found, remedy)
     }
 
-    /// Returns the text of a cell of a row, counted from 0.
+    /// Returns the text of a cell; rows are counted from 0.
     pub fn cell(&self, row: usize, name: &str) -> String {
         let at = self.columns.iter().position(|column| column.is(name));
         let cell = at.and_then(|at| self.rows.get(row)?.1.get(at));

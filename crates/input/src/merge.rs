@@ -1,18 +1,18 @@
-//! Merging of files and overrides.
+//! Merges files and overrides in layers.
 //!
-//! Tables are merged key by key and all other values are replaced. A field removes those that it
-//! excludes, and a new variant removes the fields of the old one, so that an upper layer never
-//! has to undo a lower one.
+//! Tables are merged key by key; any other value is replaced. A field removes the fields that it
+//! excludes, and a new variant removes the fields of the old one, so that an upper layer never has
+//! to undo a lower one.
 
 use crate::error::{InputError, Problem};
 use crate::field::{Default, Field, Kind, Section, Variant};
 use crate::reader::item_name;
 use crate::tree::{Entry, Node, Origin, Sources, Table, Value, parse_value};
 
-/// Merges `over` into `base`, taking precedence.
+/// Merges `over` into `base`; values of `over` take precedence.
 pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>) {
     let mut entries = over.entries;
-    // The field that selects a variant goes first, since the meaning of other keys depends on it.
+    // The tag field goes first, because the meaning of the other keys depends on it.
     if let Some(variants) = section.and_then(|s| s.variants.as_ref()) {
         entries.sort_by_key(|entry| entry.key != variants.tag);
     }
@@ -33,8 +33,10 @@ pub fn overlay(base: &mut Table, over: Table, section: Option<&'static Section>)
     }
 }
 
-/// Prepares a key: removes mutually exclusive fields and the fields of a replaced variant, and expands a
-/// name to its table if a table is merged into it. Returns the section of the key.
+/// Prepares `base` for a key and returns the section of the key.
+///
+/// Removes mutually exclusive fields and the fields of a replaced variant, and expands a name to
+/// its table if a table is merged into it.
 fn place_for(
     base: &mut Table,
     section: Option<&'static Section>,
@@ -88,7 +90,7 @@ fn field_of(table: &Table, section: &'static Section, key: &str) -> Option<&'sta
     section.fields_of(variant).find(|field| field.name == key).or_else(|| section.any_field(key))
 }
 
-/// Expands a name to a table with the name under its key.
+/// Replaces a name by a table that holds the name under `key`.
 fn expand_name(node: &mut Node, key: &str) {
     if let Value::Text(name) = &node.value {
         let origin = node.origin;
@@ -98,7 +100,7 @@ fn expand_name(node: &mut Node, key: &str) {
     }
 }
 
-/// Expands every name that is short for a table.
+/// Expands every name that is short for a table, in this table and all nested ones.
 pub fn expand_names(table: &mut Table, section: &'static Section) {
     let variant = variant_of(table, section);
     for field in section.fields_of(variant) {
@@ -119,7 +121,7 @@ pub fn expand_names(table: &mut Table, section: &'static Section) {
     }
 }
 
-/// Applies the override of the given index, `path=value`.
+/// Applies one override, written `path=value`; `index` is its index in the sources.
 fn apply_override(
     table: &mut Table,
     section: &'static Section,
@@ -137,17 +139,18 @@ fn apply_override(
     let keys: Vec<&str> = path.split('.').map(str::trim).collect();
     if keys.iter().any(|key| key.is_empty()) || keys.len() > 12 {
         return Err(wrong(format!(
-            "`{}` is no path of a field; write keys joined by points, such as `run.step`",
+            "`{}` is not a path to a field; write keys joined by points, such as `run.step`",
             crate::quantity::shorten(path)
         )));
     }
     if value.trim().is_empty() {
-        return Err(wrong(format!("`{}` is given no value; write path=value", path.trim())));
+        return Err(wrong(format!("`{}` has no value; write path=value", path.trim())));
     }
     set(table, Some(section), &keys, parse_value(value, origin)).map_err(wrong)
 }
 
-/// Returns the definition of the field at a path, for the variants that the table selects; `None` if there is none.
+/// Returns the definition of the field at a path, for the variants that the table selects, or
+/// `None` if there is no such field.
 pub fn field_at(
     table: Option<&Table>,
     section: &'static Section,
@@ -173,7 +176,7 @@ pub fn field_at(
     field_at(below, inner, rest)
 }
 
-/// Returns the item of a list by its name or its number.
+/// Returns the item of a list with the given name or number.
 fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
     let named = |(index, item): &(usize, &Node)| {
         item_name(item, *index) == wanted || wanted == (index + 1).to_string()
@@ -181,14 +184,14 @@ fn item_of<'a>(items: &'a [Node], wanted: &str) -> Option<&'a Node> {
     items.iter().enumerate().find(named).map(|(_, item)| item)
 }
 
-/// Returns the origin of the value at a path; `None` if there is none.
+/// Returns the origin of the value at a path, or `None` if there is no value.
 ///
 /// Items of lists are identified by their name or their number, as in overrides.
 pub fn origin_at(table: &Table, keys: &[&str]) -> Option<Origin> {
     node_at(table, keys).map(|node| node.origin)
 }
 
-/// Returns the value at a path with its origin, as [`origin_at`] does.
+/// Returns the value at a path together with its origin; paths are as for [`origin_at`].
 pub fn node_at<'a>(table: &'a Table, keys: &[&str]) -> Option<&'a Node> {
     let (key, rest) = keys.split_first()?;
     let mut node = &table.get(key)?.node;
@@ -204,7 +207,8 @@ pub fn node_at<'a>(table: &'a Table, keys: &[&str]) -> Option<&'a Node> {
     }
 }
 
-/// `true` if any value of a table has this origin; tables created for a nested value do not count.
+/// Returns `true` if any value of a table has this origin. Tables created only to hold a nested
+/// value are ignored.
 fn holds(table: &Table, origin: Origin) -> bool {
     fn inside(node: &Node, origin: Origin) -> bool {
         if let Value::Table(below) = &node.value {
@@ -218,7 +222,7 @@ fn holds(table: &Table, origin: Origin) -> bool {
 
 /// Applies the overrides from index `first` on, in order.
 ///
-/// An override that undoes an earlier one is a contradiction and an error; a repetition is not.
+/// An override that contradicts an earlier one is an error; a repetition is accepted.
 pub fn apply_overrides(
     table: &mut Table,
     section: &'static Section,
@@ -278,7 +282,8 @@ pub fn set(
     }
 }
 
-/// Sets the value at a path that starts with the name or the number of an item of the list `key`.
+/// Sets a value inside one item of the list `key`; the path starts with the name or the number of
+/// the item.
 fn set_in_item(
     items: &mut [Node],
     section: Option<&'static Section>,

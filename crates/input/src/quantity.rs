@@ -6,68 +6,68 @@ use std::fmt;
 use crate::dimension::Dimension;
 use crate::unit::{self, Scale};
 
-/// A value in SI with its dimension.
+/// A value in SI units, with its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
     /// Value in SI units.
     pub value: f64,
-    /// Dimension.
+    /// Dimension of the value.
     pub dimension: Dimension,
 }
 
-/// The reason why a text is not a quantity.
+/// A reason why a text is not a valid quantity.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum QuantityError {
     /// The text does not start with a decimal number.
     #[error("`{text}` does not start with a decimal number")]
     NoNumber {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
     },
-    /// The number is beyond the range of double precision.
+    /// The number exceeds the range of double precision.
     #[error("`{text}` is too large to compute with")]
     Overflow {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
     },
-    /// A number without a unit.
+    /// The unit is missing.
     #[error("`{text}` has no unit")]
     NoUnit {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
     },
-    /// An unknown unit.
+    /// The unit is unknown.
     #[error("unknown unit `{unit}` in `{text}`")]
     UnknownUnit {
-        /// The unit.
+        /// Unknown unit.
         unit: String,
-        /// The text.
+        /// Text as given, shortened.
         text: String,
-        /// The most similar unit.
+        /// Most similar unit.
         nearest: Option<String>,
     },
-    /// A malformed unit expression.
+    /// The unit expression is malformed.
     #[error("cannot read the unit of `{text}`: {reason}")]
     Malformed {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
-        /// The reason.
+        /// Reason, in words.
         reason: &'static str,
     },
-    /// A unit with two meanings, neither of which is expected.
-    #[error("the `gal` of `{text}` is a US gallon or a cm/s^2; write `gallon` or `Gal`")]
+    /// The unit `gal` has two meanings, and neither is expected.
+    #[error("the unit `gal` in `{text}` may be a US gallon or cm/s^2; write `gallon` or `Gal`")]
     Ambiguous {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
     },
-    /// A quantity of another dimension.
+    /// The quantity has another dimension than expected.
     #[error("`{text}` is {found}, expected {expected}")]
     WrongDimension {
-        /// The text.
+        /// Text as given, shortened.
         text: String,
         /// Dimension of the text.
         found: String,
-        /// Expected dimension.
+        /// Expected dimensions.
         expected: String,
     },
 }
@@ -89,7 +89,8 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or malformed.
+    /// If the number is missing, too large or not finite, or if the unit is missing, unknown or
+    /// malformed.
     pub fn parse(text: &str) -> Result<Self, QuantityError> {
         match Self::readings(text, &[])?.as_slice() {
             [one] => Ok(*one),
@@ -97,7 +98,8 @@ impl Quantity {
         }
     }
 
-    /// Returns all possible meanings of a text; a number alone is one if a plain number is wanted.
+    /// Returns all possible meanings of a text. A number without a unit is accepted only if a plain
+    /// number is wanted.
     fn readings(text: &str, wanted: &[Dimension]) -> Result<Vec<Self>, QuantityError> {
         let trimmed = text.trim();
         let shown = || shorten(trimmed);
@@ -118,7 +120,8 @@ impl Quantity {
         units.iter().map(reading).collect()
     }
 
-    /// Parses a quantity of one of the dimensions `wanted`; `gal` is a US gallon or a cm/s², whichever fits.
+    /// Parses a quantity of one of the dimensions `wanted`. The unit `gal` is read as a US gallon
+    /// or as cm/s², according to these dimensions.
     ///
     /// ```
     /// use barrelstack_input::{Dimension, Quantity};
@@ -130,7 +133,7 @@ impl Quantity {
     ///
     /// # Errors
     ///
-    /// As [`Quantity::parse`], and if the dimension is none of `wanted`.
+    /// The same as for [`Quantity::parse`], and if the dimension is not one of `wanted`.
     pub fn parse_as(text: &str, wanted: &[Dimension]) -> Result<Self, QuantityError> {
         let readings = Self::readings(text, wanted)?;
         if let Some(quantity) = readings.iter().find(|q| wanted.contains(&q.dimension)) {
@@ -146,8 +149,10 @@ impl Quantity {
         })
     }
 
-    /// Returns a replacement for a text that is no quantity of `wanted`: with the missing unit or the one
-    /// probably meant, else an example. It always parses as one of `wanted`.
+    /// Suggests a replacement for a text that is not a quantity of a dimension in `wanted`.
+    ///
+    /// The suggestion adds the missing unit or corrects it to the unit probably meant; otherwise it
+    /// is an example. It always parses as a quantity of one of the dimensions.
     pub fn suggestion(text: &str, wanted: &[Dimension]) -> String {
         let trimmed = text.trim();
         let reads = |text: &String| text.len() <= 60 && Self::parse_as(text, wanted).is_ok();
@@ -158,7 +163,7 @@ impl Quantity {
         let repaired = Decimal::take(trimmed).and_then(|(number, rest)| {
             let (number, rest) = (number.text, rest.trim());
             if rest.is_empty() {
-                // The unit of the example is the usual one.
+                // The unit of the example is the most common one.
                 let units = wanted.iter().map(|d| d.example());
                 let units = units.filter_map(|text| Some(text.split_once(' ')?.1.to_owned()));
                 return units.map(|unit| format!("{number} {unit}")).find(reads);
@@ -174,15 +179,15 @@ impl Quantity {
     }
 }
 
-/// Writes the shortest text in SI units that reads back to the same bits.
+/// Formats the quantity in SI units, with the fewest digits that read back to the same bits.
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", plain(self.value), self.dimension.si_unit())
     }
 }
 
-/// Formats the shortest decimal text that reads back to the same bits, with an exponent if the number is very
-/// large or small.
+/// Formats a number with the fewest digits that read back to the same bits. An exponent is used if
+/// the number is very large or very small.
 pub fn plain(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-5..1e15).contains(&size) {
@@ -192,12 +197,12 @@ pub fn plain(value: f64) -> String {
     }
 }
 
-/// Rounds a computed number for an error message to five significant digits.
+/// Rounds a number to five significant digits, for error messages.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }
 
-/// Truncates a text for an error message.
+/// Truncates a text to 60 characters, for error messages.
 pub fn shorten(text: &str) -> String {
     const LIMIT: usize = 60;
     if text.chars().count() <= LIMIT {
@@ -207,10 +212,10 @@ pub fn shorten(text: &str) -> String {
     }
 }
 
-/// A decimal number as digits and a power of ten, so that conversion by a decimal unit is exact.
+/// A decimal number as digits and a power of ten, so that conversion by decimal units is exact.
 struct Decimal<'a> {
     negative: bool,
-    /// All digits in order, without the point; empty for zero.
+    /// All digits in order, without the decimal point; empty for zero.
     digits: String,
     /// Power of ten of the last digit.
     exponent: i64,
@@ -241,7 +246,8 @@ impl<'a> Decimal<'a> {
         Some((Self { negative: text.starts_with('-'), digits, exponent, text: taken }, rest))
     }
 
-    /// Returns the number in SI: exact up to one rounding for decimal units, up to a few for others.
+    /// Returns the number in SI units. The result is exact up to one rounding for decimal units and
+    /// up to a few roundings for others.
     fn times(&self, scale: &Scale) -> f64 {
         let sign = if self.negative { -1.0 } else { 1.0 };
         if self.digits.is_empty() {
@@ -273,13 +279,13 @@ impl<'a> Decimal<'a> {
     }
 }
 
-/// Splits leading digits off a text.
+/// Splits a text after its leading digits.
 fn split_digits(text: &str) -> (&str, &str) {
     text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()))
 }
 
-/// Converts decimal text to the nearest double; the text is well formed by construction, and the caller
-/// checks for infinity.
+/// Converts decimal text to the nearest double. The text is well formed by construction, and the
+/// caller checks for infinity.
 fn decimal_to_f64(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }

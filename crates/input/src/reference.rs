@@ -1,12 +1,14 @@
-//! The reference of a kind of input file in Markdown, generated from the definition of its fields.
+//! Generates the reference of an input file in Markdown from the definition of its fields.
 
 use std::fmt::Write as _;
 
 use crate::field::{Default, Field, Kind, Range, Section};
 use crate::unit;
 
-/// Writes the tables and fields of a file with a top-level section, except for those documented on another
-/// page, which `there` names.
+/// Returns the reference of a file with the given top-level section.
+///
+/// Sections in `elsewhere` are documented on another page, named by `there`, and are only referred
+/// to.
 pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str) -> String {
     let mut text = String::new();
     let mut documented: Vec<(&str, String)> =
@@ -15,7 +17,8 @@ pub fn of_tables(top: &'static Section, elsewhere: &[&'static str], there: &str)
     text
 }
 
-/// Writes a table. Writing to a `String` cannot fail, so results of `writeln!` are dropped in this file.
+/// Writes one table and its nested tables. Writing to a `String` cannot fail, so the results of
+/// `writeln!` are ignored in this file.
 fn table(
     text: &mut String,
     documented: &mut Vec<(&str, String)>,
@@ -100,7 +103,7 @@ fn quoted(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// Lists the units, and how they are combined.
+/// Lists all units and explains how they are combined.
 pub fn units() -> String {
     let names: Vec<String> =
         unit::names().filter(|u| *u != "1").map(|u| format!("`{u}`")).collect();

@@ -1,14 +1,15 @@
-//! The JSON Schema of input files, generated from the definition of their fields.
+//! Generates the JSON Schema of an input file from the definition of its fields.
 
 use serde_json::{Map, Value, json};
 
 use crate::field::{Default, Field, Kind, Range, Section};
 
-/// Returns the schema (JSON Schema 2020-12) of a file with a top-level section, for completion and checking in editors.
+/// Returns the JSON Schema (2020-12) of a file with the given top-level section, for completion and
+/// checking in editors.
 ///
-/// It contains names, types, choices and ranges of plain numbers. It requires no field, since other files
-/// and overrides may supply any; the reader alone checks ranges and dimensions of quantities, and consistency
-/// between fields.
+/// The schema contains names, types, choices and ranges of plain numbers. No field is required,
+/// since other files and overrides may supply any field. Ranges and dimensions of quantities, and
+/// consistency between fields, are checked only by the reader.
 pub fn of_file(title: &str, top: &'static Section) -> Value {
     let mut sections = Map::new();
     collect(&mut sections, top);
@@ -20,7 +21,7 @@ pub fn of_file(title: &str, top: &'static Section) -> Value {
     })
 }
 
-/// A number and a unit; no unit starts with a digit, except for `1/s`.
+/// Pattern of a number and a unit. No unit starts with a digit, except for `1/s`.
 const QUANTITY: &str =
     r"^\s*[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?(\s*[^-+.0-9eE\s].*|\s+1/.*)$";
 
@@ -28,7 +29,7 @@ fn reference(section: &Section) -> String {
     format!("#/$defs/{}", section.name)
 }
 
-/// Adds a section and all nested ones.
+/// Adds a section and all nested sections to the schema.
 fn collect(sections: &mut Map<String, Value>, outer: &'static Section) {
     if sections.contains_key(outer.name) {
         return;
@@ -43,7 +44,8 @@ fn section(section: &'static Section) -> Value {
     let Some(variants) = &section.variants else {
         return object(section.help, section.fields.iter());
     };
-    // One alternative for each variant; a file that extends another may omit the selecting field.
+    // There is one alternative per variant. The tag field is not required, because a file that
+    // extends another may omit it.
     let alternatives: Vec<Value> = variants
         .list
         .iter()

@@ -1,4 +1,4 @@
-//! File system access: reading with a limit, safe writing, errors in plain words.
+//! File system access: limited reading, atomic writing, and I/O errors in plain words.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -15,28 +15,33 @@ pub fn words(error: &io::Error) -> String {
         (io::ErrorKind::IsADirectory, "it is a folder, not a file"),
         (io::ErrorKind::NotADirectory, "a part of its path is a file, not a folder"),
         (io::ErrorKind::PermissionDenied, "permission is denied"),
-        (io::ErrorKind::StorageFull, "no space is left, and what was begun is removed: make room"),
+        (
+            io::ErrorKind::StorageFull,
+            "the disk is full and the incomplete file was removed; free some space",
+        ),
         (
             io::ErrorKind::FileTooLarge,
-            "a file may not be as large here, and what was begun is removed: raise the limit (ulimit -f)",
+            "the file exceeds the size limit and was removed; raise the limit (ulimit -f)",
         ),
         (
             io::ErrorKind::QuotaExceeded,
-            "the quota of the disk is used up, and what was begun is removed: make room",
+            "the disk quota is used up and the incomplete file was removed; free some space",
         ),
     ];
     if let Some((_, words)) = known.into_iter().find(|(kind, _)| *kind == error.kind()) {
         return words.to_owned();
     }
     let text = error.to_string();
-    // The error number adds nothing to the words.
+    // The error number adds nothing for the user.
     text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
-/// Opens an input for reading, or a link to one; [`store`] does not replace it afterwards where inputs are guarded.
+/// Opens an input file for reading.
 ///
-/// Named pipes are refused, because one without a writer would block forever, and so are devices, which may be
-/// endless. Pipes opened by the shell (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
+/// If inputs are guarded ([`guard_inputs`]), [`store`] refuses to replace the file afterwards.
+/// Symbolic links are followed. Named pipes are refused, because opening a pipe without a writer
+/// blocks forever, and so are devices, which may be endless. Pipes opened by the shell
+/// (`/dev/stdin`, `/dev/fd/63`) have a writer and are read.
 ///
 /// # Errors
 /// A message if the file cannot be opened, or is a named pipe, a device or a socket.
@@ -50,7 +55,7 @@ pub fn open(path: &Path) -> Result<File, String> {
     Ok(file)
 }
 
-/// Opens a regular file, or what the shell opened.
+/// Opens a regular file, or a pipe opened by the shell.
 fn open_file(path: &Path) -> Result<File, String> {
     let of_the_shell =
         ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|place| path.starts_with(place));
@@ -61,35 +66,35 @@ fn open_file(path: &Path) -> Result<File, String> {
     File::open(path).map_err(|error| words(&error))
 }
 
-/// Files that were opened as inputs; none where inputs are not guarded.
+/// Canonical paths of the files opened as inputs; `None` while inputs are not guarded.
 static INPUTS: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
 
 fn inputs() -> MutexGuard<'static, Option<BTreeSet<PathBuf>>> {
     INPUTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Guards inputs from now on, so that a program that does one thing and ends never replaces what it read.
+/// Starts guarding inputs, so that a command never replaces a file that it has read.
 pub fn guard_inputs() {
     inputs().get_or_insert_default();
 }
 
-/// Refuses a path at which an input lies, however the path is written, where inputs are guarded.
+/// Returns an error if inputs are guarded and the path leads to an input, however it is written.
 ///
 /// # Errors
-/// When a file there was opened as an input.
+/// If the file was opened as an input.
 pub fn replaceable(path: &Path) -> io::Result<()> {
     let is_input = |inputs: &BTreeSet<PathBuf>| {
         fs::canonicalize(path).is_ok_and(|path| inputs.contains(&path))
     };
     if inputs().as_ref().is_some_and(is_input) {
         return Err(io::Error::other(
-            "this command read it, and replaces nothing that it reads: name another file or folder",
+            "it is an input of this command and is never replaced; name another file or folder",
         ));
     }
     Ok(())
 }
 
-/// Refuses anything but a regular file, with a message.
+/// Returns an error unless the metadata are those of a regular file.
 fn regular(of: &fs::Metadata) -> io::Result<()> {
     if of.is_file() {
         return Ok(());
@@ -99,11 +104,11 @@ fn regular(of: &fs::Metadata) -> io::Result<()> {
     }
     Err(io::Error::new(
         io::ErrorKind::InvalidInput,
-        format!("it is {}, not a file; write what it carries into a file and name that", kind(of)),
+        format!("it is {}, not a file; write its content to a file and name that file", kind(of)),
     ))
 }
 
-/// Names what is neither a file nor a folder.
+/// Returns the kind of a path that is neither a file nor a folder, with its article.
 #[cfg(unix)]
 fn kind(of: &fs::Metadata) -> &'static str {
     use std::os::unix::fs::FileTypeExt as _;
@@ -124,7 +129,7 @@ fn kind(of: &fs::Metadata) -> &'static str {
     if of.file_type().is_symlink() { "a link" } else { "a device" }
 }
 
-/// Reads an input of at most `limit` bytes.
+/// Reads an input file of at most `limit` bytes.
 ///
 /// # Errors
 /// A message if the file cannot be opened ([`open`]) or read, or is larger.
@@ -132,32 +137,33 @@ pub fn read(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     all_of(open(path)?, limit)
 }
 
-/// Reads a file of a folder of results, which may be replaced afterwards.
+/// Reads a file of a results folder; unlike an input, the file may be replaced afterwards.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn read_result(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     all_of(open_file(path)?, limit)
 }
 
-/// Reads a file to its end.
+/// Reads a file to its end, up to `limit` bytes.
 fn all_of(file: File, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     file.take(limit as u64 + 1).read_to_end(&mut bytes).map_err(|error| words(&error))?;
     if bytes.len() > limit {
-        return Err(format!("it has more than {} MB, more than any such file", limit >> 20));
+        return Err(format!("it is larger than {} MB; no valid file is that large", limit >> 20));
     }
     Ok(bytes)
 }
 
-/// Creates a folder and folders below it, and refuses a link in place of one of the latter: a results folder made by
-/// someone else must not redirect output to another place.
+/// Creates a folder and the folders `below` it; returns the path of the last.
 ///
-/// The root may be a link, which the user chose. The folder is checked, and later used by its name: a process that may
-/// write in the root, and that puts a link there in between, is not held off. It could change every result there anyway.
+/// A link in place of one of the folders below is refused, because a results folder made by someone
+/// else must not redirect output to another place. The root itself was chosen by the user and may
+/// be a link. The check does not protect against a process that replaces a folder by a link
+/// afterwards; such a process could change every result in the root anyway.
 ///
 /// # Errors
-/// If the system refuses, and for a link.
+/// If the system refuses, or if a folder below the root is a link.
 pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     fs::create_dir_all(root)?;
     let mut folder = root.to_owned();
@@ -180,7 +186,8 @@ pub fn folder_below(root: &Path, below: &Path) -> io::Result<PathBuf> {
     Ok(folder)
 }
 
-/// Creates a new file, replacing any existing file or link of that name, which is removed and never written to.
+/// Creates a new file. An existing file or link of that name is removed first; its content is never
+/// overwritten.
 ///
 /// # Errors
 /// If the system refuses.
@@ -195,13 +202,13 @@ pub fn begin(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Opens a file of a results folder for modification, or creates it; refuses links, which may lead to files of
-/// someone else.
+/// Opens a file of a results folder for modification, or creates it. Links are refused, because
+/// they may lead to files of someone else.
 ///
 /// # Errors
-/// If the system refuses, and for anything but a regular file.
+/// If the system refuses, or if the path is anything but a regular file.
 pub fn open_to_change(path: &Path) -> io::Result<File> {
-    // Another process may create or remove it in between.
+    // Another process may create or remove the file between the two attempts.
     for _ in 0..100 {
         match File::options().read(true).write(true).create_new(true).open(path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
@@ -218,11 +225,13 @@ pub fn open_to_change(path: &Path) -> io::Result<File> {
             }
         }
     }
-    Err(io::Error::other("it is made and removed all the time"))
+    Err(io::Error::other("another process keeps creating and removing it"))
 }
 
-/// Opens an existing regular file for modification, even if something else has just taken the place of what was
-/// checked: on Unix the system itself refuses a link and does not wait for the other end of a pipe.
+/// Opens an existing regular file for modification.
+///
+/// Something else may have replaced the file since it was checked. On Unix, the system therefore
+/// refuses links and does not wait for the other end of a pipe.
 fn open_unfollowed(path: &Path) -> io::Result<File> {
     let mut options = File::options();
     #[cfg(unix)]
@@ -235,15 +244,15 @@ fn open_unfollowed(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// Returns the name of a file while it is incomplete, specific to this process.
+/// Returns the temporary name under which this process writes a file.
 pub fn temporary(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(unfinished());
     path.with_file_name(name)
 }
 
-/// `true` if the name is that of a file left incomplete by a killed process: the name of the complete file, which
-/// must satisfy `meant`, and the suffix of [`temporary`].
+/// Returns `true` if the name is that of an incomplete file left by a killed process: a name
+/// accepted by `meant`, followed by the suffix of [`temporary`].
 pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let Some((whole, process)) = name.strip_suffix(".part").and_then(|rest| rest.rsplit_once('.'))
@@ -253,16 +262,18 @@ pub fn is_unfinished(path: &Path, meant: impl Fn(&str) -> bool) -> bool {
     !process.is_empty() && process.bytes().all(|c| c.is_ascii_digit()) && meant(whole)
 }
 
-/// Returns the suffix of incomplete files of this process.
+/// Returns the suffix of the incomplete files of this process.
 pub fn unfinished() -> String {
     format!(".{}.part", std::process::id())
 }
 
-/// Locked while a file is incomplete.
+/// Held while files are being written.
 static WRITING: Mutex<()> = Mutex::new(());
 
-/// Acquires a lock that is never released, for use before the process ends, so that nothing that it guards begins;
-/// `None` after a fifth of a second, in case a disk hangs.
+/// Acquires a lock and never releases it, so that nothing guarded by it starts while the process
+/// ends.
+///
+/// Returns `None` after a fifth of a second, in case a disk hangs.
 pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'static, T>>> {
     for _ in 0..20 {
         match lock.try_lock() {
@@ -276,23 +287,25 @@ pub fn taken<T>(lock: &'static Mutex<T>) -> ManuallyDrop<Option<MutexGuard<'stat
     ManuallyDrop::new(None)
 }
 
-/// Waits for the file being written and blocks all further ones: the process ends.
+/// Waits until the current file is written and blocks all further writing, before the process ends.
 pub fn write_no_more() {
     taken(&WRITING);
 }
 
-/// Writes to a temporary name and renames, so that the file is never incomplete.
+/// Writes a file under a temporary name and renames it, so that the file is never incomplete.
 ///
 /// # Errors
-/// When the system refuses, or an input lies there ([`guard_inputs`]); nothing unfinished is left.
+/// If the system refuses, or if the path is a guarded input ([`guard_inputs`]). No incomplete file
+/// is left.
 pub fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
     store_all(&std::iter::once((path.to_owned(), bytes))).map_err(|(_, error)| error)
 }
 
-/// Writes files as [`store`] does and renames them together, so that a full disk leaves earlier ones as they were.
+/// Writes several files as [`store`] does and renames them together, so that a full disk leaves the
+/// earlier versions untouched.
 ///
 /// # Errors
-/// As [`store`], with the path that was refused.
+/// The same as for [`store`], with the path that failed.
 pub fn store_all<'a>(
     files: &(impl Iterator<Item = (PathBuf, &'a [u8])> + Clone),
 ) -> Result<(), (PathBuf, io::Error)> {
@@ -305,14 +318,14 @@ pub fn store_all<'a>(
         .and_then(|()| each(&|path, _| fs::rename(temporary(path), path)));
     if written.is_err() {
         for (path, _) in files.clone() {
-            // Those that were never begun cannot be removed.
+            // Ignore the error: a file that was never created cannot be removed.
             let _ = fs::remove_file(temporary(&path));
         }
     }
     written
 }
 
-/// Checks that files can be created in a folder, which may not exist yet; leaves nothing behind.
+/// Checks that files can be created in a folder, which need not exist yet. Nothing is left behind.
 ///
 /// # Errors
 /// A message if the system refuses.
@@ -363,7 +376,7 @@ mod tests {
         let said = |path: &Path| read(path, 100).unwrap_err();
         assert_eq!(
             said(&pipe),
-            "it is a named pipe, not a file; write what it carries into a file and name that"
+            "it is a named pipe, not a file; write its content to a file and name that file"
         );
         assert!(said(Path::new("/dev/zero")).starts_with("it is a device, not a file"));
         assert_eq!(said(&place.0), "it is a folder, not a file");

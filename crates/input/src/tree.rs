@@ -1,4 +1,4 @@
-//! Parsed TOML in which every key and value keeps its origin.
+//! Parsed TOML in which every key and every value keeps its origin.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -10,32 +10,32 @@ use toml::de::{DeTable, DeValue};
 use crate::error::{InputError, Place, Problem};
 use crate::writer;
 
-/// The origin of a key or value.
+/// The origin of a key or a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// In a file, by its index in [`Sources`], as a byte range.
+    /// A byte range in a file.
     File {
-        /// Index of the file.
+        /// Index of the file in [`Sources`].
         file: usize,
-        /// The first byte.
+        /// Offset of the first byte.
         start: usize,
-        /// The byte after the last.
+        /// Offset of the byte after the last.
         end: usize,
     },
-    /// A file as a whole.
+    /// A file as a whole, by its index.
     Whole(usize),
-    /// In an override, by its index.
+    /// An override, by its index.
     Override(usize),
-    /// A default, written nowhere.
+    /// A default, which is written in no file.
     Default,
 }
 
-/// A value with its origin.
+/// A value together with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Origin.
+    /// Origin of the value.
     pub origin: Origin,
-    /// Value.
+    /// The value.
     pub value: Value,
 }
 
@@ -44,13 +44,13 @@ pub struct Node {
 pub enum Value {
     /// A text.
     Text(String),
-    /// An integer; `None` if it exceeds 64 bits.
+    /// An integer; `None` if it does not fit into 64 bits.
     Integer(Option<i64>),
     /// A number with a decimal point or an exponent.
     Float(f64),
     /// `true` or `false`.
     Flag(bool),
-    /// A date or a time, which no field accepts.
+    /// A date or a time; no field accepts one.
     Date,
     /// A list.
     Array(Vec<Node>),
@@ -59,7 +59,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Describes the value with its article, for messages.
+    /// Describes the value with its article, for messages, such as `the number 3`.
     pub fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{}\"", crate::quantity::shorten(text)),
@@ -74,18 +74,18 @@ impl Value {
     }
 }
 
-/// A key of a table with its value.
+/// A key of a table together with its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// The key.
     pub key: String,
     /// Origin of the key.
     pub origin: Origin,
-    /// Its value.
+    /// Value of the key.
     pub node: Node,
 }
 
-/// A table, in the order in which it is written.
+/// A table, with its keys in the order in which they are written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Table {
     /// The keys with their values.
@@ -103,7 +103,7 @@ impl Table {
         self.entries.iter_mut().find(|entry| entry.key == key)
     }
 
-    /// Replaces the entry of the same key, or appends.
+    /// Replaces the entry with the same key, or appends the entry.
     pub fn set(&mut self, entry: Entry) {
         match self.get_mut(&entry.key) {
             Some(old) => *old = entry,
@@ -120,30 +120,30 @@ impl Table {
 /// A source file.
 #[derive(Debug, Clone)]
 pub struct SourceFile {
-    /// Its name in errors.
+    /// Name of the file in errors.
     pub name: String,
-    /// Its content.
+    /// Content of the file.
     pub text: String,
     /// Folder against which its relative paths are resolved.
     pub folder: PathBuf,
 }
 
-/// All source texts, for errors.
+/// The texts of all sources, needed to locate errors.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// The files, identified by their index.
+    /// The files; an index into this list identifies a file.
     pub files: Vec<SourceFile>,
-    /// Overrides as given, `path=value`.
+    /// The overrides as given, `path=value`.
     pub overrides: Vec<String>,
 }
 
 impl Sources {
-    /// Creates an error at an origin.
+    /// Creates an error located at an origin.
     pub fn error(&self, origin: Origin, problem: Problem) -> InputError {
         InputError::new(problem, self.place(origin))
     }
 
-    /// Returns the place of an origin.
+    /// Returns the place of an origin, for error messages.
     pub fn place(&self, origin: Origin) -> Place {
         match origin {
             Origin::File { file, start, end } => {
@@ -156,9 +156,8 @@ impl Sources {
         }
     }
 
-    /// Gives every value of a tree without source text an origin: an override of its path and value.
-    ///
-    /// Items of lists count from 1.
+    /// Gives an origin to every value of a table that has no source text. Each value is recorded as
+    /// an override, written as its path and value; items of lists are numbered from 1.
     pub fn adopt(&mut self, table: &mut Table) {
         self.adopt_below(table, "");
     }
@@ -202,7 +201,7 @@ impl Sources {
     }
 }
 
-/// Parses the value of an override or a default: as TOML if possible, else as text.
+/// Parses the value of an override or a default as TOML; if that fails, the value is a text.
 pub fn parse_value(text: &str, origin: Origin) -> Node {
     let trimmed = text.trim();
     DeValue::parse(trimmed).map_or_else(
@@ -219,7 +218,8 @@ fn convert(value: &Spanned<DeValue<'_>>, origin: &dyn Fn(Range<usize>) -> Origin
         DeValue::Integer(integer) => {
             Value::Integer(i64::from_str_radix(integer.as_str(), integer.radix()).ok())
         }
-        // The parser has checked the syntax; an unreadable number is later refused as not finite.
+        // The parser has checked the syntax; a number that still cannot be parsed becomes NaN and
+        // is later rejected.
         DeValue::Float(float) => Value::Float(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(_) => Value::Date,

@@ -1,30 +1,32 @@
-//! Units with their products, quotients and powers.
+//! Units, and their products, quotients and powers.
 
 use crate::dimension::Dimension;
 use crate::quantity::QuantityError;
 
-/// The size of a unit in SI: `numerator / denominator · 10^ten · π^pi · factor`.
+/// Size of a unit in SI: `numerator / denominator · 10^ten · π^pi · factor`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
     pub(crate) numerator: u128,
     pub(crate) denominator: u128,
     pub(crate) ten: i32,
     pub(crate) pi: i32,
-    /// Part that is not exactly representable: half powers, and products beyond 128 bits.
+    /// Factor that is not exactly representable; it arises from half powers and from products
+    /// beyond 128 bits.
     pub(crate) factor: f64,
 }
 
-/// A unit expression.
+/// A parsed unit expression, such as `kN/cm`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unit {
     pub(crate) scale: Scale,
     pub(crate) dimension: Dimension,
 }
 
-/// Names, exact sizes (numerator, denominator, power of ten, power of π) and dimensions.
+/// Units: name, exact size (numerator, denominator, power of ten, power of π) and dimension.
 ///
-/// Inch, foot, yard, pound, US gallon and standard gravity are exact by definition; the forces named
-/// after masses are their products. `tonf` is the metric ton-force, 1000 kgf.
+/// Inch, foot, yard, pound, US gallon and standard gravity are exact by definition; units of force
+/// such as `kgf` are the mass unit times standard gravity. `tonf` is the metric ton-force, 1000
+/// kgf.
 const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("1", 1, 1, 0, 0, Dimension::NONE),
     ("%", 1, 1, -2, 0, Dimension::NONE),
@@ -78,7 +80,7 @@ const UNITS: &[(&str, u128, u128, i32, i32, Dimension)] = &[
     ("pcf", 45_359_237, 28_316_846_592, 4, 0, Dimension::DENSITY),
 ];
 
-/// Other spellings of units that have no second meaning.
+/// Alternative spellings with a single meaning, and the unit they stand for.
 const ALIASES: &[(&str, &str)] = &[
     ("lbs", "lb"),
     ("lbm", "lb"),
@@ -116,7 +118,7 @@ const ALIASES: &[(&str, &str)] = &[
     ("newtons", "N"),
 ];
 
-/// The ambiguous name, and the unambiguous names of its two meanings.
+/// The ambiguous name `gal`, with the unambiguous names of its two meanings.
 const GAL: (&str, [&str; 2]) = ("gal", ["gallon", "Gal"]);
 
 /// Returns the names of all units.
@@ -124,7 +126,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|unit| unit.0)
 }
 
-/// An error in a unit expression, without its context.
+/// An error in a unit expression, without the text around it.
 pub(crate) enum UnitError {
     Unknown { unit: String, nearest: Option<String> },
     Malformed(&'static str),
@@ -140,7 +142,8 @@ impl UnitError {
     }
 }
 
-/// Parses a unit expression; one with `gal` has two readings, a US gallon and a cm/s².
+/// Parses a unit expression and returns all of its meanings: two if it contains `gal` (a US gallon
+/// or a cm/s²), else one.
 pub(crate) fn readings(text: &str) -> Result<Vec<Unit>, UnitError> {
     if text.len() > 200 {
         return Err(UnitError::Malformed("it is too long"));
@@ -204,7 +207,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
                 tokens.push(Token::Power(power));
             }
             _ if c.is_alphabetic() || c == '%' || c == '1' || c == '"' || c == '\'' || c == '_' => {
-                // The two micro signs look alike and mean the same.
+                // The micro sign and the Greek mu look alike and mean the same.
                 let mut name = String::from(if c == 'μ' { 'µ' } else { c });
                 while let Some(&next) = chars.peek() {
                     if !(next.is_alphabetic() || next == '_') || c == '1' {
@@ -214,7 +217,7 @@ fn tokenize(text: &str) -> Result<Vec<Token>, UnitError> {
                     chars.next();
                 }
                 tokens.push(Token::Name(name));
-                // `ft/s2`, as in files and spreadsheets.
+                // `ft/s2` is common in files and spreadsheets.
                 if let Some(power) = chars.next_if(|next| c != '1' && ('2'..='6').contains(next)) {
                     tokens.push(Token::Power(power.to_string()));
                 }
@@ -253,7 +256,7 @@ fn product(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErr
                 divided = true;
             }
             Token::Times | Token::Name(_) | Token::Open => {
-                // `N/m s` is ambiguous: N/(m·s) or (N/m)·s.
+                // `N/m s` is ambiguous: `N/(m s)` or `(N/m) s`.
                 if divided {
                     return Err(UnitError::Malformed(
                         "a product after a quotient is ambiguous; write `N s/m` or `N/(m s)`",
@@ -296,7 +299,7 @@ fn factor(tokens: &[Token], at: &mut usize, depth: u32) -> Result<Unit, UnitErro
     Ok(unit)
 }
 
-/// Parses a power in halves: `2` is 4, `1.5` is 3.
+/// Parses a power and returns it in halves: `2` gives 4, `1.5` gives 3.
 fn halves(power: &str) -> Result<i8, UnitError> {
     let value: f64 =
         power.parse().map_err(|_| UnitError::Malformed("`^` must be followed by a power"))?;
@@ -308,7 +311,7 @@ fn halves(power: &str) -> Result<i8, UnitError> {
     Ok(halves as i8)
 }
 
-/// Names without a single meaning, and symbols, with the unit most often meant.
+/// Symbols and names with several meanings, each with the unit most often meant.
 const MEANT: &[(&str, &str)] =
     &[("\"", "in"), ("'", "ft"), ("pound", "lb"), ("pounds", "lb"), ("ton", "t"), ("tons", "t")];
 
@@ -329,10 +332,10 @@ fn named(name: &str) -> Result<Unit, UnitError> {
     Err(UnitError::Unknown { unit: name.chars().take(30).collect(), nearest })
 }
 
-/// Units of mass with the units of the corresponding weight, which are often confused.
+/// Units of mass with the corresponding units of weight; the two are often confused.
 const WEIGHTS: &[(&str, &str)] = &[("kg", "kgf"), ("lb", "lbf"), ("t", "tonf")];
 
-/// Returns the text of a unit with names replaced according to `replace`.
+/// Returns a unit expression with each name replaced by `replace`, where that returns a name.
 fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -347,8 +350,8 @@ fn renamed(text: &str, replace: impl Fn(&str) -> Option<&'static str>) -> String
     out
 }
 
-/// Returns candidate replacements for a unit that is unknown or of a wrong dimension, the likeliest first; they
-/// may be invalid, too.
+/// Returns candidate replacements for a unit that is unknown or of a wrong dimension, the likeliest
+/// first. The candidates themselves may be invalid.
 pub(crate) fn alternatives(text: &str) -> Vec<String> {
     let canonical =
         |word: &str| ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, unit)| *unit);
@@ -397,7 +400,8 @@ impl Scale {
     fn times(self, other: Self) -> Self {
         let factor = self.factor * other.factor;
         let (ten, pi) = (self.ten + other.ten, self.pi + other.pi);
-        // Common factors are canceled first, so that lbf/lb or deg/deg stay exact.
+        // Common factors are canceled first, so that units such as `lbf/lb` and `deg/deg` stay
+        // exact.
         let (a, d) = reduce(self.numerator, other.denominator);
         let (c, b) = reduce(other.numerator, self.denominator);
         if let (Some(numerator), Some(denominator)) = (a.checked_mul(c), b.checked_mul(d)) {

@@ -1,4 +1,4 @@
-//! Writes one table of a file field by field, according to its definition.
+//! Writes a table field by field, according to its definition.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use crate::field::{Field, Kind, Named, Section, Variant};
 use crate::quantity::{Quantity, plain};
 use crate::tree::{Entry, Node, Origin, Table, Value};
 
-/// Writer of one table; the counterpart of the reader.
+/// Writer of one table, the counterpart of [`Reader`](crate::reader::Reader).
 pub struct Writer {
     section: &'static Section,
     variant: Option<&'static Variant>,
@@ -16,18 +16,19 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Starts a table without variants.
+    /// Creates a writer for a table without variants.
     pub fn new(section: &'static Section) -> Self {
         debug_assert!(section.variants.is_none(), "the variant must be named");
         Self { section, variant: None, table: Table::default(), written: Vec::new() }
     }
 
-    /// Starts a table of a variant and writes the field that selects it.
+    /// Creates a writer for a variant of a table and writes the tag field, which selects the
+    /// variant.
     pub fn variant<T: Named>(section: &'static Section, tag: T) -> Self {
         Self::chosen(section, tag.name())
     }
 
-    /// Starts a table of the variant of a name and writes the field that selects it.
+    /// Creates a writer for the variant with the given name and writes the tag field.
     pub fn chosen(section: &'static Section, name: &'static str) -> Self {
         let variants = section.variants.as_ref();
         let variant = variants.and_then(|v| v.list.iter().find(|v| v.name == name));
@@ -39,7 +40,8 @@ impl Writer {
         writer
     }
 
-    /// Ends the table; with debug assertions, checks that every defined field has been written or omitted.
+    /// Returns the table. With debug assertions, checks that every defined field has been written
+    /// or omitted.
     pub fn finish(self) -> Table {
         for field in self.section.fields_of(self.variant) {
             debug_assert!(self.written.contains(&field.name), "`{}` was forgotten", field.name);
@@ -64,12 +66,12 @@ impl Writer {
         self.table.entries.push(Entry { key: name.to_owned(), origin: Origin::Default, node });
     }
 
-    /// Omits fields, because they are absent or replaced by others.
+    /// Marks fields as intentionally not written, because they are absent or replaced by others.
     pub fn omit(&mut self, names: &[&'static str]) {
         self.written.extend(names);
     }
 
-    /// Writes a quantity in the SI unit of the first dimension of the field.
+    /// Writes a quantity, in the SI unit of the field's first dimension.
     pub fn quantity(&mut self, name: &'static str, value: f64) {
         let kind = self.field(name).kind;
         let dimension = if let Kind::Quantity(dimensions, _) | Kind::WordOr(_, dimensions, _) = kind
@@ -78,17 +80,17 @@ impl Writer {
         } else if let Kind::Unit(dimension) = kind {
             dimension
         } else {
-            panic!("field `{name}` is no quantity")
+            panic!("field `{name}` is not a quantity")
         };
         self.quantity_in(name, value, dimension);
     }
 
-    /// Writes a quantity in the SI unit of a dimension.
+    /// Writes a quantity, in the SI unit of the given dimension.
     pub fn quantity_in(&mut self, name: &'static str, value: f64, dimension: Dimension) {
         self.put(name, Value::Text(Quantity { value, dimension }.to_string()));
     }
 
-    /// Writes a value by `write`, or omits the field.
+    /// Writes a value with `write` if there is one, else omits the field.
     pub fn optional<T>(
         &mut self,
         name: &'static str,
@@ -101,12 +103,12 @@ impl Writer {
         }
     }
 
-    /// Writes a quantity, or omits the field.
+    /// Writes a quantity if there is one, else omits the field.
     pub fn optional_quantity(&mut self, name: &'static str, value: Option<f64>) {
         self.optional(name, value, Self::quantity);
     }
 
-    /// Writes a quantity, or the word that replaces it.
+    /// Writes a quantity if there is one, else the word that replaces it.
     pub fn word_or_quantity(&mut self, name: &'static str, value: Option<f64>) {
         match (value, self.field(name).kind) {
             (Some(value), _) => self.quantity(name, value),
@@ -130,12 +132,12 @@ impl Writer {
         self.put(name, Value::Flag(value));
     }
 
-    /// Writes text.
+    /// Writes a text.
     pub fn text(&mut self, name: &'static str, value: &str) {
         self.put(name, Value::Text(value.to_owned()));
     }
 
-    /// Writes text, or omits the field.
+    /// Writes a text if there is one, else omits the field.
     pub fn optional_text(&mut self, name: &'static str, value: Option<&str>) {
         self.optional(name, value, Self::text);
     }
@@ -145,24 +147,24 @@ impl Writer {
         self.text(name, value.name());
     }
 
-    /// Writes two texts.
+    /// Writes a list of two texts.
     pub fn pair(&mut self, name: &'static str, value: &[String; 2]) {
         self.put(name, Value::Array(value.iter().map(|v| node(Value::Text(v.clone()))).collect()));
     }
 
-    /// Writes a point of two quantities.
+    /// Writes a point as a list of two quantities.
     pub fn point(&mut self, name: &'static str, value: [f64; 2]) {
         self.list(name, value);
     }
 
-    /// Writes three quantities.
+    /// Writes a list of three quantities.
     pub fn triple(&mut self, name: &'static str, value: [f64; 3]) {
         self.list(name, value);
     }
 
     fn list<const N: usize>(&mut self, name: &'static str, value: [f64; N]) {
         let (Kind::Point(dimension) | Kind::Triple(dimension)) = self.field(name).kind else {
-            panic!("field `{name}` is no list of quantities")
+            panic!("field `{name}` is not a list of quantities")
         };
         self.put(name, point(value, dimension));
     }
@@ -170,17 +172,17 @@ impl Writer {
     /// Writes a list of points.
     pub fn points(&mut self, name: &'static str, values: &[[f64; 2]]) {
         let Kind::Points(dimension) = self.field(name).kind else {
-            panic!("field `{name}` is no list of points")
+            panic!("field `{name}` is not a list of points")
         };
         self.put(name, Value::Array(values.iter().map(|v| node(point(*v, dimension))).collect()));
     }
 
-    /// Writes a table.
+    /// Writes a nested table.
     pub fn table(&mut self, name: &'static str, table: Table) {
         self.put(name, Value::Table(table));
     }
 
-    /// Writes a list of tables; omits the field if empty.
+    /// Writes a list of tables; an empty list is omitted.
     pub fn tables(&mut self, name: &'static str, tables: Vec<Table>) {
         if tables.is_empty() {
             self.omit(&[name]);
@@ -200,7 +202,7 @@ fn point<const N: usize>(value: [f64; N], dimension: Dimension) -> Value {
     Value::Array(value.map(text).into())
 }
 
-/// Writes the table as TOML: values first, then tables, each in order.
+/// Formats a table as TOML: values first, then nested tables, each in their order.
 pub fn to_toml(table: &Table) -> String {
     let mut text = String::new();
     write_table(&mut text, table, "");
@@ -211,7 +213,7 @@ fn is_table(value: &Value) -> bool {
     matches!(value, Value::Table(_)) || tables_of(value).is_some()
 }
 
-/// Returns the items of a list of tables.
+/// Returns the items of a list of tables, or `None` if the value is not such a list.
 fn tables_of(value: &Value) -> Option<Vec<&Table>> {
     let Value::Array(items) = value else { return None };
     items
@@ -220,7 +222,7 @@ fn tables_of(value: &Value) -> Option<Vec<&Table>> {
         .collect()
 }
 
-/// Writes a table. Writing to a `String` cannot fail, so results of `writeln!` are dropped here.
+/// Writes a table. Writing to a `String` cannot fail, so the results of `writeln!` are ignored.
 fn write_table(text: &mut String, table: &Table, path: &str) {
     for entry in table.entries.iter().filter(|entry| !is_table(&entry.node.value)) {
         let _ = writeln!(text, "{} = {}", entry.key, inline(&entry.node.value));

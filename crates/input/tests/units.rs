@@ -1,4 +1,4 @@
-//! Units as written in practice, and suggestions of units, which must be valid.
+//! Units as written in practice, and suggested units, which must be valid.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 
@@ -12,7 +12,7 @@ fn gal_is_a_gallon_as_a_volume_and_a_galileo_as_an_acceleration() {
     assert_eq!(as_one("350 gal", Dimension::ACCELERATION), 3.5);
     let density = as_one("8.3 lb/gal", Dimension::DENSITY);
     assert!((density / (8.3 * 0.453_592_37 / 3.785_411_784e-3) - 1.0).abs() < 1e-15); // measured 2e-16
-    // The unambiguous names have one meaning only.
+    // The unambiguous names have only one meaning.
     for (text, wanted) in [("60 gallon", Dimension::ACCELERATION), ("350 Gal", Dimension::VOLUME)] {
         let error = Quantity::parse_as(text, &[wanted]).unwrap_err();
         assert!(matches!(error, QuantityError::WrongDimension { .. }), "{text}: {error}");
@@ -47,7 +47,7 @@ const WANTED: [Dimension; 22] = [
     Dimension::DENSITY,
 ];
 
-/// Returns units as people write them: right, wrong, and of another dimension.
+/// Returns units as people write them: valid, invalid, and of another dimension.
 fn written_units() -> Vec<String> {
     let known = unit::names().map(str::to_owned);
     let words = "lbs lbm pound pounds kgs KG Kg ton tons tonne gal Gal GAL gals gallon gallons US_gal \
@@ -77,7 +77,7 @@ fn every_hint_about_a_unit_works_when_it_is_obeyed() {
         }
         assert!(Quantity::parse_as(&wanted.example(), &[wanted]).is_ok(), "{wanted}");
     }
-    // Measured 7,000: nearly every unit is of another dimension than wanted.
+    // Measured: about 7,000, because nearly every unit is of another dimension than wanted.
     assert!(hints > 5000, "{hints}");
 }
 
@@ -108,7 +108,7 @@ fn hints_about_units_are_what_was_meant() {
 fn hints_about_units_of_columns_work_when_they_are_obeyed() {
     let mut hints = 0;
     for wanted in WANTED {
-        // In a header the unit is itself in parentheses.
+        // In a header, the unit itself is in parentheses.
         for unit in written_units().iter().filter(|unit| !unit.contains(['(', ')'])) {
             let table = |unit: &str| Table::parse("t.csv", &format!("x ({unit})\n1\n2\n")).unwrap();
             let Err(TableError::Cell { remedy, .. }) = table(unit).required("x", wanted) else {

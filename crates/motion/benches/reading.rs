@@ -1,4 +1,5 @@
-//! Reading speed of large text files and cost of one look-up: `cargo bench -p barrelstack-motion`.
+//! Measures the speed of reading large text files and of evaluating a motion: `cargo bench -p
+//! barrelstack-motion`.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a bench prints and may fail")]
 
@@ -8,7 +9,7 @@ use std::time::Instant;
 
 use barrelstack_motion::{ReadOptions, bundled, read};
 
-/// The acceptance limit: 10 MB of text in under this (s).
+/// Acceptance limit: the time (s) in which 10 MB of text must be read.
 const LIMIT: f64 = 0.2;
 
 fn peer(values: usize) -> String {

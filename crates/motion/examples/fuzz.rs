@@ -1,14 +1,14 @@
 //! Feeds damaged files to every reader and monitors time and memory.
 //!
-//! `cargo xtask fuzz` runs it in release.
-//! Execution `k` of a reader is the same on every machine: it depends on the reader's name and `k` only.
+//! Run it in release mode with `cargo xtask fuzz`. Execution `k` of a reader depends only on the
+//! reader's name and `k`, so it is the same on every machine.
 
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
     clippy::print_stderr,
     clippy::exit,
-    reason = "a program for people at a terminal, which ends where a reader fails"
+    reason = "an interactive program that exits when a reader fails"
 )]
 
 #[path = "../tests/fuzz/mod.rs"]
@@ -29,14 +29,14 @@ static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Memory limit of one execution (MB).
 const MOST_MEGABYTES: f64 = 256.0;
-/// Time limit of one execution (s); a hang is far above, a busy machine far below.
+/// Time limit of one execution (s): far below a hang, far above the delays of a busy machine.
 const LONGEST: f64 = 10.0;
-/// Number of damaged copies of each file of one megabyte.
+/// Number of damaged copies of each one-megabyte file.
 const DAMAGED: u32 = 4;
 
 const USAGE: &str = "usage: fuzz [--executions N] [--reader NAME] [--first K]";
 
-/// Counts of the results of one reader.
+/// Results of one reader, counted.
 #[derive(Default)]
 struct Statistics {
     executions: u64,
@@ -45,7 +45,7 @@ struct Statistics {
     megabytes: f64,
 }
 
-/// The current execution, for the time limit: its number and its start (ms).
+/// The current execution for the time limit: its number, and below its start (ms).
 static NOW: AtomicU64 = AtomicU64::new(u64::MAX);
 static SINCE: AtomicU64 = AtomicU64::new(0);
 
@@ -69,12 +69,12 @@ fn main() {
         .filter(|reader| only.as_ref().is_none_or(|name| name == reader.name()))
         .collect();
     if readers.is_empty() {
-        eprintln!("there is no reader {}", only.unwrap_or_default());
+        eprintln!("there is no reader named {}", only.unwrap_or_default());
         std::process::exit(2);
     }
     let start = Instant::now();
     watch(start);
-    // A panic is reported with its execution below.
+    // A panic is reported below, together with its execution.
     std::panic::set_hook(Box::new(|_| {}));
     let samples = samples();
     println!("reader       executions       read  rate (1/s)  slowest (ms)  most memory (MB)");
@@ -110,7 +110,7 @@ fn report(name: &str, statistics: &Statistics, time: Duration) {
     );
 }
 
-/// Returns the seed of one execution.
+/// Returns the seed of one execution of a reader.
 fn seed(reader: Reader, k: u64) -> u64 {
     let name = reader.name().bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -158,9 +158,9 @@ fn large(
     Ok(())
 }
 
-/// Executes the reader once, and sometimes the sniffers on the same bytes.
+/// Executes a reader once, and sometimes the format detection on the same bytes.
 ///
-/// A fault is returned as a sentence that locates its input.
+/// A fault is returned as a sentence that identifies the input.
 fn execute(
     reader: Reader,
     k: u64,

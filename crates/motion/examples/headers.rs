@@ -1,12 +1,12 @@
-//! A million random tables and a million damaged headers: `cargo run --release --example headers -p
-//! barrelstack-motion -- 1000000`.
+//! Checks a million random tables and a million damaged headers. Run it with
+//! `cargo run --release --example headers -p barrelstack-motion -- 1000000`.
 
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
     clippy::format_collect,
     unreachable_pub,
-    reason = "an example prints what it counts"
+    reason = "an example prints its results"
 )]
 
 #[path = "../tests/headers/mod.rs"]
@@ -37,6 +37,8 @@ fn main() {
                 }
             }
         }
-        println!("{count} {what}: {right} right or warned of, {refused} refused, {wrong} wrong");
+        println!(
+            "{count} {what}: {right} right or with a warning, {refused} refused, {wrong} wrong"
+        );
     }
 }

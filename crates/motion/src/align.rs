@@ -1,4 +1,4 @@
-//! Alignment of the channels of a record: whole steps are cut, fractions of a step shifted, to one common span.
+//! Alignment of the channels of a record to a common time span.
 
 use crate::error::MotionError;
 use crate::math::{self, PI};
@@ -7,27 +7,27 @@ use crate::sampled::integrate;
 use crate::site::Site;
 use crate::utc::Utc;
 
-/// Number of samples to each side in the interpolation of a fractional shift.
+/// Number of samples on each side in the interpolation of a fractional shift.
 const REACH: usize = 32;
-/// Shifts of less than this share of a step are ignored; clocks are less accurate.
+/// Shifts below this fraction of a step are ignored; recorder clocks are less accurate.
 const NEGLECTED: f64 = 0.01;
 
 impl Record {
-    /// Cuts channels that begin at different instants to their common span, and shifts by remaining fractions of a
-    /// step; the notes state what was done.
+    /// Aligns channels that begin at different instants. Channels are cut to their common span and
+    /// shifted by the remaining fraction of a step; the notes state what was done.
     ///
-    /// A fractional shift is an interpolation by the sinc function under a squared cosine of 32 samples to each
-    /// side, exact to 1e-4 below eight tenths of the Nyquist frequency.
-    /// Channels of unknown start stay as they are.
+    /// The fractional shift is a sinc interpolation with a squared-cosine window over 32 samples on
+    /// each side, accurate to 1e-4 below 80 % of the Nyquist frequency. Channels with unknown start
+    /// are not changed.
     ///
     /// # Errors
-    /// If the channels have no span in common.
+    /// If the channels have no common span.
     pub fn align(&mut self) -> Result<(), MotionError> {
         let all: Vec<usize> = (0..self.channels.len()).collect();
         self.align_some(&all)
     }
 
-    /// Aligns, as [`Record::align`], the channels of each station and sensor separately.
+    /// Aligns the channels of each station and sensor separately; see [`Record::align`].
     pub(crate) fn align_each_site(&mut self) -> Result<(), MotionError> {
         let mut sites: Vec<(Site, Vec<usize>)> = Vec::new();
         for (place, channel) in self.channels.iter().enumerate() {
@@ -63,8 +63,8 @@ impl Record {
             .map(|(p, start, end)| format!("{} {start} to {end}", self.channels[*p].name))
             .collect();
         let apart = MotionError::mismatch(
-            format!("the channels have no span in common: {}", each.join(", ")),
-            "give channels that were recorded at one time",
+            format!("the channels have no common time span: {}", each.join(", ")),
+            "give channels that were recorded at the same time",
         );
         if !(end.since(begin) >= longest_step) {
             return Err(apart);
@@ -101,8 +101,8 @@ impl Record {
     }
 }
 
-/// Makes a channel begin `late` seconds later and last `length` seconds; returns the fraction of a step by which
-/// it was interpolated.
+/// Makes a channel begin `late` seconds later and last `length` seconds. Returns the fraction of a
+/// step by which the channel was interpolated.
 fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -> Option<f64> {
     let steps = late / channel.time_step;
     let part = steps - steps.round();
@@ -128,11 +128,11 @@ fn begin_later(channel: &mut Channel, late: f64, length: f64, corrected: bool) -
     shifted
 }
 
-/// Returns values at `k + part` for every `k` of a range; beyond the ends there are no samples, and the weights
-/// inside are normalized to compensate.
+/// Returns values interpolated at `k + part` for every `k` of a range. Near the ends, where samples
+/// are missing, the remaining weights are normalized.
 fn interpolated(values: &[f64], range: std::ops::Range<usize>, part: f64) -> Vec<f64> {
     let reach = REACH as f64;
-    // Weight of the sample `j - REACH` away.
+    // Weight of the sample `j - REACH` steps away.
     let weights: Vec<f64> = (0..=2 * REACH)
         .map(|j| {
             let x = j as f64 - reach - part;

@@ -1,4 +1,4 @@
-//! Archives as downloaded: the files inside zip, tar and tar.gz, and nested archives.
+//! Downloaded archives: access to the files inside zip, tar, tar.gz and nested archives.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::format::{LARGEST_UNPACKED, Source, shorten, zip};
 #[cfg(not(target_family = "wasm"))]
 mod tape;
 
-/// The page omits tar, to stay small.
+/// The WebAssembly build omits tar to stay small.
 #[cfg(target_family = "wasm")]
 mod tape {
     pub(super) fn is_tar(_: &[u8]) -> bool {
@@ -24,13 +24,13 @@ mod tape {
     }
 }
 
-/// Maximum number of files in an archive.
+/// Largest number of files in an archive.
 const MOST: usize = 50_000;
-/// Maximum size (bytes) of a decompressed tar archive.
+/// Largest size of a decompressed tar archive (bytes).
 const LARGEST_TAR: u64 = 256 << 20;
-/// Maximum depth of nested archives.
+/// Largest depth of nested archives.
 const DEEPEST: usize = 2;
-/// Extensions of archives, in lower case.
+/// File name extensions of archives, in lower case.
 const ENDINGS: [&str; 4] = [".zip", ".tar", ".tgz", ".tar.gz"];
 
 /// An archive whose files can be read one by one.
@@ -55,17 +55,18 @@ enum Kind {
 }
 
 impl Archive {
-    /// `true` if a name has the extension of an archive: `.zip`, `.tar`, `.tgz` or `.tar.gz`.
+    /// Returns `true` if a name has the extension of an archive: `.zip`, `.tar`, `.tgz` or
+    /// `.tar.gz`.
     pub fn is_named(name: &str) -> bool {
         let lower = name.to_ascii_lowercase();
         ENDINGS.iter().any(|ending| lower.ends_with(ending))
     }
 
-    /// Opens bytes that are a zip, tar or tar.gz archive; `None` for all others, including NumPy archives. `name` is
-    /// used in messages only.
+    /// Opens bytes that are a zip, tar or tar.gz archive. Returns `None` for anything else,
+    /// including NumPy archives. `name` is used only in messages.
     ///
     /// # Errors
-    /// If gzip around a tar archive is damaged or unpacks to more than 256 MB.
+    /// If a compressed tar archive is damaged, or larger than 256 MB when unpacked.
     pub fn open(bytes: Vec<u8>, name: &str) -> Result<Option<Self>, ReadError> {
         let archive = |bytes, kind| Ok(Some(Self { name: name.to_owned(), bytes, kind }));
         if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
@@ -80,7 +81,7 @@ impl Archive {
         }
         let inside = || flate2::read::MultiGzDecoder::new(bytes.as_slice());
         let mut head = Vec::new();
-        // A file damaged this early is refused as a gzip file of one record.
+        // A gzip file damaged this early is reported later, when read as a gzip file of one record.
         if inside().take(512).read_to_end(&mut head).is_err() || !tape::is_tar(&head) {
             return Ok(None);
         }
@@ -96,21 +97,21 @@ impl Archive {
         archive(all, Kind::Tar)
     }
 
-    /// Splits a path such as `folder/records.zip/a.AT2` into the archive and the name inside; `None` if no folder of
-    /// the path has the extension of an archive.
+    /// Splits a path such as `folder/records.zip/a.AT2` into the path of the archive and the name
+    /// inside it. Returns `None` if no folder of the path has the extension of an archive.
     pub fn path_inside(path: &Path) -> Option<(PathBuf, String)> {
         let outer = path.ancestors().skip(1).filter(|folder| {
             folder.file_name().is_some_and(|name| Self::is_named(&name.to_string_lossy()))
         });
-        // The outermost: further ones are nested archives.
+        // Use the outermost archive; the others are nested in it.
         let archive = outer.last()?;
         let inner = path.strip_prefix(archive).ok()?;
         Some((archive.to_owned(), inner.to_string_lossy().replace('\\', "/")))
     }
 
-    /// Returns the names of all files, sorted; those in nested archives as `inner.zip/name`.
+    /// Returns the names of all files, sorted. Files in nested archives are named `inner.zip/name`.
     ///
-    /// Folders, hidden files and metadata files of operating systems are left out.
+    /// Folders, hidden files and metadata files of operating systems are omitted.
     ///
     /// # Errors
     /// If the archive is damaged.
@@ -142,10 +143,10 @@ impl Archive {
         Ok(())
     }
 
-    /// Returns the bytes of a file by its name from [`Archive::names`].
+    /// Returns the content of a file, given its name from [`Archive::names`].
     ///
     /// # Errors
-    /// If there is no such file, or it is damaged, encrypted, or has more than 12 MB.
+    /// If there is no such file, or if it is damaged, encrypted or larger than 12 MB.
     pub fn file(&self, name: &str) -> Result<Vec<u8>, ReadError> {
         if let Some((archive, inner)) = Self::path_inside(Path::new(name)) {
             let archive = archive.to_string_lossy().replace('\\', "/");
@@ -197,7 +198,7 @@ impl Archive {
         if found.len() as u64 > limit { Err(too_large()) } else { Ok(found) }
     }
 
-    /// Calls `take` with name and bytes of every file until it returns `true`.
+    /// Calls `take` with the name and the content of every file until it returns `true`.
     fn each_of_tar(&self, mut take: impl FnMut(&str, &[u8]) -> bool) -> Result<(), ReadError> {
         tape::each_file(&self.bytes, |name, bytes| match bytes {
             Some(bytes) => Ok(take(name, bytes)),
@@ -221,8 +222,8 @@ impl Archive {
 fn damaged(name: &str, found: &str) -> ReadError {
     Source::new(name, &[]).damaged(
         (),
-        "an archive that can be unpacked",
+        "a readable archive",
         found,
-        "unpack it by itself, or get it again from its source",
+        "unpack it with another program, or get it again from its source",
     )
 }

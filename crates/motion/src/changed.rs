@@ -1,4 +1,5 @@
-//! Operations on whole records: processing, scaling, matching; every step is added to the notes.
+//! Operations on whole records: processing, scaling and matching. Every step is added to the notes
+//! of the record.
 
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
@@ -13,10 +14,10 @@ use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 
 impl Channel {
-    /// Returns the channel as a sampled motion, with its initial velocity.
+    /// Returns the channel as a sampled motion that starts with the channel's initial velocity.
     ///
     /// # Errors
-    /// As [`Sampled::new`].
+    /// The same as for [`Sampled::new`].
     pub fn sampled(&self) -> Result<Sampled, MotionError> {
         let acceleration = self.acceleration.clone();
         Sampled::with_initial_velocity(self.time_step, acceleration, self.initial_velocity)
@@ -24,7 +25,7 @@ impl Channel {
 }
 
 impl Record {
-    /// Processes all channels by a chain, and adds every step to the notes.
+    /// Processes all channels and adds every step to the notes.
     ///
     /// ```
     /// use barrelstack_motion::{Processing, bundled};
@@ -43,21 +44,21 @@ impl Record {
                 .apply(channel.time_step, &channel.acceleration, channel.initial_velocity)
                 .map_err(|error| {
                     let what = format!("{}, channel {}: {error}", self.file, channel.name);
-                    MotionError::mismatch(what, "give a value in that range")
+                    MotionError::mismatch(what, "give a value in this range")
                 })?;
             channel.acceleration = done.acceleration;
             channel.initial_velocity = done.initial_velocity;
             for step in done.steps {
                 out.notes.push(format!("{}: {step}", channel.name));
             }
-            // Stated peaks of the header do not apply to other numbers.
+            // The peaks stated in the header do not apply to the processed values.
             channel.peaks.clear();
         }
         out.stage = Stage::Corrected;
         Ok(out)
     }
 
-    /// Multiplies all channels by one factor; the purpose belongs in the notes.
+    /// Multiplies all channels by one factor. The caller adds the purpose to the notes.
     #[must_use]
     pub fn multiplied(&self, factor: f64) -> Self {
         let mut out = self.clone();
@@ -71,12 +72,13 @@ impl Record {
         out
     }
 
-    /// Matches one channel (from 0) to a target, which the notes call `named`; all others take its first scaling only.
+    /// Matches one channel (counted from 0) to a target spectrum, named `named` in the notes. All
+    /// other channels are only multiplied by the first scale factor.
     ///
-    /// `nearly` accepts the best motion where the tolerance is not reached.
+    /// With `nearly`, the best motion is accepted if the tolerance is not reached.
     ///
     /// # Errors
-    /// As [`GroundMotion::match_spectrum`], and if there is no such channel.
+    /// The same as for [`GroundMotion::match_spectrum`], and if there is no such channel.
     pub fn matched(
         &self,
         place: usize,
@@ -91,8 +93,8 @@ impl Record {
             available: self.channels.len().to_string(),
         })?;
         let horizontal = History::Sampled(channel.sampled()?);
-        // A second component takes the first scaling and nothing else, so one of height 1 comes back as
-        // the factor for all others.
+        // A vertical component is multiplied only by the first scale factor. A probe of height 1
+        // therefore returns this factor, which is then applied to all other channels.
         let probe = History::Sampled(Sampled::new(1.0, vec![1.0, 1.0])?);
         let given = GroundMotion::new(channel.name.clone(), horizontal, Some(probe));
         let matched = if nearly {
@@ -139,16 +141,18 @@ impl Record {
         Ok((after, matched))
     }
 
-    /// Matches the response of both horizontal components over all directions, `RotD50` or `RotD100`, to a target, which
-    /// the notes call `named`; all other components take the first scaling only.
+    /// Matches the response of both horizontal components over all directions (`RotD50` or
+    /// `RotD100`) to a target spectrum, named `named` in the notes. All other channels are only
+    /// multiplied by the first scale factor.
     ///
-    /// Amplitudes of both are changed by one gain, which keeps their polarization, then wavelets are added along the
-    /// directions in which the measure is attained; `settings.method` is not used. `nearly` accepts the best motion where
-    /// the tolerance is not reached.
+    /// The amplitudes of both components are multiplied by one gain, which keeps their
+    /// polarization. Then wavelets are added along the directions of the measured response;
+    /// `settings.method` is not used. With `nearly`, the best motion is accepted if the tolerance
+    /// is not reached.
     ///
     /// # Errors
-    /// As [`Record::horizontal_pair`]; if a setting is out of range, the measure is no measure over directions, the motion
-    /// does not move, or the tolerance is not reached.
+    /// The same as for [`Record::horizontal_pair`]; if a setting is out of range, the measure is
+    /// not `RotD50` or `RotD100`, the motion does not move, or the tolerance is not reached.
     pub fn matched_pair(
         &self,
         measure: Horizontals,
@@ -220,12 +224,13 @@ impl Record {
     }
 }
 
-/// States that a match divided the step (s), if it did.
+/// Describes the division of the time step (s) by a match; `None` if the step was not divided.
 fn cut(before: f64, after: f64) -> Option<String> {
     (before != after).then(|| {
         format!(
-            "step cut from {before} to {after} s, so that the shortest matched period has {STEPS_A_PERIOD}; sums over \
-             samples, such as the Arias intensity, fall a little where the motion is linear between"
+            "time step reduced from {before} to {after} s, so that the shortest matched period has \
+             {STEPS_A_PERIOD} steps; sums over samples, such as the Arias intensity, decrease \
+             slightly, because the motion is linear between the samples"
         )
     })
 }

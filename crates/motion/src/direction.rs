@@ -1,37 +1,37 @@
-//! Directions of components, parsed from their names.
+//! Directions of components, and their parsing from channel names.
 
 /// Orientation of a component relative to the ground plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Orientation {
-    /// In the ground plane.
+    /// In the horizontal plane.
     Horizontal,
-    /// Along gravity; positive upward once read.
+    /// Along gravity; positive upward after reading.
     Vertical,
 }
 
-/// Direction of a component as far as it is known.
+/// Direction of a component, as far as known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Direction {
     /// Azimuth of the positive direction, degrees clockwise from north, 0 to below 360.
     pub azimuth: Option<f64>,
-    /// Horizontal or vertical, if the name states it.
+    /// Horizontal or vertical, if known.
     pub orientation: Option<Orientation>,
     /// `true` if the name states that the positive direction is down.
     pub downward: bool,
 }
 
 impl Direction {
-    /// Returns a horizontal direction of known azimuth (degrees clockwise from north).
+    /// Returns a horizontal direction with a known azimuth (degrees clockwise from north).
     pub fn horizontal(azimuth: f64) -> Self {
         Self { azimuth: Some(azimuth.rem_euclid(360.0)), ..Self::some_horizontal() }
     }
 
-    /// Returns a horizontal direction of unknown azimuth.
+    /// Returns a horizontal direction with an unknown azimuth.
     pub fn some_horizontal() -> Self {
         Self { azimuth: None, orientation: Some(Orientation::Horizontal), downward: false }
     }
 
-    /// Returns the vertical, positive upward.
+    /// Returns the vertical direction, positive upward.
     pub fn up() -> Self {
         Self { azimuth: None, orientation: Some(Orientation::Vertical), downward: false }
     }
@@ -40,9 +40,9 @@ impl Direction {
         Self { downward: true, ..Self::up() }
     }
 
-    /// Parses names such as `360`, `90 Deg`, `N28W`, `E-W`, `UP`, `HNZ`, `L`.
+    /// Parses a direction from a name such as `360`, `90 Deg`, `N28W`, `E-W`, `UP`, `HNZ` or `L`.
     ///
-    /// A name without a direction gives the default: all unknown.
+    /// Returns the default, an unknown direction, if the name contains no direction.
     ///
     /// ```
     /// use barrelstack_motion::{Direction, Orientation};
@@ -77,8 +77,9 @@ impl Direction {
         bearing(text).or_else(|| seed_channel(text)).unwrap_or_default()
     }
 
-    /// Parses a name, or else the code of the direction in headers of CSMIP and COSMOS: an azimuth, or a number from
-    /// 400 on, of which those from 700 on are relative to a structure.
+    /// Parses a direction from a name, or else from the direction code in headers of CSMIP and
+    /// COSMOS. The code is an azimuth or a number from 400 on; codes from 700 on are relative to a
+    /// structure.
     pub(crate) fn of_name_or_code(name: &str, code: Option<f64>) -> Self {
         let stated = Self::parse(name);
         if stated != Self::default() {
@@ -119,7 +120,7 @@ fn bearing(text: &str) -> Option<Direction> {
     }))
 }
 
-/// Parses a three-letter channel code whose last letter is the direction, such as `HNE`.
+/// Parses a three-letter channel code, such as `HNE`, whose last letter is the direction.
 fn seed_channel(text: &str) -> Option<Direction> {
     let [band, instrument, direction] = text.as_bytes() else { return None };
     if !band.is_ascii_uppercase() || !matches!(instrument, b'N' | b'L' | b'G' | b'H') {

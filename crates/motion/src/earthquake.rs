@@ -1,4 +1,4 @@
-//! The earthquake of a record, as far as its header states it.
+//! The earthquake of a record, as stated in the header of its file.
 
 use crate::math;
 use crate::record::Record;
@@ -7,27 +7,28 @@ use crate::site::Site;
 /// Mean radius of the Earth (km).
 const EARTH: f64 = 6371.0;
 
-/// Magnitude and place of an earthquake, as stated in a header; unstated fields are empty.
+/// Magnitude and location of an earthquake, as stated in a header; unstated fields are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Earthquake {
-    /// Identifier in the catalog of its agency.
+    /// Identifier in the agency's catalog.
     pub id: String,
-    /// Magnitude; of several, the moment magnitude.
+    /// Magnitude; the moment magnitude if several are stated.
     pub magnitude: Option<f64>,
-    /// Scale of the magnitude as written in the header, such as `Mw`; empty if not stated.
+    /// Magnitude scale as written in the header, such as `Mw`; empty if not stated.
     pub scale: String,
     /// Latitude of the epicenter (degrees, positive north).
     pub latitude: Option<f64>,
     /// Longitude of the epicenter (degrees, positive east).
     pub longitude: Option<f64>,
-    /// Depth (km).
+    /// Focal depth (km).
     pub depth: Option<f64>,
     /// Epicentral distance stated in the header (km).
     pub epicentral_distance: Option<f64>,
 }
 
 impl Earthquake {
-    /// Returns the first valid one of several magnitudes, with its scale; 0 and −999 mean unknown.
+    /// Returns an earthquake with the first valid one of several magnitudes and its scale; 0 and
+    /// −999 mean unknown.
     pub(crate) fn of_magnitude<'a>(
         stated: impl IntoIterator<Item = (&'a str, Option<f64>)>,
     ) -> Self {
@@ -38,7 +39,8 @@ impl Earthquake {
         Self { magnitude, scale: scale.to_owned(), ..Self::default() }
     }
 
-    /// Adds an epicenter (degrees) and a depth (km), if they are valid.
+    /// Adds the epicenter (latitude and longitude in degrees) and the depth (km), if they are
+    /// valid.
     pub(crate) fn at(self, epicenter: Option<(f64, f64)>, depth: Option<f64>) -> Self {
         let Site { latitude, longitude, .. } = Site::default().at(epicenter);
         let depth = depth.filter(|depth| (0.0..1000.0).contains(depth));
@@ -47,8 +49,8 @@ impl Earthquake {
 }
 
 impl Record {
-    /// Returns the epicentral distance (km): as stated in the header, else along the great circle from the epicenter
-    /// to the station, if both are stated.
+    /// Returns the epicentral distance (km) as stated in the header, or else along the great circle
+    /// from the epicenter to the station, if both positions are stated.
     pub fn epicentral_distance(&self) -> Option<f64> {
         let quake = &self.earthquake;
         let stated =
@@ -61,7 +63,7 @@ impl Record {
     }
 }
 
-/// Returns the distance (km) between two points (degrees) on a sphere.
+/// Returns the great-circle distance (km) between two points given in degrees.
 fn great_circle(from: (f64, f64), to: (f64, f64)) -> f64 {
     let radians = math::PI / 180.0;
     let half = |angle: f64| math::powi(math::sin(0.5 * radians * angle), 2);

@@ -1,42 +1,43 @@
-//! Errors between a file and a usable ground motion, as sentences with a remedy.
+//! Errors of reading ground-motion files, as sentences with a remedy.
 
 pub use barrelstack_series::MotionError;
 
-/// Reason for the refusal of a file.
+/// Kind of reason for refusing a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// No reader recognizes the bytes.
+    /// No reader recognizes the content.
     Unrecognized,
-    /// The file is sound but holds something other than an acceleration history.
+    /// The file is valid but contains no acceleration history.
     NotAcceleration,
-    /// The file contradicts itself or its format: truncated, overflowed, miscounted, not a number.
+    /// The file is inconsistent or violates its format: truncated, with overflowed or wrong
+    /// numbers.
     Damaged,
-    /// The archive has several records, of which one must be named.
+    /// The archive contains several records; the caller must name one.
     SeveralRecords,
-    /// The file lacks required information that the caller did not give.
+    /// The file lacks required information that the caller did not provide.
     Missing(Given),
-    /// The channel is of another instrument than an accelerometer; the caller may request differentiation.
+    /// The channel was not recorded by an accelerometer; the caller may request differentiation.
     OtherInstrument,
-    /// An option is out of range; the file was not read.
+    /// An option is out of range or contradicts the file.
     Options,
 }
 
-/// Information that a caller may have to supply.
+/// Information that a caller may have to provide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Given {
-    /// The unit of acceleration.
+    /// The unit of the accelerations.
     Unit,
-    /// The step.
+    /// The time step.
     Step,
-    /// The sensitivity, since the file has counts.
+    /// The sensitivity, because the file contains counts.
     Sensitivity,
-    /// Either of both, since the file may have accelerations or counts.
+    /// The unit or the sensitivity, because the file may contain accelerations or counts.
     UnitOrSensitivity,
 }
 
-/// Error of reading a file: its place, the expectation, the finding, and the remedy.
+/// An error in reading a file: place, expectation, finding and remedy.
 ///
-/// The fields are those of [`ReadFailure`], reached directly: `error.line`, `error.refusal`.
+/// The fields of [`ReadFailure`] are accessible directly, as in `error.line` and `error.refusal`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(transparent)]
 pub struct ReadError(Box<ReadFailure>);
@@ -55,27 +56,27 @@ impl From<ReadFailure> for ReadError {
     }
 }
 
-/// The facts of a [`ReadError`].
+/// The fields of a [`ReadError`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}{}: expected {expected}, found {found}; {remedy}", place(*line, *column))]
 pub struct ReadFailure {
-    /// Name of the file as given by the caller.
+    /// Name of the file, as given by the caller.
     pub file: String,
     /// Line, counted from 1.
     pub line: Option<usize>,
     /// Column of the first offending character, counted from 1.
     pub column: Option<usize>,
-    /// The kind of refusal, for programs.
+    /// Kind of refusal, for programs.
     pub refusal: Refusal,
-    /// The expectation of the reader.
+    /// Content expected by the reader.
     pub expected: String,
-    /// The finding there.
+    /// Content found.
     pub found: String,
-    /// The remedy.
+    /// Remedy for the user.
     pub remedy: String,
 }
 
-/// Formats `, line 5, column 3`, as far as known.
+/// Formats the place as `, line 5, column 3`, as far as known.
 fn place(line: Option<usize>, column: Option<usize>) -> String {
     let part =
         |what: &str, of: Option<usize>| of.map_or_else(String::new, |n| format!(", {what} {n}"));

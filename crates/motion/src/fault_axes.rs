@@ -1,34 +1,35 @@
-//! Rotation of two horizontals: across and along a fault, or to the direction of the largest velocity.
+//! Rotates two horizontals to the axes of a fault or to the direction of the largest velocity.
 
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 use crate::rotd::rotated_peak;
 use crate::select::Component;
 
-/// Two rotated horizontals.
+/// Two horizontals after rotation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// Across the fault, or along the direction of the largest velocity.
+    /// Component normal to the fault, or along the direction of the largest velocity.
     pub first: Channel,
-    /// Along the fault, or across the direction of the largest velocity.
+    /// Component parallel to the fault, or perpendicular to the direction of the largest velocity.
     pub second: Channel,
-    /// Description of the rotation, one sentence.
+    /// Description of the rotation, in one sentence.
     pub note: String,
 }
 
 impl Record {
-    /// Returns the motion across (fault-normal) and along (fault-parallel) a fault of a strike (degrees clockwise
-    /// from north), positive at 90 degrees clockwise from the strike and along it.
+    /// Returns the fault-normal and the fault-parallel component for a strike (degrees clockwise
+    /// from north). Fault-parallel is positive along the strike, fault-normal 90 degrees clockwise
+    /// from it.
     ///
     /// # Errors
-    /// If the strike is not finite or there are not two horizontals of known azimuth.
+    /// If the strike is not finite, or there are not two horizontals of known azimuth.
     pub fn fault_axes(&self, strike: f64) -> Result<Turned, MotionError> {
         MotionError::require_finite("strike (degrees)", strike)?;
         Ok(Turned {
             first: self.named_along(strike + 90.0, "FN")?,
             second: self.named_along(strike, "FP")?,
             note: format!(
-                "turned to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) of strike \
+                "rotated to fault-normal FN (azimuth {}) and fault-parallel FP (azimuth {}) of strike \
                  {strike} degrees",
                 (strike + 90.0).rem_euclid(360.0),
                 strike.rem_euclid(360.0)
@@ -36,7 +37,8 @@ impl Record {
         })
     }
 
-    /// Returns the motion along the horizontal direction of the largest velocity, and across it.
+    /// Returns the components along and perpendicular to the horizontal direction of the largest
+    /// velocity.
     ///
     /// # Errors
     /// If there are not two horizontals of known azimuth.
@@ -49,19 +51,19 @@ impl Record {
             first: self.named_along(peak.angle, "VMAX")?,
             second: self.named_along(across, "VMAX-90")?,
             note: format!(
-                "turned to VMAX, the direction of the largest velocity, {:.1} cm/s at azimuth {}, and \
-                 VMAX-90, 90 degrees before it",
+                "rotated to VMAX, the direction of the largest velocity, {:.1} cm/s at azimuth {}, and \
+                 VMAX-90, 90 degrees counterclockwise from it",
                 100.0 * peak.largest,
                 peak.angle
             ),
         })
     }
 
-    /// Returns the motion along an azimuth (degrees) under a given name.
+    /// Returns the motion along an azimuth (degrees), as a channel with the given name.
     fn named_along(&self, azimuth: f64, name: &str) -> Result<Channel, MotionError> {
         let mut channel = self.component(&Component::Azimuth(azimuth.rem_euclid(360.0)))?;
         name.clone_into(&mut channel.name);
-        // Stated peaks of the header do not apply to another direction.
+        // The peaks stated in the header do not apply to another direction.
         channel.peaks.clear();
         Ok(channel)
     }

@@ -1,4 +1,4 @@
-//! A ground motion ready to drive a model: a horizontal and optionally a vertical component.
+//! A ground motion that can drive a model: a horizontal component and optionally a vertical one.
 
 use crate::error::MotionError;
 use crate::history::History;
@@ -6,7 +6,7 @@ use crate::intensity::IntensityMeasure;
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 
-/// A motion with its provenance.
+/// A ground motion with its provenance.
 ///
 /// ```
 /// use barrelstack_motion::{GroundMotion, IntensityMeasure, Pulse};
@@ -18,26 +18,26 @@ use crate::sampled::Sampled;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
-    /// The horizontal component, positive along `x`.
+    /// Horizontal component, positive along `x`.
     pub horizontal: History,
-    /// The vertical component, positive upward.
+    /// Vertical component, positive upward.
     pub vertical: Option<History>,
     /// Name for tables and plots.
     pub name: String,
     /// Time (s) at which the motion ends.
     pub duration: f64,
-    /// Every processing and scaling step, one sentence each, in order.
+    /// Every processing and scaling step, in order, one sentence each.
     pub provenance: Vec<String>,
 }
 
 impl GroundMotion {
-    /// Creates a motion from components.
+    /// Creates a motion from its components.
     pub fn new(name: impl Into<String>, horizontal: History, vertical: Option<History>) -> Self {
         let duration = horizontal.duration().max(vertical.as_ref().map_or(0.0, History::duration));
         Self { horizontal, vertical, name: name.into(), duration, provenance: Vec::new() }
     }
 
-    /// Creates a horizontal motion from a formula.
+    /// Creates a horizontal motion from an analytic pulse.
     ///
     /// # Errors
     /// If a parameter of the pulse is out of range.
@@ -51,7 +51,7 @@ impl GroundMotion {
     /// Creates a horizontal motion from equally spaced accelerations (m/s²), integrated from rest.
     ///
     /// # Errors
-    /// As [`Sampled::new`].
+    /// The same as for [`Sampled::new`].
     pub fn from_acceleration(
         name: impl Into<String>,
         time_step: f64,
@@ -60,16 +60,16 @@ impl GroundMotion {
         Ok(Self::new(name, History::Sampled(Sampled::new(time_step, acceleration)?), None))
     }
 
-    /// Multiplies all components by `factor`.
+    /// Returns the motion with all components multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let step = format!("scaled by {factor:.6} (one factor for all components)");
         self.changed(|history| history.scaled(factor), step)
     }
 
-    /// Returns the motion for a model of `length_scale` times the size under the same gravity: time times
-    /// `√length_scale`, displacement times `length_scale`, velocity times `√length_scale`,
-    /// acceleration unchanged.
+    /// Returns the motion for a model of `length_scale` times the size under the same gravity
+    /// (Froude scaling). Time and velocity are multiplied by `√length_scale` and displacement by
+    /// `length_scale`; acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         let step = format!(
@@ -79,7 +79,7 @@ impl GroundMotion {
         self.changed(|history| history.froude(length_scale), step)
     }
 
-    /// Applies a change to all components, and adds its description.
+    /// Applies a change to all components and adds its description to the provenance.
     fn changed(&self, change: impl Fn(&History) -> History, step: String) -> Self {
         let horizontal = change(&self.horizontal);
         let vertical = self.vertical.as_ref().map(change);
@@ -87,11 +87,12 @@ impl GroundMotion {
         Self { provenance, ..Self::new(self.name.clone(), horizontal, vertical) }
     }
 
-    /// Scales the motion so that its horizontal component has a given intensity (SI units); the vertical
-    /// component takes the same factor.
+    /// Scales the motion so that its horizontal component has the intensity `target` (SI units).
+    /// The vertical component is multiplied by the same factor.
     ///
     /// # Errors
-    /// If the measure does not grow with amplitude, is zero here, or the target is not positive.
+    /// If the measure does not grow with the amplitude, is zero for this motion, or if the target
+    /// is not positive.
     pub fn scale_to(&self, measure: IntensityMeasure, target: f64) -> Result<Self, MotionError> {
         let factor = self.scale_factor(measure, target)?;
         let step = format!(
@@ -102,10 +103,11 @@ impl GroundMotion {
         Ok(self.changed(|history| history.scaled(factor), step))
     }
 
-    /// Returns the factor that brings the horizontal component to a given intensity (SI units).
+    /// Returns the factor that brings the horizontal component to the intensity `target` (SI
+    /// units).
     ///
     /// # Errors
-    /// As [`GroundMotion::scale_to`].
+    /// The same as for [`GroundMotion::scale_to`].
     pub fn scale_factor(&self, measure: IntensityMeasure, target: f64) -> Result<f64, MotionError> {
         measure.factor(target, &self.name, |factor| {
             if factor == 1.0 {
@@ -124,7 +126,7 @@ impl GroundMotion {
         measure.of_history(&self.horizontal)
     }
 
-    /// Returns the time (s) after which the acceleration of no component exceeds a limit (m/s²).
+    /// Returns the time (s) after which no component exceeds an acceleration limit (m/s²).
     pub fn calm_from(&self, limit: f64) -> f64 {
         let vertical = self.vertical.as_ref().map_or(0.0, |vertical| vertical.calm_from(limit));
         self.horizontal.calm_from(limit).max(vertical)

@@ -1,4 +1,4 @@
-//! Measures of two horizontals, combined to one number.
+//! Intensity measures of two horizontals, combined to one number.
 
 use std::str::FromStr;
 
@@ -8,9 +8,9 @@ use crate::math::{self, PI};
 use crate::rotd::{DIRECTIONS, rotated_peak, rotated_spectrum};
 use crate::sampled::{Sampled, running_trapezoid};
 
-/// Combination of the measures of two horizontals to one number.
+/// Combination of the intensity measures of two horizontals to one number.
 ///
-/// Parses from and prints as `rotd50`, `rotd100` and `geomean`.
+/// The text form is `rotd50`, `rotd100` or `geomean`.
 ///
 /// ```
 /// use barrelstack_motion::{Horizontals, IntensityMeasure, Sampled};
@@ -24,18 +24,19 @@ use crate::sampled::{Sampled, running_trapezoid};
 pub enum Horizontals {
     /// Median over all directions, one degree apart (Boore 2010, BSSA 100:1830-1835).
     RotD50,
-    /// Largest over all directions.
+    /// Maximum over all directions, one degree apart.
     RotD100,
-    /// Square root of the product of both as recorded.
+    /// Geometric mean of both components as recorded.
     GeometricMean,
 }
 
 impl Horizontals {
-    /// Returns the measure of two components with one step (SI units).
+    /// Returns the combined measure of two components with the same time step (SI units).
     ///
-    /// Over directions the longer one is cut to the shorter; the geometric mean uses each in full.
-    /// Peaks and spectral accelerations are computed from the convex hull of the two responses, all other measures from
-    /// the motion rotated degree by degree.
+    /// For measures over directions, the longer component is cut to the shorter one; the geometric
+    /// mean uses each component in full. Peaks and spectral accelerations are computed from the
+    /// convex hull of the two responses. All other measures are computed from the motion rotated
+    /// degree by degree.
     ///
     /// # Errors
     /// If the steps differ, or a parameter of the measure is out of range.
@@ -54,7 +55,7 @@ impl Horizontals {
             (_, IntensityMeasure::Pga) => rotated_peak(first.acceleration(), second.acceleration()),
             (_, IntensityMeasure::Pgv) => rotated_peak(first.velocity(), second.velocity()),
             (_, IntensityMeasure::Pgd) => {
-                // By trapezoids, like the measure of one component.
+                // Integrates by the trapezoidal rule, like the measure of one component.
                 let along = |one: &Sampled| running_trapezoid(one.time_step(), one.velocity());
                 rotated_peak(&along(first), &along(second))
             }
@@ -81,10 +82,12 @@ impl Horizontals {
         }
     }
 
-    /// Returns the common factor of both components that brings the measure to `target` (SI units).
+    /// Returns the common factor of both components that brings the combined measure to `target`
+    /// (SI units).
     ///
     /// # Errors
-    /// As [`Horizontals::of`]; if the measure does not grow with the motion or is zero, or the target is not positive.
+    /// The same as for [`Horizontals::of`]; if the measure does not grow with the amplitude or is
+    /// zero, or the target is not positive.
     pub fn scale_factor(
         self,
         measure: IntensityMeasure,
@@ -98,7 +101,7 @@ impl Horizontals {
     }
 }
 
-/// Returns the measure along every direction, sorted ascending.
+/// Returns the measure in every direction, in ascending order.
 fn turned(
     measure: IntensityMeasure,
     first: &Sampled,

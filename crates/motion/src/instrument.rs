@@ -1,4 +1,4 @@
-//! Metadata of instruments: sensitivity, quantity, direction; from `StationXML` or given by the caller.
+//! Instrument metadata (sensitivity, quantity, direction), from `StationXML` or from the caller.
 
 use crate::direction::Direction;
 use crate::error::MotionError;
@@ -7,34 +7,35 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// Metadata of one channel of a station; an empty code matches any.
+/// Metadata of one channel of a station; an empty code matches any code.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Instrument {
     /// Network code.
     pub network: String,
     /// Station code.
     pub station: String,
-    /// Location code; `None` matches any, an empty one the empty code.
+    /// Location code; `None` matches any code, an empty text only the empty code.
     pub location: Option<String>,
     /// Channel code, such as `HNE`.
     pub channel: String,
-    /// Start and end of validity.
+    /// Start and end of the period for which the metadata are valid; `None` if unlimited.
     pub epoch: (Option<Utc>, Option<Utc>),
-    /// Counts per m/s², or per m/s or m for another quantity; negative if positive counts mean motion against
-    /// [`Instrument::direction`].
+    /// Sensitivity in counts per m/s², or per m/s or m for another quantity. Negative if positive
+    /// counts mean motion opposite to [`Instrument::direction`].
     pub sensitivity: f64,
-    /// Quantity that the instrument measures, if known.
+    /// Quantity measured by the instrument, if known.
     pub quantity: Option<Quantity>,
-    /// Input unit of an instrument that does not measure motion, such as `Pa`; such a channel is refused.
+    /// Input unit of an instrument that does not measure motion, such as `Pa`; the channel is
+    /// refused.
     pub other_unit: Option<String>,
-    /// Its direction, if known.
+    /// Direction of the instrument, if known.
     pub direction: Option<Direction>,
-    /// Latitude, longitude (degrees) and elevation (m), where known.
+    /// Latitude (degrees), longitude (degrees) and elevation (m), if known.
     pub place: [Option<f64>; 3],
 }
 
 impl Instrument {
-    /// `true` if this describes a channel that begins at `start`.
+    /// Returns `true` if the metadata describe a channel that begins at `start`.
     pub(crate) fn describes(&self, seed: &SeedName, start: Option<Utc>) -> bool {
         let fits = |mine: &str, theirs: &str| mine.is_empty() || mine.eq_ignore_ascii_case(theirs);
         let (from, until) = self.epoch;
@@ -47,7 +48,7 @@ impl Instrument {
             })
     }
 
-    /// Fills in the place of a site where the waveform file does not state it.
+    /// Fills in the coordinates of a site that the waveform file does not state.
     pub(crate) fn complete(&self, site: &mut Site) {
         let [latitude, longitude, elevation] = self.place;
         site.latitude = site.latitude.or(latitude);
@@ -56,7 +57,7 @@ impl Instrument {
     }
 }
 
-/// The four codes of a channel.
+/// The SEED codes of a channel: network, station, location and channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct SeedName {
     pub(crate) network: String,
@@ -66,7 +67,8 @@ pub(crate) struct SeedName {
 }
 
 impl SeedName {
-    /// Returns the quantity by the second letter of the channel code, if it is not acceleration (SEED 2.4, appendix A).
+    /// Returns the quantity given by the second letter of the channel code, and its instrument, if
+    /// it is not acceleration (SEED 2.4, appendix A).
     pub(crate) fn other_quantity(&self) -> Option<(Quantity, &'static str)> {
         let [_, instrument, _] = self.channel.as_bytes() else { return None };
         match instrument {
@@ -78,14 +80,15 @@ impl SeedName {
     }
 }
 
-/// Largest deviation of a dip from horizontal or vertical (degrees) that counts as either.
+/// Largest deviation (degrees) of a dip from horizontal or vertical at which a sensor is still
+/// taken as such.
 const LARGEST_TILT: f64 = 5.0;
 
-/// Reads the channels of a `StationXML` file that have a sensitivity, in file order.
+/// Reads all channels with a sensitivity from a `StationXML` file, in file order.
 ///
-/// Sensitivities in g, gal, cm/s², mm/s², nm/s² and similar units are converted to counts per m/s² (those of
-/// velocity and displacement to counts per m/s or m); a channel with another input unit, such as Pa, keeps it in
-/// [`Instrument::other_unit`].
+/// Sensitivities for g, gal, cm/s², mm/s², nm/s² and similar units are converted to counts per
+/// m/s², those for velocity and displacement to counts per m/s or m. The input unit of any other
+/// channel, such as Pa, is stored in [`Instrument::other_unit`].
 ///
 /// # Errors
 /// If the text is not XML.
@@ -100,7 +103,7 @@ pub fn station_xml(text: &str) -> Result<Vec<Instrument>, MotionError> {
         .collect())
 }
 
-/// Reads one channel, if it has a sensitivity.
+/// Reads one channel; returns `None` if it has no sensitivity.
 fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument> {
     let any =
         |name: &'static str| move |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == name;
@@ -127,7 +130,7 @@ fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument
         _ if dip.abs() <= LARGEST_TILT => {
             number("Azimuth").map_or_else(Direction::some_horizontal, Direction::horizontal)
         }
-        // An inclined sensor is neither.
+        // An inclined sensor is neither horizontal nor vertical.
         _ => Direction::default(),
     });
     let date = |key: &str| code("Channel", key).and_then(|text| text.parse().ok());
@@ -145,7 +148,8 @@ fn channel_of_station_xml(channel: roxmltree::Node<'_, '_>) -> Option<Instrument
     })
 }
 
-/// Differentiates a series by central differences of fourth order, of first order next to the ends.
+/// Differentiates a series by central differences of fourth order; near the ends, the order is
+/// lower.
 pub(crate) fn differentiated(values: &[f64], time_step: f64) -> Vec<f64> {
     let n = values.len();
     let slope = |a: usize, b: usize| (values[b] - values[a]) / ((b - a) as f64 * time_step);

@@ -1,37 +1,38 @@
-//! Joining of files: parts of one record that overlap in time, and components in separate files.
+//! Joins files: overlapping parts of one record, and components in separate files.
 
 use crate::error::MotionError;
 use crate::math;
 use crate::record::{Channel, Record, Stage};
 
-/// Shortest overlap (s).
+/// Shortest overlap of two parts (s).
 const SHORTEST_OVERLAP: f64 = 1.0;
-/// Largest share of the motion that may differ inside an overlap.
+/// Largest relative difference of the motion inside an overlap.
 const LARGEST_MISFIT: f64 = 0.05;
 
 impl Record {
-    /// Gathers one record from several files of one component each, or several, on one clock
-    /// ([`Record::align`]).
+    /// Combines several files, with one or more components each, into one record with a common time
+    /// base ([`Record::align`]).
     ///
-    /// Repeated channel names get the file's name as a prefix.
+    /// Repeated channel names get the file name as a prefix.
     ///
     /// # Errors
-    /// If there is no record, the steps differ, the files are of different stations, sensors, events,
-    /// publishers or stages, or have no common span.
+    /// If no record is given, the time steps differ, or the files are of different stations,
+    /// sensors, events, publishers or stages, or have no common time span.
     pub fn gather(records: &[Self]) -> Result<Self, MotionError> {
         if let Some((first, rest)) = records.split_first()
             && let Some(what) = rest.iter().find_map(|record| first.unlike(record))
         {
-            let remedy = "give components that one sensor recorded in one event";
+            let remedy = "give components recorded by one sensor in one event";
             return Err(MotionError::mismatch(what, remedy));
         }
         Self::gather_mixed(records)
     }
 
-    /// Gathers files as [`Record::gather`] regardless of their origin; their channels may then be combined.
+    /// Combines files like [`Record::gather`], regardless of their origin. The channels of the
+    /// result may be rotated together.
     ///
     /// # Errors
-    /// If there is no record, the steps differ, or the files have no common span.
+    /// If no record is given, the time steps differ, or the files have no common time span.
     pub fn gather_mixed(records: &[Self]) -> Result<Self, MotionError> {
         let Some((first, rest)) = records.split_first() else {
             return Err(MotionError::parameter("records to gather", "at least 1", 0));
@@ -61,7 +62,7 @@ impl Record {
             gathered.file = format!("{}, {}", gathered.file, record.file);
             if let Some(what) = first.unlike(record) {
                 gathered.mixed = true;
-                gathered.warn(None, format!("taken together although {what}"));
+                gathered.warn(None, format!("combined although {what}"));
             }
         }
         if !rest.is_empty() {
@@ -69,7 +70,7 @@ impl Record {
             if known < gathered.channels.len() {
                 let whose = if known == 0 { "no file states" } else { "not all files state" };
                 gathered.notes.push(format!(
-                    "{whose} a readable time of its first sample: the files are taken for simultaneous"
+                    "{whose} a readable time of its first sample: the files are assumed to be simultaneous"
                 ));
             }
             gathered.align()?;
@@ -77,8 +78,8 @@ impl Record {
         Ok(gathered)
     }
 
-    /// Cuts all channels to the shortest, as a file with one column per channel has them; the notes list the samples
-    /// cut from longer ones.
+    /// Cuts all channels to the length of the shortest, so that they fit into columns of one file.
+    /// The notes list the samples that were cut.
     pub fn cut_to_shortest(&mut self) {
         let shortest = self.channels.iter().map(|c| c.acceleration.len()).min().unwrap_or(0);
         for channel in &mut self.channels {
@@ -93,7 +94,8 @@ impl Record {
         }
     }
 
-    /// Returns the reason why two files are not components of one record, if they state one.
+    /// Returns the reason why two files are not components of one record, if their headers state
+    /// one.
     pub fn unlike(&self, other: &Self) -> Option<String> {
         let one = self;
         let files = format!("{} and {}", one.file, other.file);
@@ -102,7 +104,7 @@ impl Record {
                 return Some(format!("{files} are of {what}"));
             }
         }
-        // Files made by the user may be combined with those of a publisher.
+        // Files made by the user may be combined with files of a publisher.
         let own = |record: &Self| ["barrelstack", "columns"].contains(&record.format);
         if names_differ(one.format, other.format) && !own(one) && !own(other) {
             return Some(format!("{files} have the formats {} and {}", one.format, other.format));
@@ -116,14 +118,14 @@ impl Record {
             .then(|| format!("{files} are {} and {}", stages.0, stages.1))
     }
 
-    /// Joins parts of one long record where they overlap.
+    /// Joins overlapping parts of one long record.
     ///
-    /// The overlap is found by sliding the start of the later part along the earlier one; the later
-    /// part is shifted to the baseline of the earlier one.
-    /// Only repeated samples are joined: parts without an overlap of a second are refused.
+    /// The overlap is found by sliding the start of the later part along the earlier part. The
+    /// later part is then shifted to the baseline of the earlier part. Only repeated samples are
+    /// joined; parts with an overlap below 1 s are refused.
     ///
     /// # Errors
-    /// If there is no part, channels or steps differ, or a pair of parts does not overlap.
+    /// If no part is given, channels or time steps differ, or two consecutive parts do not overlap.
     pub fn join(parts: &[Self]) -> Result<Self, MotionError> {
         let Some((first, rest)) = parts.split_first() else {
             return Err(MotionError::parameter("parts to join", "at least 1", 0));
@@ -137,10 +139,10 @@ impl Record {
     }
 }
 
-/// `true` if two texts name different things; an empty one matches any.
+/// Returns `true` if two texts name different things; an empty text matches any text.
 ///
-/// Case, blanks and punctuation are ignored, and characters outside of ASCII if a letter or digit remains: formats
-/// replace commas, parentheses and accents.
+/// Case, blanks and punctuation are ignored, because formats replace commas, parentheses and
+/// accents. Non-ASCII characters are also ignored if a letter or digit remains.
 pub(crate) fn names_differ(one: &str, other: &str) -> bool {
     let letters = |name: &str| {
         let kept = name.chars().filter(char::is_ascii_alphanumeric);
@@ -153,9 +155,9 @@ pub(crate) fn names_differ(one: &str, other: &str) -> bool {
     if a.is_empty() && b.is_empty() { !one.contains('?') && !other.contains('?') } else { a != b }
 }
 
-const ONE_STEP: &str = "give files of one step";
+const ONE_STEP: &str = "give files with the same time step";
 
-/// Checks that two channels have one step; the error includes the remedy.
+/// Checks that two channels have the same time step; the error includes the given remedy.
 pub(crate) fn require_step(
     one: &Channel,
     other: &Channel,
@@ -175,8 +177,8 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
     let refuse =
         |what: String| MotionError::mismatch(what, "give the parts of one record in order of time");
     let mut overlap = None;
-    // Channels of plain columns are named after their files: if no name is shared, channels are matched by their order
-    // in the file.
+    // Channels of plain columns are named after their files. If no name is shared, channels are
+    // matched by their order in the file.
     let shares = |channel: &Channel| part.channels.iter().any(|other| other.name == channel.name);
     let by_order =
         joined.channels.len() == part.channels.len() && !joined.channels.iter().any(shares);
@@ -220,7 +222,7 @@ fn join_pair(joined: &mut Record, part: &Record) -> Result<(), MotionError> {
         let offset = math::mean(tail) - math::mean(head);
         let seconds = found as f64 * mine.time_step;
         mine.acceleration.extend(theirs.acceleration[found..].iter().map(|a| a + offset));
-        // Stated peaks apply to the parts.
+        // The stated peaks apply to the parts, not to the joined record.
         mine.peaks.clear();
         joined.notes.push(format!(
             "channel {name}: {} joined where its first {seconds:.2} s repeat the end of the part \
@@ -239,7 +241,7 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let shortest = (SHORTEST_OVERLAP / first.time_step).ceil().min(1e9) as usize;
     let longest = a.len().min(b.len());
-    // The probe must contain motion, or any quiet part would match it.
+    // The probe must contain motion; otherwise, any quiet part would match.
     let probe_length = shortest.max(200).min(longest);
     let mut best: Option<(f64, usize)> = None;
     for samples in (shortest..=longest).rev() {
@@ -253,7 +255,8 @@ fn find_overlap(first: &Channel, second: &Channel) -> Option<usize> {
     best.map(|(_, samples)| samples)
 }
 
-/// Returns the root-mean-square difference of two series without their means, over the size of the motion.
+/// Returns the root-mean-square difference of two series after removing their means, relative to
+/// the motion.
 fn misfit(one: &[f64], other: &[f64]) -> f64 {
     let (mean_one, mean_other) = (math::mean(one), math::mean(other));
     let (mut difference, mut size) = (0.0, 0.0);

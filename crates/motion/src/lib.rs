@@ -1,8 +1,9 @@
 //! Strong ground motion: read, process, scale, synthesize and measure.
 //!
-//! A file becomes a [`Record`] (as recorded, SI, with all data of its header), a record becomes a
-//! [`GroundMotion`] (processed, scaled, ready to drive a model), and [`History::at`] returns displacement,
-//! velocity and acceleration of a motion at any time, which are exact derivatives of one another.
+//! A file is read into a [`Record`]: the motion as recorded, in SI units, with all data of the
+//! header. A record is processed and scaled to a [`GroundMotion`], which can drive a model.
+//! [`History::at`] returns displacement, velocity and acceleration at any time; the three are exact
+//! derivatives of one another.
 //!
 //! ```
 //! use barrelstack_motion::{IntensityMeasure, bundled};
@@ -18,41 +19,40 @@
 //!
 //! # Conventions
 //!
-//! - Numbers are SI: m, m/s, m/s², s, rad. Three exceptions: directions, latitudes and longitudes are
-//!   degrees, azimuths clockwise from north; sources and paths of [`BooreSource`] are km, km/s, bar and
-//!   g/cm³, as in the literature; codes and flatfiles keep their own (PGA and Sa in g, distances in
-//!   km).
+//! - Numbers are SI: m, m/s, m/s², s, rad, with three exceptions. Directions, latitudes and
+//!   longitudes are in degrees, and azimuths are clockwise from north. Sources and paths of
+//!   [`BooreSource`] are in km, km/s, bar and g/cm³, as in the literature. Design codes and
+//!   flatfiles keep their own units (PGA and Sa in g, distances in km).
 //! - g is 9.80665 m/s² ([`STANDARD_GRAVITY`]).
 //! - Vertical components are positive upward; a downward channel is reversed when read.
 //! - Acceleration is linear between samples, velocity quadratic, displacement cubic.
-//! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is held.
-//! - Measures are trapezoids and peaks of the samples, as published values are; the displacement that
-//!   drives a model is the exact integral of its acceleration, whose peak ([`Sampled::pgd`]) lies up to
-//!   0.4 % above the published one.
+//! - Before t = 0 the ground is at rest; after the end the acceleration is zero and the velocity is
+//!   constant.
+//! - Measures use the trapezoidal rule and peaks of the samples, like published values. The
+//!   displacement that drives a model is the exact integral of its acceleration; its peak
+//!   ([`Sampled::pgd`]) is up to 0.4 % above the published value.
 //! - Units and steps are never guessed: a file without them needs [`ReadOptions`].
 //!
 //! # Overview
 //!
-//! - Reading: [`read`], [`FORMATS`], [`ReadError`]; parts and components: [`Record::join`],
+//! - Reading: [`read`], [`FORMATS`], [`ReadError`]. Parts and components: [`Record::join`],
 //!   [`Record::gather`].
-//! - Choosing and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
-//! - Corners from the noise: [`Record::noise_corners`]; across and along a fault:
+//! - Selecting and processing: [`Component`], [`Record::ground_motion`], [`Processing`].
+//! - Filter corners from the noise: [`Record::noise_corners`]. Axes of a fault:
 //!   [`Record::fault_axes`].
 //! - Measuring: [`IntensityMeasure`], [`Horizontals`], [`ResponseSpectrum`], [`rotated_spectrum`],
 //!   [`dominant_pulse`], [`classify_component`], [`classify_pair`].
-//! - Archives as downloaded: [`read`] reads one record, [`Archive`] its files.
+//! - Downloaded archives: [`read`] reads a single record, [`Archive`] gives access to the files.
 //! - Many records: [`group_files`], [`measure`], [`Flatfile`].
 //! - Scaling and matching: [`GroundMotion::scale_to`], [`GroundMotion::froude`],
 //!   [`GroundMotion::match_spectrum`], [`TargetSpectrum`].
-//! - Synthesis: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], all from stated seeds of
+//! - Synthesis: [`Pulse`], [`CloughPenzien`], [`BooreSource`], [`NearFault`], from the seeds of
 //!   [`Random`].
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so the system's transcendental functions are not
+// used (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-#![allow(
-    clippy::neg_cmp_op_on_partial_ord,
-    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
-)]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` also rejects NaN")]
 
 #[macro_use]
 mod printed;
@@ -88,7 +88,7 @@ mod utc;
 mod wavelets;
 pub mod write;
 
-// Available in this crate under their own names, like the modules beside them.
+// Makes these modules available as modules of this crate.
 use barrelstack_series::{
     fourier, history, intensity, layers, math, normal_equations, pulse, pulse_class, random,
     response, sampled, target,

@@ -1,71 +1,74 @@
-//! Result of a match.
+//! Result of spectral matching.
 
 use crate::ground_motion::GroundMotion;
 use crate::matching::MatchMethod;
 
-/// A range of periods over which a spectrum misses its target on one side.
+/// A range of periods in which a spectrum misses its target on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missed {
-    /// Shortest period (s).
+    /// Shortest period of the range (s).
     pub from: f64,
-    /// Longest period (s).
+    /// Longest period of the range (s).
     pub to: f64,
-    /// Largest relative misfit of the range, negative where the spectrum lies below the target.
+    /// Largest relative misfit in the range; negative if the spectrum is below the target.
     pub misfit: f64,
 }
 
-/// Maximum number of ranges listed individually.
+/// Largest number of ranges that are listed.
 const MOST_LISTED: usize = 5;
 
-/// A matched motion.
+/// A motion matched to a target spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
-    /// The motion; its horizontal component is matched, the vertical takes the same first scaling.
+    /// The motion. The horizontal component is matched; the vertical component is multiplied only
+    /// by the first scale factor.
     pub motion: GroundMotion,
-    /// Largest relative misfit from the shortest to the longest period, on a grid of 1080 periods per
-    /// decade.
+    /// Largest relative misfit between the shortest and the longest matched period, on a grid of
+    /// 1080 periods per decade.
     pub misfit: f64,
-    /// Ranges of periods with a misfit beyond the tolerance; empty if it was met.
+    /// Ranges of periods with a misfit beyond the tolerance; empty if the tolerance is met.
     pub missed: Vec<Missed>,
     /// Number of rounds.
     pub rounds: usize,
     /// The requested method.
     pub chosen: MatchMethod,
-    /// The method of the first rounds: the requested one, or the frequency domain if wavelets alone
-    /// stalled.
+    /// The method of the first rounds: the requested method, or the frequency domain if wavelets
+    /// alone stalled.
     pub first: MatchMethod,
 }
 
-/// Fit of two components, matched together, to their target.
+/// Misfit of two components matched together to a target spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MatchedPair {
-    /// As [`Matched::misfit`].
+    /// Largest relative misfit; see [`Matched::misfit`].
     pub misfit: f64,
-    /// As [`Matched::missed`].
+    /// Ranges of periods with a misfit beyond the tolerance; see [`Matched::missed`].
     pub missed: Vec<Missed>,
     /// Number of rounds.
     pub rounds: usize,
 }
 
 impl Matched {
-    /// Describes the missed ranges: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
+    /// Describes the missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ..."; of many ranges,
+    /// only the worst are listed.
     pub fn missed_in_words(&self) -> String {
         missed_in_words(&self.missed)
     }
 
-    /// Describes the domain of the match: "matched in …".
+    /// Describes the domain of the match, to follow the words "matched in".
     pub fn domain(&self) -> &'static str {
         match (self.first, self.chosen) {
             (MatchMethod::Time, _) => "the time domain",
             (MatchMethod::Frequency, MatchMethod::Frequency) => "the frequency domain",
             (MatchMethod::Frequency, MatchMethod::Time) => {
-                "the frequency domain, where the time domain stalled,"
+                "the frequency domain, because the time domain stalled,"
             }
         }
     }
 }
 
-/// Describes missed ranges: "by +5.6 % at 0.41 to 0.43 s, ..."; of many, the worst.
+/// Describes missed ranges, such as "by +5.6 % at 0.41 to 0.43 s, ..."; of many ranges, only the
+/// worst are listed.
 pub fn missed_in_words(all: &[Missed]) -> String {
     let words = |missed: &Missed| {
         let (from, to) = (format!("{:.3}", missed.from), format!("{:.3}", missed.to));

@@ -1,4 +1,4 @@
-//! Spectral matching of a motion, in the frequency or in the time domain.
+//! Spectral matching of one component, in the frequency domain or in the time domain.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -13,35 +13,37 @@ use crate::sampled::Sampled;
 use crate::target::TargetSpectrum;
 use crate::wavelets;
 
-/// Method of matching.
+/// Method of spectral matching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchMethod {
-    /// Fourier amplitudes are multiplied by target over spectrum repeatedly, phases kept.
+    /// Multiplies the Fourier amplitudes repeatedly by the ratio of target to spectrum, and keeps
+    /// the phases.
     ///
-    /// Simple and fast at first; changes the character of the motion everywhere.
-    /// Amplitudes alone stall at 5 to 9 %: wavelets remove the remaining misfit.
+    /// Simple and fast at first, but changes the character of the motion everywhere. Amplitudes
+    /// alone stall at a misfit of 5 to 9 %; wavelets remove the rest.
     Frequency,
-    /// Wavelets are added at the times of the peak responses
-    /// (Lilhanand and Tseng 1988; Al Atik and Abrahamson 2010, Earthquake Spectra 26:601-617).
+    /// Adds wavelets at the times of the peak responses (Lilhanand and Tseng 1988; Al Atik and
+    /// Abrahamson 2010, Earthquake Spectra 26:601-617).
     ///
-    /// Keeps the character of the motion; slower.
-    /// If it stalls, further rounds start from the best motion and keep all other extrema below the target; if that
-    /// fails too, the match restarts with the frequency domain first, which the provenance states.
+    /// Slower, but keeps the character of the motion. If the match stalls, further rounds start
+    /// from the best motion and keep all other extrema below the target. If that also fails, the
+    /// match restarts in the frequency domain, and the provenance says so.
     Time,
 }
 
-/// Settings of a match.
+/// Settings of spectral matching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matching {
-    /// The method.
+    /// Method of matching.
     pub method: MatchMethod,
-    /// Shortest period matched (s), at least four steps of the motion.
+    /// Shortest matched period (s); at least four time steps of the motion.
     pub shortest: f64,
-    /// Longest period matched (s).
+    /// Longest matched period (s).
     pub longest: f64,
-    /// Largest relative misfit accepted at any matched period.
+    /// Largest accepted relative misfit at any matched period.
     pub tolerance: f64,
-    /// Maximum number of consecutive rounds of one method; the methods alternate when one stalls.
+    /// Maximum number of consecutive rounds of one method. If a method stalls, the other one
+    /// continues.
     pub rounds: usize,
 }
 
@@ -58,33 +60,36 @@ impl Default for Matching {
     }
 }
 
-/// Exponents of target over spectrum in the frequency domain: one per match, the next when it stalls.
+/// Exponents of the ratio of target to spectrum in the frequency domain. Each match uses one; the
+/// next is used if it stalls.
 const AMPLITUDE_STEPS: [f64; 4] = [0.7, 0.5, 0.9, 0.3];
-/// Product of samples and rounds after which no further match is begun: a motion of 35,000 samples has 400 rounds,
-/// which take about 6 s.
+/// Product of samples and rounds above which no further match is started. A motion of 35,000
+/// samples has 400 rounds, which take about 6 s.
 const MOST_SAMPLES: usize = 14_000_000;
 
-/// Steps per shortest matched period: a peak between two samples is then underestimated by 1.2 % at most; with ten
-/// steps it would be 5 %, the whole tolerance of a match.
+/// Time steps per shortest matched period. A peak between two samples is then underestimated by at
+/// most 1.2 %; with ten steps it would be 5 %, the entire tolerance of a match.
 pub(crate) const STEPS_A_PERIOD: f64 = 20.0;
-/// Matched periods per decade.
+/// Number of matched periods per decade.
 const PER_DECADE: f64 = 60.0;
-/// Judged periods per matched one, so that no misfit hides between.
+/// Number of periods per matched period at which the misfit is judged, so that no misfit hides
+/// between matched periods.
 const JUDGED: usize = 3;
-/// Periods of the final check per judged one.
+/// Number of periods per judged period in the final check.
 const CHECKED: usize = 6;
-/// Share of the tolerance below which no further method is tried.
+/// Fraction of the tolerance below which no further method is tried.
 const CLEAR: f64 = 0.98;
-/// Rounds without gain after which a method gives up.
+/// Number of rounds without improvement after which a method gives up.
 pub(crate) const PATIENCE: usize = 15;
-/// Share of the tolerance at which the rounds end.
+/// Fraction of the tolerance at which the rounds end.
 pub(crate) const GOOD_ENOUGH: f64 = 0.7;
 
 impl GroundMotion {
     /// Matches the horizontal component to a target spectrum.
     ///
-    /// The motion is first scaled to the target in the mean; the vertical component, if any, takes that factor only.
-    /// The last step of every round closes the ends, so that the result does not drift.
+    /// The motion is first scaled to the target on average; a vertical component is multiplied only
+    /// by this factor. Every round ends by closing the ends of the motion, so that the result does
+    /// not drift.
     ///
     /// # Errors
     /// If a setting is out of range, the motion does not move, or the tolerance is not reached.
@@ -112,8 +117,9 @@ impl GroundMotion {
         Err(not_converged(matched.misfit, &matched.missed_in_words(), matched.rounds, settings))
     }
 
-    /// Matches as [`GroundMotion::match_spectrum`], but returns the best motion if the tolerance is not reached, with
-    /// the periods that it misses ([`Matched::missed`]).
+    /// Matches like [`GroundMotion::match_spectrum`], but returns the best motion even if the
+    /// tolerance is not reached. [`Matched::missed`] lists the ranges of periods that miss the
+    /// target.
     ///
     /// # Errors
     /// If a setting is out of range or the motion does not move.
@@ -160,7 +166,7 @@ impl GroundMotion {
     }
 }
 
-/// Refuses a motion that misses its target.
+/// Returns an error about a motion that misses its target.
 pub(crate) fn not_converged(
     misfit: f64,
     missed: &str,
@@ -172,7 +178,7 @@ pub(crate) fn not_converged(
         reached: format!("a misfit of {:.1} % ({missed})", 100.0 * misfit),
         rounds,
         wanted: format!("{:.1} %", 100.0 * settings.tolerance),
-        remedy: "start from a motion closer to the target, accept a larger tolerance, or take the best motion as it is"
+        remedy: "start from a motion closer to the target, accept a larger tolerance, or accept the best motion as it is"
             .to_owned(),
     }
 }
@@ -191,8 +197,8 @@ fn check(settings: &Matching, time_step: f64) -> Result<(), MotionError> {
     MotionError::require((1..=10_000).contains(&rounds), "matching rounds", "1 to 10000", rounds)
 }
 
-/// Returns the same piecewise-linear motion in at least [`STEPS_A_PERIOD`] steps per shortest period, so that
-/// wavelets and peaks are resolved.
+/// Returns the same piecewise-linear motion with at least [`STEPS_A_PERIOD`] steps per shortest
+/// matched period, so that wavelets and peaks are resolved. Also returns its time step (s).
 pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     let parts = parts(motion.time_step(), shortest);
     let a = motion.acceleration();
@@ -208,12 +214,14 @@ pub(crate) fn subdivided(motion: &Sampled, shortest: f64) -> (f64, Vec<f64>) {
     (motion.time_step() / parts, fine)
 }
 
-/// Returns the number of parts of a step (s) that make [`STEPS_A_PERIOD`].
+/// Returns the number of parts into which a step (s) must be divided to have [`STEPS_A_PERIOD`]
+/// steps per period.
 fn parts(time_step: f64, shortest: f64) -> f64 {
     (STEPS_A_PERIOD * time_step / shortest * (1.0 - 1e-9)).ceil().max(1.0)
 }
 
-/// Returns the number of intervals of [`PER_DECADE`] between the shortest and the longest period.
+/// Returns the number of matched intervals between the shortest and the longest period, from
+/// [`PER_DECADE`].
 fn intervals(settings: &Matching) -> usize {
     let decades = math::log10(settings.longest / settings.shortest);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small, positive")]
@@ -221,13 +229,13 @@ fn intervals(settings: &Matching) -> usize {
     count
 }
 
-/// Returns both ends, and between them `finer` periods per matched one.
+/// Returns periods from the shortest to the longest, with `finer` periods per matched period.
 fn judged_periods(settings: &Matching, finer: usize) -> Vec<f64> {
     math::log_space(settings.shortest, settings.longest, finer * intervals(settings))
 }
 
-/// Returns the periods matched in one round: both ends, and between them a grid that shifts from round to round
-/// so that no period is left out for long.
+/// Returns the periods matched in one round: the shortest, the longest, and a grid between them.
+/// The grid shifts from round to round, so that every period is covered.
 pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
     let count = intervals(settings);
     let shift = (0.618_033_988_749_894_8 * (round - 1) as f64).fract();
@@ -242,7 +250,7 @@ pub(crate) fn matched_periods(settings: &Matching, round: usize) -> Vec<f64> {
     periods
 }
 
-/// Returns the geometric mean of target over spectrum.
+/// Returns the geometric mean of the ratio of target to spectrum.
 pub(crate) fn mean_ratio(goal: &[f64], now: &[f64]) -> f64 {
     let sum: f64 = goal.iter().zip(now).map(|(g, n)| math::ln(g / n)).sum();
     math::exp(sum / goal.len() as f64)
@@ -252,7 +260,7 @@ pub(crate) fn misfit_of(goal: &[f64], now: &[f64]) -> f64 {
     goal.iter().zip(now).map(|(g, n)| (n / g - 1.0).abs()).fold(0.0, f64::max)
 }
 
-/// Data that do not change over the rounds.
+/// Data that are constant during a match: target, periods and processing.
 pub(crate) struct Work<'a> {
     pub(crate) time_step: f64,
     pub(crate) target: &'a TargetSpectrum,
@@ -265,7 +273,8 @@ pub(crate) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Returns the data of a match of a motion with this step (s), which [`subdivided`] divides.
+    /// Creates the data of a match for a motion with the given time step (s), which is divided as
+    /// in [`subdivided`].
     pub(crate) fn new(
         target: &'a TargetSpectrum,
         settings: &Matching,
@@ -290,48 +299,51 @@ impl<'a> Work<'a> {
         Ok(Self { time_step, target, judged, judged_goal, checked, checked_goal, damping, chain })
     }
 
-    /// Returns pseudo-accelerations at some periods.
+    /// Returns the exact pseudo-accelerations (m/s²) at the given periods.
     fn spectrum(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         pseudo_accelerations(self.time_step, acceleration, periods, self.damping)
     }
 
-    /// Returns the motion for oscillators of up to the longest matched period.
+    /// Returns the layers of a motion, for oscillators of up to the longest matched period.
     pub(crate) fn layers(&self, acceleration: &[f64]) -> Layers {
         let longest = self.checked.last().copied().unwrap_or(0.0);
         Layers::new(self.time_step, acceleration, longest)
     }
 
-    /// Returns approximate pseudo-accelerations at ascending periods, accurate enough for the search.
+    /// Returns approximate pseudo-accelerations (m/s²) at ascending periods, accurate enough for
+    /// the search.
     fn nearly(&self, periods: &[f64], acceleration: &[f64]) -> Vec<f64> {
         self.layers(acceleration).pseudo_accelerations(periods, self.damping)
     }
 
-    /// Returns the approximate largest misfit at the judged periods, which are few enough for every round.
+    /// Returns the approximate largest misfit at the judged periods; it is fast enough for every
+    /// round.
     pub(crate) fn judged_misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.judged_goal, &self.nearly(&self.judged, acceleration))
     }
 
-    /// Returns the largest relative misfit at all checked periods.
+    /// Returns the exact largest relative misfit at all checked periods.
     pub(crate) fn misfit(&self, acceleration: &[f64]) -> f64 {
         misfit_of(&self.checked_goal, &self.spectrum(&self.checked, acceleration))
     }
 
-    /// Returns the judged periods (s) and their goals (m/s²).
+    /// Returns the judged periods (s) and their target values (m/s²).
     pub(crate) fn judged(&self) -> (&[f64], &[f64]) {
         (&self.judged, &self.judged_goal)
     }
 
-    /// Returns the checked periods (s) and their goals (m/s²).
+    /// Returns the checked periods (s) and their target values (m/s²).
     pub(crate) fn checked(&self) -> (&[f64], &[f64]) {
         (&self.checked, &self.checked_goal)
     }
 
-    /// Returns the ranges where the spectrum lies outside the tolerance.
+    /// Returns the ranges of periods in which the misfit exceeds the tolerance.
     fn missed(&self, acceleration: &[f64], tolerance: f64) -> Vec<Missed> {
         self.missed_at(&self.spectrum(&self.checked, acceleration), tolerance)
     }
 
-    /// Returns the ranges where a spectrum at the checked periods lies outside the tolerance.
+    /// Returns the ranges of periods in which a spectrum, given at the checked periods, misses the
+    /// target by more than the tolerance.
     pub(crate) fn missed_at(&self, now: &[f64], tolerance: f64) -> Vec<Missed> {
         let mut ranges: Vec<Missed> = Vec::new();
         let mut open = false;
@@ -355,7 +367,7 @@ impl<'a> Work<'a> {
         ranges
     }
 
-    /// Returns the approximate fit of the spectrum to its target at every second checked period.
+    /// Returns the approximate fit of the spectrum, at every second checked period.
     pub(crate) fn fit(&self, acceleration: &[f64]) -> Fit {
         let half = |all: &[f64]| all.iter().copied().step_by(2).collect::<Vec<f64>>();
         let (periods, goal) = (half(&self.checked), half(&self.checked_goal));
@@ -378,19 +390,19 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Closes the ends; wavelets cause no drift that a filter would have to remove.
+    /// Closes the ends of the motion. Wavelets cause no drift, so no filter is needed.
     pub(crate) fn close(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         let ends = Processing { high_pass: None, ..self.chain.clone() };
         Ok(ends.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Removes drift and closes the ends.
+    /// Removes drift by a high-pass filter and closes the ends of the motion.
     pub(crate) fn steady(&self, acceleration: &[f64]) -> Result<Vec<f64>, MotionError> {
         Ok(self.chain.apply(self.time_step, acceleration, 0.0)?.acceleration)
     }
 
-    /// Returns the best motion and the method of the first rounds: the chosen one, or the frequency domain if
-    /// wavelets first do not meet the tolerance.
+    /// Runs the methods in turn. Returns the best motion and the method of its first rounds: the
+    /// chosen method, or the frequency domain if wavelets alone missed the tolerance.
     fn alternate(
         &self,
         start: &[f64],
@@ -416,7 +428,7 @@ impl<'a> Work<'a> {
         Ok((best, if began { MatchMethod::Frequency } else { settings.method }))
     }
 
-    /// Adds wavelets in rounds, and polishes if they do not meet the tolerance.
+    /// Adds wavelets in rounds, and polishes the result if it misses the tolerance.
     fn wavelets(
         &self,
         start: &[f64],
@@ -432,8 +444,8 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// Changes the Fourier amplitudes of the motion round by round; `step` is the exponent of target over
-    /// spectrum.
+    /// Changes the Fourier amplitudes in rounds and returns the best motion. `step` is the exponent
+    /// of the ratio of target to spectrum.
     fn in_frequency(
         &self,
         start: &[f64],
@@ -444,7 +456,7 @@ impl<'a> Work<'a> {
         let length = (start.len() + start.len() / 4).next_power_of_two();
         let mut a = start.to_vec();
         let (mut best, mut gained) = (Best::new(&a), 0);
-        // Ratios over the logarithm of frequency, from long periods to short ones.
+        // The ratios are interpolated over the logarithm of frequency, from long to short periods.
         let ln_f: Vec<f64> = self.judged.iter().rev().map(|t| -math::ln(*t)).collect();
         for round in 1..=settings.rounds {
             let now = self.nearly(&self.judged, &a);
@@ -475,21 +487,21 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Fit of a spectrum to its target.
+/// Misfit of a spectrum from its target.
 pub(crate) struct Fit {
     /// Largest relative misfit.
     pub(crate) misfit: f64,
-    /// Mean of all misfits, dominated by the largest.
+    /// Mean of all misfits, weighted so that the largest dominate.
     pub(crate) roughness: f64,
-    /// Periods (s) of locally largest misfit, and that misfit.
+    /// Periods (s) of locally largest misfit, with this misfit.
     pub(crate) worst: Vec<(f64, f64)>,
 }
 
-/// The best motion so far.
+/// The best motion found so far.
 pub(crate) struct Best {
     pub(crate) acceleration: Vec<f64>,
     pub(crate) misfit: f64,
-    /// Total number of rounds.
+    /// Total number of rounds of the match.
     pub(crate) rounds: usize,
 }
 
@@ -498,7 +510,7 @@ impl Best {
         Self { acceleration: acceleration.to_vec(), misfit: f64::INFINITY, rounds: 0 }
     }
 
-    /// Keeps a better motion; returns `true` if it is better.
+    /// Keeps a motion if it is better than the best one; returns `true` if it is.
     pub(crate) fn offer(&mut self, acceleration: &[f64], misfit: f64) -> bool {
         let better = misfit < self.misfit;
         if better {

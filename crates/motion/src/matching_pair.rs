@@ -1,4 +1,4 @@
-//! Spectral matching of two horizontal components together: of their response over all directions.
+//! Spectral matching of two horizontal components together, by their response over all directions.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -11,21 +11,24 @@ use crate::response::Step;
 use crate::rotd::{RotatedPeak, rotated_peak};
 use crate::wavelets::{FORGOTTEN, Wavelet};
 
-/// Rounds of the frequency domain, which brings the spectrum near the target and stalls there.
+/// Number of rounds in the frequency domain, which approaches the target and then stalls.
 const FREQUENCY_ROUNDS: usize = 12;
-/// Exponent of target over spectrum in the frequency domain.
+/// Exponent of the ratio of target to spectrum in the frequency domain.
 const AMPLITUDE_STEP: f64 = 0.7;
-/// Share of the misfit removed by the wavelets of the first round, and the smallest share after rounds without gain.
+/// Fraction of the misfit removed by the wavelets of the first round, and the smallest fraction
+/// after rounds without improvement.
 const RELAXATION: [f64; 2] = [0.6, 0.1];
-/// Rounds without gain after which the match gives up.
+/// Number of rounds without improvement after which the match gives up.
 const PATIENCE: usize = 12;
 
-/// Two accelerations (m/s²) of one step, each with the other's length.
+/// Accelerations (m/s²) of two components with the same time step and length.
 pub(crate) type Pair = [Vec<f64>; 2];
 
-/// Matches the response over directions to the target of `work`: amplitudes of both components by one gain, which keeps
-/// their polarization, then wavelets along the direction in which the measure is attained (Grant 2011, Earthquake
-/// Spectra 27:675-685, for `RotD100`).
+/// Matches the response over all directions to the target of `work`.
+///
+/// First, the amplitudes of both components are multiplied by one gain, which keeps their
+/// polarization. Then wavelets are added along the direction of the measured response (Grant 2011,
+/// Earthquake Spectra 27:675-685, for `RotD100`).
 pub(crate) fn match_pair(
     work: &Work<'_>,
     start: Pair,
@@ -61,7 +64,7 @@ pub(crate) fn match_pair(
         } else {
             since += 1;
             if since % 4 == 0 {
-                // Start again from the best pair, with smaller corrections.
+                // Restart from the best pair, with smaller corrections.
                 share = (0.5 * share).max(least);
                 pair = best.pair.clone();
             }
@@ -74,7 +77,7 @@ pub(crate) fn match_pair(
     Ok((best.pair, MatchedPair { misfit, missed, rounds }))
 }
 
-/// Returns the measure (m/s²) of the response of a pair at some periods.
+/// Returns the measure (m/s²) of the response of a pair at the given periods.
 pub(crate) fn spectrum(
     work: &Work<'_>,
     measure: Horizontals,
@@ -92,7 +95,7 @@ fn value(measure: Horizontals, peak: &RotatedPeak) -> f64 {
     }
 }
 
-/// Returns the pseudo-accelerations (m/s²) of an oscillator under both components.
+/// Returns the pseudo-acceleration histories (m/s²) of an oscillator under both components.
 fn histories(work: &Work<'_>, period: f64, pair: &Pair) -> Pair {
     let step = Step::new(period, work.damping, work.time_step);
     let stiffness = (TAU / period) * (TAU / period);
@@ -132,7 +135,8 @@ impl Search<'_> {
         spectrum(self.work, self.measure, periods, pair)
     }
 
-    /// Returns the pair with its Fourier amplitudes multiplied by target over spectrum `now`.
+    /// Returns the pair with its Fourier amplitudes multiplied by the ratio of the target to the
+    /// spectrum `now`.
     fn amplified(&self, pair: &Pair, now: &[f64]) -> Result<Pair, MotionError> {
         let (periods, goals) = self.work.judged();
         let length = (pair[0].len() + pair[0].len() / 4).next_power_of_two();
@@ -155,7 +159,8 @@ impl Search<'_> {
         Ok([one(0)?, one(1)?])
     }
 
-    /// Returns the pair with wavelets that remove a share of the misfit, each along the response at the time of its peak.
+    /// Returns the pair with added wavelets that remove a share of the misfit. Each acts along the
+    /// response at the time of its peak.
     fn corrected(&self, pair: &Pair, periods: &[f64], share: f64) -> Result<Pair, MotionError> {
         let count = pair[0].len();
         let aims: Vec<Aim> =
@@ -182,8 +187,8 @@ impl Search<'_> {
         Ok([self.work.close(&sum[0])?, self.work.close(&sum[1])?])
     }
 
-    /// Returns what has to change at a period: one direction for the largest response, two for the median, which is the
-    /// mean of the two middle ones.
+    /// Returns the required changes at a period: one for the largest response, or two for the
+    /// median, which is the mean of the two middle responses.
     fn aims(&self, period: f64, pair: &Pair, share: f64) -> Vec<Aim> {
         let histories = histories(self.work, period, pair);
         let peak = rotated(&histories);
@@ -213,7 +218,8 @@ impl Search<'_> {
         degrees.into_iter().map(aim).collect()
     }
 
-    /// Returns the pseudo-acceleration of the oscillator of an aim at its sample under a wavelet.
+    /// Returns the pseudo-acceleration (m/s²) that a wavelet causes in the oscillator of an aim at
+    /// the sample of the aim.
     fn response(&self, aim: &Aim, wavelet: &Wavelet) -> f64 {
         let Work { damping, time_step, .. } = *self.work;
         let w = TAU / aim.period;
@@ -230,15 +236,15 @@ impl Search<'_> {
     }
 }
 
-/// A response that has to change.
+/// A required change of the response of an oscillator at one sample.
 struct Aim {
     period: f64,
     sample: usize,
     /// Direction in which the response is measured.
     direction: [f64; 2],
-    /// Direction of the wavelet: that of the response at its peak.
+    /// Direction of the wavelet, which is the direction of the response at its peak.
     push: [f64; 2],
-    /// Change (m/s²).
+    /// Required change (m/s²).
     change: f64,
     step: Step,
 }

@@ -1,12 +1,13 @@
-//! Display names of records: the event with its year, the station, the component.
+//! Display names of records: event with year, station, and component.
 
 use crate::record::{Channel, Record};
 
-/// Short words that are not abbreviations.
+/// Short words that are part of names, not abbreviations.
 const SHORT: [&str; 5] = ["EL", "LA", "LE", "DE", "OF"];
 
 impl Record {
-    /// Returns the customary name of the event, such as "Northridge 1994"; `None` if the header states none.
+    /// Returns the customary name of the event, such as "Northridge 1994", or `None` if the header
+    /// states no event.
     ///
     /// ```
     /// let napa = barrelstack_motion::bundled("napa-college-2014").unwrap();
@@ -19,7 +20,7 @@ impl Record {
         let dated = words.iter().position(|word| year(word).is_some());
         let letters = |word: &&&str| word.chars().any(char::is_alphabetic);
         let before = &words[..dated.unwrap_or(words.len())];
-        // Some headers begin with the date, and the name comes after it.
+        // Some headers begin with the date, followed by the name.
         let after = words.iter().skip(dated.map_or(0, |at| at + 1));
         let name = if before.iter().any(|word| letters(&word)) {
             before.join(" ")
@@ -35,14 +36,14 @@ impl Record {
         })
     }
 
-    /// Returns the customary name of the station; `None` if the header states none.
+    /// Returns the customary name of the station, or `None` if the header states no station.
     pub fn station_name(&self) -> Option<String> {
         let text = self.station.split_whitespace().collect::<Vec<_>>().join(" ");
         // Remove a network code before the name.
         let coded =
             text.split_once(' ').filter(|(code, _)| code.chars().any(|c| c.is_ascii_digit()));
         let name = coded.map_or(text.as_str(), |(_, name)| name);
-        // Remove the state after it, and the town before it if the place repeats it.
+        // Remove the state after the name, and the town before it if the place repeats the town.
         let name = name.split_once(", ").map_or(name, |(name, _)| name);
         let name = match name.split_once(" - ") {
             Some((town, place)) if place.starts_with(town) => place,
@@ -51,15 +52,15 @@ impl Record {
         (!name.is_empty()).then(|| softened(name))
     }
 
-    /// Returns the display name of a channel, such as "Northridge 1994, Arleta, 360°"; the name of its file if the
-    /// header states neither event nor station.
+    /// Returns the display name of a channel, such as "Northridge 1994, Arleta, 360°". If the
+    /// header states neither event nor station, the file name is used.
     pub fn name_of(&self, channel: &Channel) -> String {
         let file = || self.file.rsplit(['/', '\\']).next().unwrap_or(&self.file).to_owned();
         let known: Vec<String> = self.event_name().into_iter().chain(self.station_name()).collect();
         let degrees = if channel.name.parse::<f64>().is_ok() { "°" } else { "" };
         let place = if known.is_empty() { file() } else { known.join(", ") };
         let component = format!("{}{degrees}", channel.name);
-        // Without data in the header, some channels are named after their file.
+        // If the header states nothing, some channels are named after their file.
         if component.is_empty() || (known.is_empty() && place.contains(&component)) {
             place
         } else {
@@ -76,7 +77,7 @@ fn year(word: &str) -> Option<u32> {
     let full = |year: &u32| (1900..2100).contains(year);
     match parts.as_slice() {
         [year] | [year, _, _] | [_, _, year] if year.len() == 4 => number(year).filter(full),
-        // No instrument recorded before 1930.
+        // Two-digit years below 30 are in this century; no instrument recorded before 1930.
         [_, _, year] if year.len() == 2 => {
             number(year).map(|year| if year < 30 { 2000 + year } else { 1900 + year })
         }
@@ -84,13 +85,13 @@ fn year(word: &str) -> Option<u32> {
     }
 }
 
-/// Converts words in capitals to the case of names.
+/// Converts words in capitals to the capitalization of names.
 fn softened(text: &str) -> String {
     if text.chars().any(char::is_lowercase) {
         return text.to_owned();
     }
     let soft = |word: &str| {
-        // Codes of stations, and of states.
+        // Codes of stations and states remain in capitals.
         if word.chars().any(|c| c.is_ascii_digit()) || (word.len() < 3 && !SHORT.contains(&word)) {
             return word.to_owned();
         }

@@ -1,6 +1,6 @@
-//! Printing of the members of closed sets.
+//! Implements `Display` for enums without fields.
 
-/// Implements `Display` for an enum without fields: each variant as its word.
+/// Implements `Display` for an enum without fields, with one word per variant.
 macro_rules! printed_as {
     ($type:ident, $($variant:ident = $word:literal),+) => {
         impl std::fmt::Display for $type {

@@ -1,4 +1,5 @@
-//! Processing of recorded accelerations for integration: every step is explicit and recorded.
+//! Processing of recorded accelerations for integration. Every step is explicit and is recorded in
+//! the provenance.
 
 use crate::error::MotionError;
 use crate::fourier::{apply_gain, forward_real, inverse};
@@ -6,29 +7,29 @@ use crate::math::{self, PI};
 use crate::record::Stage;
 use crate::sampled::integrate;
 
-/// Mean to remove.
+/// The mean that processing removes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanRemoval {
-    /// None.
+    /// No mean is removed.
     Keep,
-    /// The mean of the quiet part before the first arrival, at most 5 s; of the whole record if the
-    /// first half second already moves.
+    /// Mean of the quiet part before the first arrival, at most 5 s; mean of the whole record if
+    /// the shaking begins within the first half second.
     PreEvent,
-    /// The mean of the whole record.
+    /// Mean of the whole record.
     Whole,
 }
 
-/// Treatment of the zeros added for the filter.
+/// Treatment of the zero pads added for the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pads {
-    /// Kept: they hold the filter transients that make velocity and displacement end at zero
-    /// (Boore 2005, BSSA 95:745-750).
+    /// The pads are kept. They contain the filter transients that bring velocity and displacement
+    /// to zero at the end (Boore 2005, BSSA 95:745-750).
     Kept,
-    /// Cut off, and the ends closed by [`Processing::close`].
+    /// The pads are removed after filtering; [`Processing::close`] closes the ends instead.
     Removed,
 }
 
-/// The processing of one record, in the order of its fields.
+/// Processing of one record; the steps are applied in the order of the fields.
 ///
 /// ```
 /// use barrelstack_motion::{Processing, Stage};
@@ -38,28 +39,29 @@ pub enum Pads {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Processing {
-    /// Mean removal.
+    /// Mean to be removed.
     pub mean: MeanRemoval,
-    /// Subtract the least-squares line; only for records without permanent tilt.
+    /// Subtracts the least-squares line; only for records without permanent tilt.
     pub detrend: bool,
-    /// Length of the cosine taper at each end, as a fraction of the record; 0 for none.
+    /// Length of the cosine taper at each end, as a fraction of the record; 0 for no taper.
     pub taper: f64,
-    /// Corner of the high-pass (Hz); raised to one over the duration if it lies below.
+    /// High-pass corner (Hz); raised to one over the duration if it lies below.
     pub high_pass: Option<f64>,
-    /// Corner of the low-pass (Hz), from one over the duration to the Nyquist frequency.
+    /// Low-pass corner (Hz), from one over the duration to the Nyquist frequency.
     pub low_pass: Option<f64>,
-    /// Order `n` of the Butterworth filter, applied forth and back:
-    /// gain `1/(1 + (fc/f)^(2n))`, no phase, half amplitude at the corner.
+    /// Order `n` of the Butterworth filter, applied forward and backward: gain
+    /// `1/(1 + (fc/f)^(2n))`, zero phase, half amplitude at the corner.
     pub order: u32,
-    /// Treatment of the zeros at both ends, `1.5 n/fc` seconds in all (Converse and Brady 1992).
+    /// Treatment of the zero pads at both ends, `1.5 n/fc` seconds in total (Converse and Brady
+    /// 1992).
     pub pads: Pads,
-    /// Adds the smallest smooth acceleration of two terms that brings the end velocity and the end
+    /// Adds the smallest smooth acceleration of two terms that brings the final velocity and
     /// displacement to zero.
     pub close: bool,
 }
 
 impl Processing {
-    /// Returns no processing: the record as published.
+    /// Returns a chain without any processing; the record is used as published.
     pub fn none() -> Self {
         Self {
             mean: MeanRemoval::Keep,
@@ -73,7 +75,7 @@ impl Processing {
         }
     }
 
-    /// Returns the full chain for raw records: pre-event mean, taper of 2 %, fourth-order zero-phase
+    /// Returns the full chain for raw records: pre-event mean, 2 % taper, fourth-order zero-phase
     /// high-pass at 0.1 Hz with pads kept, ends closed.
     pub fn raw() -> Self {
         Self {
@@ -85,13 +87,14 @@ impl Processing {
         }
     }
 
-    /// Returns [`Processing::raw`] with the pads removed and the ends closed: for runs that cannot afford half a minute
-    /// of quiet before the shaking.
+    /// Returns [`Processing::raw`] with the pads removed and the ends closed, for runs that cannot
+    /// afford half a minute of quiet before the shaking.
     pub fn compact() -> Self {
         Self { pads: Pads::Removed, ..Self::raw() }
     }
 
-    /// Returns the default for a record: [`Processing::raw`] for raw ones, nothing for the others.
+    /// Returns the default processing for a record: [`Processing::raw`] for a raw record, none for
+    /// any other.
     pub fn for_stage(stage: Stage) -> Self {
         match stage {
             Stage::Raw => Self::raw(),
@@ -99,7 +102,7 @@ impl Processing {
         }
     }
 
-    /// `true` if the chain leaves the numbers unchanged.
+    /// Returns `true` if the chain does not change the record.
     pub fn is_none(&self) -> bool {
         self.mean == MeanRemoval::Keep
             && !self.detrend
@@ -140,12 +143,13 @@ impl Processing {
         MotionError::require(high < low, what, format!("below the low-pass corner, {low} Hz"), high)
     }
 
-    /// Returns the corner of the high-pass (Hz) on a record of this length: no slower wave fits into it.
+    /// Returns the high-pass corner (Hz) used for a record of this length; a wave longer than the
+    /// record cannot be resolved.
     fn high_pass_used(&self, time_step: f64, samples: usize) -> Option<f64> {
         self.high_pass.map(|corner| corner.max(1.0 / (time_step * samples as f64)))
     }
 
-    /// Applies the chain to accelerations (m/s²) of step `time_step` (s).
+    /// Applies the chain to accelerations (m/s²) with step `time_step` (s).
     ///
     /// # Errors
     /// If a setting is out of range for the record.
@@ -174,7 +178,8 @@ impl Processing {
             }
             if self.high_pass.is_some() || self.low_pass.is_some() {
                 lead = self.filter(time_step, &mut a, &mut steps);
-                // The filter removes the mean velocity with everything else below its corner.
+                // The high-pass removes the mean velocity along with everything else below its
+                // corner.
                 initial_velocity = 0.0;
             }
             if self.close {
@@ -206,7 +211,8 @@ impl Processing {
         steps.push(format!("mean of {of} removed, {mean:.3e} m/s2"));
     }
 
-    /// Pads and filters; returns the time by which the recorded part now starts later (s).
+    /// Pads and filters the accelerations. Returns the time (s) by which the recorded part is
+    /// delayed by the leading pad.
     fn filter(&self, time_step: f64, a: &mut Vec<f64>, steps: &mut Vec<String>) -> f64 {
         let corner = self.high_pass_used(time_step, a.len());
         if let (Some(requested), Some(used)) = (self.high_pass, corner)
@@ -244,7 +250,7 @@ impl Processing {
         for (pass, corner) in [("high", corner), ("low", self.low_pass)] {
             steps.extend(corner.map(|fc| {
                 format!(
-                    "zero-phase Butterworth {pass}-pass, order {} forth and back, at {fc:.4} Hz",
+                    "zero-phase Butterworth {pass}-pass, order {} forward and backward, at {fc:.4} Hz",
                     self.order
                 )
             }));
@@ -265,32 +271,32 @@ impl Processing {
     }
 }
 
-/// A processed acceleration.
+/// Processed accelerations, with the steps applied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Processed {
     /// Acceleration (m/s²).
     pub acceleration: Vec<f64>,
     /// Velocity at the first sample (m/s).
     pub initial_velocity: f64,
-    /// Time by which the recorded part starts later, because of a pad (s).
+    /// Delay of the recorded part (s) caused by a leading pad.
     pub lead: f64,
-    /// Residuals at the end.
+    /// Velocity and displacement left at the end.
     pub residuals: Residuals,
-    /// Every step, one sentence each.
+    /// Description of every processing step, one sentence each.
     pub steps: Vec<String>,
 }
 
 /// Velocity and displacement left at the end of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residuals {
-    /// End velocity over PGV.
+    /// Final velocity divided by PGV.
     pub velocity: f64,
-    /// End displacement over PGD.
+    /// Final displacement divided by PGD.
     pub displacement: f64,
 }
 
 impl Residuals {
-    /// Integrates accelerations (m/s²) and compares the ends with the peaks.
+    /// Integrates accelerations (m/s²) and compares the final values with the peaks.
     pub fn of(time_step: f64, acceleration: &[f64], initial_velocity: f64) -> Self {
         let (v, d) = integrate(time_step, acceleration, initial_velocity);
         let ratio = |values: &[f64]| {
@@ -303,13 +309,14 @@ impl Residuals {
         Self { velocity: ratio(&v), displacement: ratio(&d) }
     }
 
-    /// `true` for an end velocity below a thousandth of PGV and an end displacement below a hundredth of PGD.
+    /// Returns `true` if the final velocity is below 0.1 % of PGV and the final displacement is
+    /// below 1 % of PGD.
     pub fn acceptable(&self) -> bool {
         self.velocity < 1e-3 && self.displacement < 1e-2
     }
 
     fn sentence(self) -> String {
-        // Rounding errors at rest are not shown.
+        // Rounding errors of a motion at rest are not shown.
         let share = |value: f64| match value {
             v if v < 1e-6 => "less than 1e-6".to_owned(),
             v => format!("{v:.1e}"),
@@ -320,16 +327,17 @@ impl Residuals {
             values
         } else {
             format!(
-                "{values}, above 1e-3 and 1e-2: the ground does not come to rest where it began"
+                "{values}, above 1e-3 and 1e-2: the ground does not return to rest at its initial position"
             )
         }
     }
 }
 
-/// Returns the number of samples before the first arrival, at most 5 s, if there is at least half a second.
+/// Returns the number of samples before the first arrival, at most 5 s; `None` if there is less
+/// than half a second.
 ///
-/// The arrival is the first deviation from the level of the first half second by 5 % of the peak; half a second
-/// before it is excluded.
+/// The arrival is the first deviation from the level of the first half second by 5 % of the peak.
+/// The half second before the arrival is excluded.
 fn quiet_samples(time_step: f64, a: &[f64]) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive, small")]
     let samples = |seconds: f64| (seconds / time_step).ceil().min(1e9) as usize;
@@ -360,7 +368,7 @@ fn remove_line(a: &mut [f64]) {
     }
 }
 
-/// Applies a half-cosine taper over a fraction of the length at each end.
+/// Applies a half-cosine taper at each end, over a fraction of the length.
 pub(crate) fn taper_ends(a: &mut [f64], fraction: f64) {
     let n = a.len();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n/2")]
@@ -372,8 +380,8 @@ pub(crate) fn taper_ends(a: &mut [f64], fraction: f64) {
     }
 }
 
-/// Adds `c₁ s² + c₂ s² cos(π t/T)` with `s = sin(π t/T)` so that velocity and displacement end at
-/// zero; both terms start and end smoothly at zero.
+/// Adds `c₁ s² + c₂ s² cos(π t/T)` with `s = sin(π t/T)`, so that velocity and displacement are
+/// zero at the end. Both terms start and end smoothly at zero.
 pub(crate) fn close_ends(
     time_step: f64,
     a: &mut [f64],
@@ -398,7 +406,7 @@ pub(crate) fn close_ends(
     let (odd_v, odd_d) = ends(&odd, 0.0);
     let determinant = even_v * odd_d - odd_v * even_d;
     let mut largest = 0.0_f64;
-    // A second round removes the rounding left by the first.
+    // The second pass removes the rounding errors left by the first.
     for _ in 0..2 {
         let (v, d) = ends(a, initial_velocity);
         let c1 = -(v * odd_d - odd_v * d) / determinant;

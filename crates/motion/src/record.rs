@@ -1,4 +1,4 @@
-//! A file as read: its channels in SI units, with all data of the header.
+//! A ground-motion record as read from a file: channels in SI units, and all data of the header.
 
 use std::fmt;
 
@@ -13,21 +13,21 @@ use crate::site::Site;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// Stage of processing before the record was written.
+/// Processing of a record before it was published.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
-    /// As recorded; velocity and displacement drift when it is integrated.
+    /// Uncorrected; the integrated velocity and displacement drift.
     Raw,
-    /// Filtered and baseline-corrected, by its publisher or later.
+    /// Filtered and baseline-corrected, by the publisher or later.
     Corrected,
-    /// Not stated in the file.
+    /// The file does not state the processing.
     #[default]
     Unknown,
 }
 
 printed_as!(Stage, Raw = "raw", Corrected = "corrected", Unknown = "unknown");
 
-/// Quantity of a peak or of samples.
+/// Physical quantity of a peak or of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Acceleration (m/s²).
@@ -45,55 +45,58 @@ printed_as!(
     Displacement = "displacement"
 );
 
-/// A peak stated in a header with the peak of the numbers it describes.
+/// A peak stated in a header, with the actual peak of the numbers that it describes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StatedPeak {
-    /// Its quantity.
+    /// Quantity of the peak.
     pub quantity: Quantity,
-    /// Absolute value stated (SI).
+    /// Absolute value stated in the header (SI).
     pub stated: f64,
     /// One unit of the last printed digit (SI).
     pub resolution: f64,
-    /// Absolute peak of the file's own numbers for this quantity (SI).
+    /// Absolute peak of the file's own numbers (SI).
     pub measured: f64,
 }
 
 impl StatedPeak {
-    /// `true` if the two agree within one unit of the last printed digit or 0.1 %.
+    /// Returns `true` if the two peaks agree within one unit of the last printed digit or within
+    /// 0.1 %.
     pub fn agrees(&self) -> bool {
         (self.stated - self.measured).abs() <= (1.001 * self.resolution).max(1e-3 * self.stated)
     }
 }
 
-/// One component as read.
+/// One component of a record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channel {
-    /// Name in the file, such as `360` or `N28W`.
+    /// Channel name in the file, such as `360` or `N28W`.
     pub name: String,
-    /// Direction; a downward channel has been reversed.
+    /// Direction of positive values; a downward channel has been reversed.
     pub direction: Direction,
     /// Time between samples (s).
     pub time_step: f64,
-    /// Acceleration (m/s²).
+    /// Acceleration at the samples (m/s²).
     pub acceleration: Vec<f64>,
-    /// Velocity at the first sample (m/s), stated by some corrected records; 0 otherwise.
+    /// Velocity at the first sample (m/s), as stated by some corrected records; otherwise 0.
     pub initial_velocity: f64,
-    /// Instant of the first sample, if stated in the file.
+    /// Time of the first sample, if stated in the file.
     pub start: Option<Utc>,
-    /// Station, sensor and place.
+    /// Station, sensor and coordinates.
     pub site: Site,
     /// Peaks stated in the header.
     pub peaks: Vec<StatedPeak>,
 }
 
 impl Channel {
-    /// Adds the peak acceleration that a header states in a unit of `factor` m/s², with the peak of the samples.
+    /// Adds a peak acceleration stated in a header in units of `factor` m/s², with the peak of the
+    /// samples.
     pub(crate) fn state_peak(&mut self, stated: Option<Printed>, factor: f64) {
         let measured = math::peak(&self.acceleration);
         self.state(Quantity::Acceleration, stated, factor, measured);
     }
 
-    /// Adds a stated peak, as [`Channel::state_peak`], of any quantity, with the peak `measured` in SI.
+    /// Adds a stated peak of any quantity, as [`Channel::state_peak`] does; `measured` is the
+    /// actual peak (SI).
     pub(crate) fn state(
         &mut self,
         quantity: Quantity,
@@ -107,7 +110,7 @@ impl Channel {
         }
     }
 
-    /// Creates a channel without stated peaks, starting from rest.
+    /// Creates a channel that starts from rest and has no stated peaks.
     pub fn new(
         name: impl Into<String>,
         direction: Direction,
@@ -117,10 +120,10 @@ impl Channel {
         Self { name: name.into(), direction, time_step, acceleration, ..Self::default() }
     }
 
-    /// Samples a synthetic motion as a channel, at steps of at most `time_step` (s).
+    /// Creates a channel by sampling a synthetic motion at steps of at most `time_step` (s).
     ///
     /// # Errors
-    /// As [`History::sampled`].
+    /// The same as for [`History::sampled`].
     pub fn of_history(
         name: &str,
         direction: Direction,
@@ -143,26 +146,27 @@ impl Channel {
         math::peak(&self.acceleration)
     }
 
-    /// Returns the peak velocity (m/s) by plain integration from [`Channel::initial_velocity`]; of a raw record
-    /// this is drift, not ground motion.
+    /// Returns the peak velocity (m/s), integrated from [`Channel::initial_velocity`] without
+    /// filtering. For a raw record, this is mostly drift.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity())
     }
 
-    /// Returns the peak displacement (m) by plain integration, trapezoids throughout.
+    /// Returns the peak displacement (m), integrated by the trapezoidal rule without filtering.
     pub fn pgd(&self) -> f64 {
         math::peak(&crate::sampled::running_trapezoid(self.time_step, &self.velocity()))
     }
 
-    /// Returns the reason why this cannot be a strong motion, by step, count or length.
+    /// Returns the reason why the channel cannot be a strong motion: its step, its number of
+    /// samples or its length.
     pub fn implausible(&self) -> Option<String> {
         let (step, count, length) = (self.time_step, self.acceleration.len(), self.duration());
         let what = if !(1e-4..=0.1).contains(&step) {
-            format!("a step of {step} s, and strong motion has 0.0001 to 0.1 s")
+            format!("a step of {step} s, but strong-motion records have 0.0001 to 0.1 s")
         } else if count < 50 {
-            format!("{count} samples, and no strong motion has fewer than 50")
+            format!("{count} samples, but strong-motion records have at least 50")
         } else if length < 1.0 {
-            format!("a length of {length} s, and no strong motion has less than 1 s")
+            format!("a length of {length} s, but strong-motion records have at least 1 s")
         } else {
             return None;
         };
@@ -173,18 +177,18 @@ impl Channel {
         crate::sampled::integrate(self.time_step, &self.acceleration, self.initial_velocity).0
     }
 
-    /// `true` if the channel is known to be vertical.
+    /// Returns `true` if the channel is known to be vertical.
     pub fn is_vertical(&self) -> bool {
         self.direction.orientation == Some(Orientation::Vertical)
     }
 }
 
-/// Warning of a reader about something that it did not guess.
+/// A warning of a reader about a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Line, counted from 1, if any.
+    /// Line number, counted from 1; `None` if the warning concerns no single line.
     pub line: Option<usize>,
-    /// The observation.
+    /// Text of the warning.
     pub message: String,
 }
 
@@ -197,29 +201,30 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A file as read.
+/// A ground-motion record as read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Name of the format, as in [`crate::FORMATS`]; `samples` if made from samples.
+    /// Name of the format, as in [`crate::FORMATS`]; `samples` for a record created from samples in
+    /// memory.
     pub format: &'static str,
     /// Name of the file.
     pub file: String,
-    /// Event as stated in the file; empty if not stated.
+    /// Event, as stated in the file; empty if not stated.
     pub event: String,
-    /// Magnitude and place of the event, as far as stated in the file.
+    /// Magnitude and location of the earthquake, as far as stated in the file.
     pub earthquake: Earthquake,
-    /// Station as stated in the file; empty if not stated.
+    /// Station, as stated in the file; empty if not stated.
     pub station: String,
-    /// Stage of processing.
+    /// Processing before publication.
     pub stage: Stage,
-    /// Channels in file order.
+    /// Channels, in file order.
     pub channels: Vec<Channel>,
     /// Warnings of the reader.
     pub warnings: Vec<Warning>,
-    /// `true` if channels of different stations and sensors may be combined, at the caller's request; readers never
-    /// set it.
+    /// `true` if the caller allowed the combination of channels of different stations or sensors;
+    /// never set by readers.
     pub mixed: bool,
-    /// Changes of the numbers by the reader beyond units, one sentence each.
+    /// Changes made to the numbers by the reader, other than unit conversion, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -228,12 +233,11 @@ impl Record {
         Self { format, file: file.to_owned(), stage, ..Self::default() }
     }
 
-    /// Creates a record from samples in memory: channels by name, all of one step (s) and one unit.
+    /// Creates a record from samples in memory: named channels with a common step (s) and unit.
     ///
-    /// Names state directions as in files ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a downward channel is
-    /// reversed.
-    /// Its stage is unknown, so that the numbers are used unchanged; set [`Record::stage`] to [`Stage::Raw`] to
-    /// have them processed by default.
+    /// As in files, names state directions ([`Direction::parse`]): `360`, `N28W`, `H1`, `UP`; a
+    /// downward channel is reversed. The stage is unknown, so that the numbers are used unchanged;
+    /// set [`Record::stage`] to [`Stage::Raw`] to have them processed by default.
     ///
     /// ```
     /// use barrelstack_motion::{AccelerationUnit, Record};
@@ -244,7 +248,8 @@ impl Record {
     /// ```
     ///
     /// # Errors
-    /// When the step is not positive, a channel has fewer than two samples, or a value is not an acceleration.
+    /// If the step is not positive, a channel has fewer than two samples, or a value is not a
+    /// possible acceleration.
     pub fn of_samples(
         name: &str,
         channels: &[(&str, &[f64])],
@@ -269,13 +274,13 @@ impl Record {
         Ok(record)
     }
 
-    /// Samples a synthetic motion as a record, at steps of at most `time_step` (s): its horizontal component `H1`, and
-    /// `UP` if it has a vertical one.
+    /// Creates a record by sampling a synthetic motion at steps of at most `time_step` (s).
     ///
-    /// Its notes are the motion's provenance, and its numbers are used unchanged.
+    /// The horizontal component is named `H1`, a vertical component `UP`. The notes are the
+    /// provenance of the motion. The default processing leaves the numbers unchanged.
     ///
     /// # Errors
-    /// As [`History::sampled`].
+    /// The same as for [`History::sampled`].
     pub fn of_motion(motion: &GroundMotion, time_step: f64) -> Result<Self, MotionError> {
         let mut record = Self::new("synthetic", &motion.name, Stage::Corrected);
         record.event.clone_from(&motion.name);
@@ -290,7 +295,7 @@ impl Record {
         Ok(record)
     }
 
-    /// Sets start and place of all channels; the station is filled in at the end of reading.
+    /// Sets the start and the site of all channels; the station is filled in at the end of reading.
     pub(crate) fn place(&mut self, start: Option<Utc>, site: &Site) {
         for channel in &mut self.channels {
             channel.start = start;
@@ -298,12 +303,12 @@ impl Record {
         }
     }
 
-    /// Warns of a stated start (on a 0-based line) that could not be parsed, without which channels are taken as
-    /// simultaneous.
+    /// Warns of a stated start (on a 0-based line) that cannot be parsed. Channels without a start
+    /// are assumed to be simultaneous.
     pub(crate) fn warn_of_start(&mut self, line: usize, stated: &str, start: Option<Utc>) {
         if start.is_none() && !stated.trim().is_empty() {
             let stated = format::quoted(stated);
-            self.warn(line + 1, format!("{stated} is no date and time of a first sample"));
+            self.warn(line + 1, format!("{stated} is not a date and time of the first sample"));
         }
     }
 

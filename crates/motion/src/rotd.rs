@@ -5,31 +5,32 @@ use crate::error::MotionError;
 use crate::math::{self, PI};
 use crate::response::{Step, check_oscillator};
 
-/// Directions in half a turn.
+/// Number of directions in half a turn.
 pub(crate) const DIRECTIONS: usize = 180;
 
-/// A peak over all horizontal directions, one degree apart.
+/// Peaks over all horizontal directions, one degree apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotatedPeak {
-    /// Median over directions (`RotD50`).
+    /// Median over all directions (`RotD50`).
     pub median: f64,
-    /// Largest (`RotD100`).
+    /// Largest peak (`RotD100`).
     pub largest: f64,
-    /// Smallest (`RotD00`).
+    /// Smallest peak (`RotD00`).
     pub smallest: f64,
-    /// Direction of the largest, degrees from the first component towards the second, 0 to 179.
+    /// Direction of the largest peak (degrees from the first component toward the second, 0 to
+    /// 179).
     pub angle: f64,
-    /// Directions of the two middle responses, whose mean is the median, as `angle`.
+    /// Directions of the two middle peaks, whose mean is the median (degrees as in `angle`).
     pub median_angles: [f64; 2],
 }
 
 impl RotatedPeak {
-    /// Returns the azimuth of the largest (degrees clockwise from north, 0 to below 180) if those of the two
-    /// components are known.
+    /// Returns the azimuth of the largest peak (degrees clockwise from north, 0 to below 180), if
+    /// the azimuths of both components are known.
     ///
     /// ```
     /// use barrelstack_motion::{Direction, rotated_peak};
-    /// // North-west and south-east moves of components N and E.
+    /// // A motion to the north-west and to the south-east, by components N and E.
     /// let peak = rotated_peak(&[1.0, -1.0], &[-1.0, 1.0]);
     /// let (north, east) = (Direction::parse("N"), Direction::parse("E"));
     /// assert_eq!(peak.azimuth(&north, &east), Some(135.0));
@@ -37,15 +38,16 @@ impl RotatedPeak {
     /// ```
     pub fn azimuth(&self, first: &Direction, second: &Direction) -> Option<f64> {
         let (first, second) = (first.azimuth?, second.azimuth?);
-        // From the first towards the second is clockwise if the second lies to the right.
+        // The rotation from the first component toward the second is clockwise if the second lies
+        // to the right.
         let clockwise = math::sin((second - first).to_radians()) > 0.0;
         let turned = if clockwise { first + self.angle } else { first - self.angle };
         Some(turned.rem_euclid(180.0))
     }
 }
 
-/// Returns peaks over all directions of any pair of series: accelerations, velocities, displacements or
-/// responses (Boore 2010, BSSA 100:1830-1835).
+/// Returns the peaks over all directions of any pair of series: accelerations, velocities,
+/// displacements or responses (Boore 2010, BSSA 100:1830-1835).
 pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     let hull = hull(first, second);
     let mut peaks = [0.0_f64; DIRECTIONS];
@@ -69,7 +71,8 @@ pub fn rotated_peak(first: &[f64], second: &[f64]) -> RotatedPeak {
     }
 }
 
-/// Returns the corners of the convex hull of the points (x, y): no other point can be a peak in any direction.
+/// Returns the corners of the convex hull of the points (x, y). Only corners can be the peak in a
+/// direction.
 fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = first.iter().copied().zip(second.iter().copied()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -97,12 +100,13 @@ fn hull(first: &[f64], second: &[f64]) -> Vec<(f64, f64)> {
     corners
 }
 
-/// Returns pseudo-accelerations (m/s²) of two horizontals over all directions, one per period (s).
+/// Returns the pseudo-accelerations (m/s²) of two horizontals over all directions, one result per
+/// period (s).
 ///
-/// Components of different length are cut to the shorter one.
+/// The longer component is cut to the shorter one.
 ///
 /// # Errors
-/// As [`crate::response()`].
+/// The same as for [`crate::response()`].
 pub fn rotated_spectrum(
     time_step: f64,
     first: &[f64],

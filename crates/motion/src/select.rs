@@ -1,4 +1,4 @@
-//! Selection of components of a record, and their conversion to a ground motion.
+//! Selects components of a record and converts them to a ground motion.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,25 +13,28 @@ use crate::process::Processing;
 use crate::record::{Channel, Record, Stage};
 use crate::sampled::Sampled;
 
-/// Cosine of the smallest angle at which two horizontals count as perpendicular: within five degrees.
+/// Largest cosine of the angle between two horizontals that count as perpendicular, within about
+/// five degrees.
 const OBLIQUE: f64 = 0.09;
 
 /// Identifies one component of a record.
 ///
-/// Parses from `h1`, `h2`, `vertical`, `az:90`, `#3` (third channel), or a channel's name.
+/// The text form is `h1`, `h2`, `vertical`, `az:90`, `#3` (third channel), or the name of a
+/// channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Component {
-    /// First channel in the file that is not vertical.
+    /// The first channel in the file that is not vertical.
     Horizontal1,
-    /// Second channel in the file that is not vertical.
+    /// The second channel in the file that is not vertical.
     Horizontal2,
-    /// First vertical channel.
+    /// The first vertical channel.
     Vertical,
-    /// Channel by position, counted from 1.
+    /// A channel by its position, counted from 1.
     Number(usize),
-    /// Channel by name, in any case.
+    /// A channel by its name, ignoring case.
     Name(String),
-    /// Motion along an azimuth (degrees clockwise from north), rotated if no channel has it.
+    /// The motion along an azimuth (degrees clockwise from north); rotated if no channel has this
+    /// azimuth.
     Azimuth(f64),
 }
 
@@ -82,10 +85,10 @@ impl FromStr for Component {
 }
 
 impl Record {
-    /// Returns the channel that `component` identifies; a rotated one is a new channel.
+    /// Returns the channel identified by `component`; rotation creates a new channel.
     ///
     /// # Errors
-    /// If there is no such channel, or no motion along the azimuth can be derived.
+    /// If there is no such channel, or the motion along the azimuth cannot be derived.
     pub fn component(&self, component: &Component) -> Result<Channel, MotionError> {
         let missing = || MotionError::NoChannel {
             file: self.file.clone(),
@@ -116,7 +119,8 @@ impl Record {
         names.join(", ")
     }
 
-    /// Returns the motion along an azimuth, from a channel that has it or from two horizontals.
+    /// Returns the motion along an azimuth, from a channel with this azimuth or from two
+    /// horizontals.
     fn along(&self, azimuth: f64) -> Result<Channel, MotionError> {
         let known: Vec<(&Channel, f64)> = self
             .channels
@@ -143,13 +147,14 @@ impl Record {
         })
     }
 
-    /// Converts one horizontal and optionally a vertical component to a ground motion, with the given processing.
+    /// Converts a horizontal and optionally a vertical component to a ground motion, with the given
+    /// processing.
     ///
-    /// Components are cut to the shorter one.
-    /// With [`Processing::none`] the record drives a model from its first sample.
+    /// The longer component is cut to the shorter one. With [`Processing::none`], the record drives
+    /// a model from its first sample.
     ///
     /// # Errors
-    /// If a component is missing, their steps differ, or a setting is out of range.
+    /// If a component is missing, the time steps differ, or a setting is out of range.
     pub fn ground_motion(
         &self,
         horizontal: &Component,
@@ -192,17 +197,18 @@ impl Record {
         match one.site.differs(&other.site) {
             Some(what) if !self.mixed => Err(MotionError::mismatch(
                 format!("channels {} and {} of {} are of {what}", one.name, other.name, self.file),
-                "choose channels of one sensor",
+                "choose channels of the same sensor",
             )),
             _ => Ok(()),
         }
     }
 
-    /// Returns the two horizontal channels for measures over both: the first two that are not vertical.
+    /// Returns the two horizontal channels for measures over directions: the first two channels
+    /// that are not vertical.
     ///
     /// # Errors
-    /// If there are not two, their directions are unknown or not perpendicular, or they are of
-    /// different stations or sensors.
+    /// If there are fewer than two, their directions are unknown or not perpendicular, or they
+    /// belong to different stations or sensors.
     pub fn horizontal_pair(&self) -> Result<(&Channel, &Channel), MotionError> {
         let mut flat = self.channels.iter().filter(|channel| !channel.is_vertical());
         let (Some(one), Some(two)) = (flat.next(), flat.next()) else {
@@ -211,7 +217,7 @@ impl Record {
                 self.file,
                 self.channel_names()
             );
-            return Err(MotionError::mismatch(what, "give the files of both"));
+            return Err(MotionError::mismatch(what, "give the files of both components"));
         };
         for channel in [one, two] {
             if channel.direction.orientation.is_none() {
@@ -223,7 +229,7 @@ impl Record {
             }
         }
         self.require_one_site(one, two)?;
-        require_step(one, two, "choose channels of one step")?;
+        require_step(one, two, "choose channels with the same time step")?;
         if let (Some(a), Some(b)) = (one.direction.azimuth, two.direction.azimuth)
             && math::cos((b - a).to_radians()).abs() > OBLIQUE
         {
@@ -237,10 +243,11 @@ impl Record {
         Ok((one, two))
     }
 
-    /// Returns the [`Record::horizontal_pair`], processed and cut to the shorter.
+    /// Returns the channels of [`Record::horizontal_pair`], processed and cut to the same length.
     ///
     /// # Errors
-    /// As [`Record::horizontal_pair`]; if the steps differ or a setting is out of range.
+    /// The same as for [`Record::horizontal_pair`]; if the time steps differ or a setting is out of
+    /// range.
     pub fn horizontals(&self, processing: &Processing) -> Result<(Sampled, Sampled), MotionError> {
         let (first, second) = self.horizontal_pair()?;
         let (mut first, mut second) = (first.clone(), second.clone());
@@ -250,11 +257,11 @@ impl Record {
         Ok((series(&first)?, series(&second)?))
     }
 
-    /// Returns the first horizontal component with the vertical one, if any, processed by the default for the record's
-    /// stage.
+    /// Returns the ground motion of the first horizontal and the vertical component, if there is
+    /// one, with the default processing for the record's stage.
     ///
     /// # Errors
-    /// As [`Record::ground_motion`].
+    /// The same as for [`Record::ground_motion`].
     pub fn default_motion(&self) -> Result<GroundMotion, MotionError> {
         let vertical = self.channels.iter().any(Channel::is_vertical);
         self.ground_motion(
@@ -276,7 +283,7 @@ fn history(
     Ok(motion)
 }
 
-/// Returns the processed channel, and the steps of processing.
+/// Returns the processed channel and a description of the processing steps.
 pub(crate) fn processed(
     channel: &Channel,
     processing: &Processing,
@@ -287,13 +294,13 @@ pub(crate) fn processed(
     Ok((Sampled::with_initial_velocity(channel.time_step, a, v)?, done.steps))
 }
 
-/// Checks that the steps agree, and cuts the end of the longer channel.
+/// Checks that the time steps agree, and cuts the end of the longer channel.
 fn cut_to_shorter(
     first: &mut Channel,
     second: &mut Channel,
     provenance: &mut Vec<String>,
 ) -> Result<(), MotionError> {
-    require_step(first, second, "choose channels of one step")?;
+    require_step(first, second, "choose channels with the same time step")?;
     let shorter = first.acceleration.len().min(second.acceleration.len());
     for channel in [first, second] {
         let extra = channel.acceleration.len() - shorter;
@@ -308,8 +315,8 @@ fn cut_to_shorter(
     Ok(())
 }
 
-/// Combines two horizontals of different azimuth to the motion along a third, by solving for north
-/// and east; the two need not be perpendicular.
+/// Returns the motion along an azimuth from two horizontals of different azimuth, by solving for
+/// north and east. The two need not be perpendicular.
 fn rotate(
     first: (&Channel, f64),
     second: (&Channel, f64),

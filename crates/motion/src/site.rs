@@ -2,12 +2,12 @@
 
 use crate::join::names_differ;
 
-/// Site of one channel, as far as stated in its file; unstated fields are empty.
+/// Site of one channel, as stated in its file; unstated fields are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Site {
-    /// Station as stated in the file.
+    /// Station name, as stated in the file.
     pub station: String,
-    /// Sensor of the station: a SEED location code, or words such as `borehole`.
+    /// Sensor at the station: a SEED location code, or a word such as `borehole`.
     pub sensor: String,
     /// Latitude (degrees, positive north).
     pub latitude: Option<f64>,
@@ -20,8 +20,8 @@ pub struct Site {
 }
 
 impl Site {
-    /// Adds a latitude and a longitude (degrees), if both are valid and are not the zeros of a header that was never
-    /// filled in.
+    /// Sets latitude and longitude (degrees), if both are valid. Zeros from a header that was never
+    /// filled in are ignored.
     pub(crate) fn at(mut self, position: Option<(f64, f64)>) -> Self {
         let possible = |(north, east): &(f64, f64)| {
             north.abs() <= 90.0 && east.abs() <= 360.0 && (*north != 0.0 || *east != 0.0)
@@ -33,7 +33,7 @@ impl Site {
         self
     }
 
-    /// Returns the reason why two channels are not at one site, if a header states one.
+    /// Returns the reason why two channels are not at the same site, if their headers state one.
     pub fn differs(&self, other: &Self) -> Option<String> {
         let words =
             [("station", &self.station, &other.station), ("sensor", &self.sensor, &other.sensor)];
@@ -42,8 +42,8 @@ impl Site {
                 return Some(format!("{what} \"{one}\" and {what} \"{two}\""));
             }
         }
-        // Published coordinates of one station differ by less than a kilometer, a hundredth of a
-        // degree.
+        // The published coordinates of one station differ by less than a kilometer, which is 0.01
+        // degrees.
         let apart = |one: Option<f64>, two: Option<f64>| {
             one.zip(two).is_some_and(|(one, two)| (one - two).abs() > 0.01)
         };
@@ -56,8 +56,8 @@ impl Site {
     }
 }
 
-/// Parses latitude and longitude (degrees) in a text such as `35.525N, 117.365W`, `37.73 N 47.80 E` or
-/// `34 25 09N, 118 25 34W`.
+/// Parses latitude and longitude (degrees) from a text such as `35.525N, 117.365W`,
+/// `37.73 N 47.80 E` or `34 25 09N, 118 25 34W`.
 pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     let upper = text.to_ascii_uppercase();
     let part = |letters: [char; 2]| {
@@ -69,12 +69,13 @@ pub(crate) fn position(text: &str) -> Option<(f64, f64)> {
     Some((part(['N', 'S'])?, part(['E', 'W'])?))
 }
 
-/// Parses degrees, or degrees, minutes and seconds, right before the end of a text.
+/// Parses an angle at the end of a text, given in degrees, or in degrees, minutes and seconds.
 fn angle_before(text: &str) -> Option<f64> {
     let text = text.trim_end();
     let number = |c: char| c.is_ascii_digit() || c == '.' || c == ' ';
     let start = text.rfind(|c: char| !number(c)).map_or(0, |at| at + 1);
-    // An unrelated number to the left, such as that of the station, is two blanks away.
+    // An unrelated number to the left, such as the number of the station, is separated by two
+    // blanks.
     let last = text.get(start..)?.rsplit("  ").next()?;
     let parts: Vec<f64> =
         last.split_whitespace().map(|part| part.parse().ok()).collect::<Option<_>>()?;

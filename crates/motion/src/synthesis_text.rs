@@ -1,4 +1,4 @@
-//! Descriptions of synthetic motions, in sentences with units, for their provenance.
+//! Describes synthetic motions in sentences with units, for the provenance.
 
 use std::fmt::{Display, Formatter, Result};
 
@@ -69,7 +69,7 @@ impl Display for NearFault {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         write!(
             f,
-            "{} from {} s on, around it the stochastic method above {} of the pulse's frequency: {}",
+            "{} from {} s on, plus the stochastic method above {} times the pulse frequency: {}",
             self.pulse,
             Short(self.start),
             Short(self.crossover),

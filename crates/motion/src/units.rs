@@ -1,4 +1,4 @@
-//! Units of acceleration in files and options.
+//! Units of acceleration and motion in files and options.
 
 use std::str::FromStr;
 
@@ -11,7 +11,7 @@ use crate::record::Quantity;
 pub enum AccelerationUnit {
     /// Standard gravity, 9.80665 m/s².
     G,
-    /// A tenth of standard gravity, the unit of old strong-motion files.
+    /// A tenth of standard gravity, the unit of some old strong-motion files.
     TenthG,
     /// m/s².
     MetersPerSecondSquared,
@@ -26,7 +26,7 @@ pub enum AccelerationUnit {
 }
 
 impl AccelerationUnit {
-    /// Every unit.
+    /// All units.
     pub const ALL: [Self; 7] = [
         Self::G,
         Self::TenthG,
@@ -37,7 +37,7 @@ impl AccelerationUnit {
         Self::InchesPerSecondSquared,
     ];
 
-    /// Returns the SI value (m/s²) of this unit.
+    /// Returns the value of this unit in m/s².
     pub fn factor(self) -> f64 {
         match self {
             Self::G => STANDARD_GRAVITY,
@@ -90,23 +90,25 @@ impl FromStr for AccelerationUnit {
 /// A unit of acceleration, velocity or displacement in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionUnit {
-    /// Quantity measured in this unit.
+    /// Physical quantity of the unit.
     pub(crate) quantity: Quantity,
-    /// SI value of this unit.
+    /// SI value of the unit.
     pub(crate) factor: f64,
 }
 
 impl MotionUnit {
-    /// Parses `cm/s2`, `M/S**2`, `nm s^-2`, `in/sec/sec`, `m/sec`, `mm`, `g`, `%g`, `mg`, `gal`.
+    /// Parses a unit such as `cm/s2`, `M/S**2`, `nm s^-2`, `in/sec/sec`, `m/sec`, `mm`, `g`, `%g`,
+    /// `mg` or `gal`.
     ///
     /// Returns `None` for anything that is not a unit of acceleration, velocity or displacement.
     pub(crate) fn parse(text: &str) -> Option<Self> {
-        // "m/(s^2)" has parentheses behind a sign; "cm/s(s)" is damaged.
+        // "m/(s^2)" has its parenthesis after an operator; "cm/s(s)" is damaged.
         let letter = |at: usize| text[..at].ends_with(|c: char| c.is_alphanumeric());
         if text.match_indices('(').any(|(at, _)| letter(at)) {
             return None;
         }
-        // UTF-8 misread as Latin-1 has U+C2 before a superscript 2, a micro sign and a centered dot.
+        // UTF-8 misread as Latin-1 has U+C2 before a superscript 2, a micro sign and a centered
+        // dot.
         let plain: String = text
             .trim()
             .replace('\u{c2}', "")
@@ -134,7 +136,7 @@ impl MotionUnit {
         }
         let (length, time) = match plain.find('/') {
             Some(at) => (&plain[..at], &plain[at + 1..]),
-            // "ms-2", "m-s-2" and "mps2".
+            // Handles "ms-2", "m-s-2" and "mps2".
             None => ["sec-", "s-", "-s-", "ps", "psec"]
                 .iter()
                 .find_map(|mark| {

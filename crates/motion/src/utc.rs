@@ -1,4 +1,4 @@
-//! Instants of universal time, as stated in headers.
+//! Instants of universal time, as stated in file headers.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,12 +7,12 @@ use crate::error::MotionError;
 
 const MICROSECOND: f64 = 1e-6;
 const DAY: i64 = 86_400_000_000;
-/// Whole hours by which a local time differs from universal time at most.
+/// Largest offset of a local time from universal time (h).
 const LARGEST_OFFSET: u32 = 14;
 
-/// An instant of universal time (UTC), to the microsecond; leap seconds are not counted.
+/// An instant of universal time (UTC) with microsecond resolution; leap seconds are not counted.
 ///
-/// Prints as and parses from `2014-08-24T10:20:33.000Z`.
+/// The text form is `2014-08-24T10:20:33.000Z`.
 ///
 /// ```
 /// use barrelstack_motion::Utc;
@@ -27,18 +27,18 @@ pub struct Utc {
     microseconds: i64,
 }
 
-/// Order of the numbers of a date that does not begin with the year.
+/// Order of month and day in a date that does not begin with the year.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DateOrder {
-    /// As in the United States.
+    /// Month before day, as in the United States.
     MonthFirst,
-    /// As almost everywhere else.
+    /// Day before month, as in most other countries.
     DayFirst,
 }
 
 impl Utc {
-    /// Creates an instant from a date of the Gregorian calendar and a time of day; `None` if it does not exist or lies
-    /// outside of the years 1900 to 2199.
+    /// Creates an instant from a Gregorian date and a time of day. Returns `None` if the instant
+    /// does not exist or is outside the years 1900 to 2199.
     pub fn new(
         year: i64,
         month: i64,
@@ -54,19 +54,19 @@ impl Utc {
         Self::ordinal(year, before + day, hour, minute, seconds)
     }
 
-    /// Creates an instant, as [`Utc::new`], from the day of the year, counted from 1.
+    /// Creates an instant like [`Utc::new`], from the day of the year, counted from 1.
     pub fn ordinal(year: i64, day: i64, hour: i64, minute: i64, seconds: f64) -> Option<Self> {
         let sound = (1900..2200).contains(&year)
             && (1..=365 + i64::from(is_leap(year))).contains(&day)
             && (0..24).contains(&hour)
             && (0..60).contains(&minute)
             && (0.0..61.0).contains(&seconds);
-        // Numbers of a damaged header may overflow.
+        // The numbers of a damaged header may overflow.
         if !sound {
             return None;
         }
         let years: i64 = (1900..year).map(|year| 365 + i64::from(is_leap(year))).sum();
-        // 1900 to 1969: 70 years, 17 of them leap years.
+        // From 1900 to 1969 there are 70 years, 17 of them leap years.
         let days = years - (70 * 365 + 17) + day - 1;
         let clock = Self { microseconds: days * DAY + (hour * 60 + minute) * 60_000_000 };
         Some(clock.later(seconds))
@@ -77,7 +77,7 @@ impl Utc {
         (self.microseconds - other.microseconds) as f64 * MICROSECOND
     }
 
-    /// Returns the instant some seconds later, or earlier if negative; at most a century away.
+    /// Returns the instant `seconds` later, or earlier if negative; at most a century away.
     #[must_use]
     pub fn later(self, seconds: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "at most a century of microseconds")]
@@ -85,10 +85,10 @@ impl Utc {
         Self { microseconds: self.microseconds + away }
     }
 
-    /// Parses the first six numbers of a text such as `8/24/14, 10:20:33.0 UTC`; a year of two digits lies
-    /// between 1950 and 2049.
+    /// Parses an instant from the numbers of a text such as `8/24/14, 10:20:33.0 UTC`.
     ///
-    /// A difference from universal time behind the time of day, such as `+03:00`, is taken off; `AM` and `PM` count.
+    /// A two-digit year is between 1950 and 2049. A UTC offset after the time of day, such as
+    /// `+03:00`, is subtracted; `AM` and `PM` are recognized.
     pub(crate) fn in_header(text: &str, order: DateOrder) -> Option<Self> {
         let (text, offset) = without_offset(text);
         let lower = text.to_ascii_lowercase();
@@ -118,13 +118,13 @@ impl Utc {
     }
 }
 
-/// Splits a difference from universal time (s), such as `+03:00`, off the end of a time of day.
+/// Splits a UTC offset (s), such as `+03:00`, off the end of a time of day.
 fn without_offset(text: &str) -> (&str, f64) {
     let split = || {
         let at = text.rfind(['+', '-'])?;
         let (before, sign) =
             (text.get(..at)?, if text[at..].starts_with('-') { -1.0 } else { 1.0 });
-        // `+03:00`, `+0300` and `+03`, also in parentheses or behind `UTC`.
+        // Accepts `+03:00`, `+0300` and `+03`, also in parentheses or after `UTC`.
         let digits = text[at + 1..].trim().trim_end_matches(')').replace(':', "");
         let number = digits.bytes().all(|c| c.is_ascii_digit()).then_some(digits)?;
         let (hours, minutes) = match number.len() {
@@ -135,7 +135,7 @@ fn without_offset(text: &str) -> (&str, f64) {
         if hours > LARGEST_OFFSET || minutes >= 60 {
             return None;
         }
-        // A date has dashes, too, but no time of day before them.
+        // A date also contains dashes, but no time of day before them.
         let offset = f64::from(hours * 3600 + minutes * 60);
         before.contains(':').then_some((before, sign * offset))
     };

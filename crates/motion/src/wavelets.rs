@@ -1,4 +1,4 @@
-//! Time-domain matching: wavelets are added at the times of the peak responses.
+//! Spectral matching in the time domain: wavelets are added at the times of the peak responses.
 
 use crate::error::MotionError;
 use crate::matching::{Best, GOOD_ENOUGH, Matching, PATIENCE, Work, matched_periods};
@@ -6,32 +6,34 @@ use crate::math::{self, TAU};
 use crate::normal_equations::System;
 use crate::response::{Bank, Step, TOGETHER};
 
-/// Share of the misfit removed in one round; more makes peaks jump to other times.
+/// Fraction of the misfit removed in one round; with more, peaks jump to other times.
 const RELAXATION: f64 = 0.6;
-/// Share of the target above which other extrema are watched, too, so that the reduction of one peak does
-/// not raise another.
+/// Fraction of the target above which other extrema are also constrained, so that the reduction of
+/// one peak does not raise another.
 const WATCHED: f64 = 0.85;
-/// Weight of a watched extremum that is not too high.
+/// Weight of a constrained extremum that does not exceed the target.
 const WATCHED_WEIGHT: f64 = 0.4;
 
-/// Maximum number of solutions of a correction until it raises no other extremum above its goal.
+/// Largest number of times that a correction is solved again because it raised another extremum
+/// above its target.
 const BOUNDING: usize = 5;
-/// Limits of the tried share of a correction: twice the last successful one, half of a failed one.
+/// Limits of the applied fraction of a correction. The fraction is doubled after a success and
+/// halved after a failure.
 const LARGEST_SHARE: f64 = 0.8;
 const SMALLEST_SHARE: f64 = 0.05;
-/// Share of the tolerance at which polishing ends.
+/// Fraction of the tolerance at which polishing ends.
 const POLISHED: f64 = 0.95;
-/// Share of the tolerance within which polishing leaves a peak unchanged: fewer demands cause fewer
-/// disturbances.
+/// Fraction of the tolerance within which polishing leaves a peak unchanged; fewer demands cause
+/// fewer disturbances.
 const BAND: f64 = 0.6;
-/// Minimum number of lines per period of a wavelet in the response of oscillators.
+/// Minimum number of line segments per period when a wavelet is applied to oscillators.
 const WAVELET_LINES: f64 = 40.0;
-/// Logarithm of the decay after which a free vibration is neglected.
+/// Exponent of the decay after which a free vibration is neglected.
 pub(crate) const FORGOTTEN: f64 = 7.0;
 /// Ratio below which two periods are too close for separate wavelets.
 const NEIGHBOR: f64 = 1.006;
 
-/// A local extremum of an oscillator's response.
+/// A local extremum of the response of an oscillator.
 #[derive(Clone, Copy)]
 struct Extremum {
     sample: usize,
@@ -39,14 +41,14 @@ struct Extremum {
     value: f64,
 }
 
-/// One matched period.
+/// An oscillator with one of the matched periods.
 struct Oscillator {
     period: f64,
     /// Target pseudo-acceleration (m/s²).
     goal: f64,
 }
 
-/// One equation: the response of an oscillator at `sample` has to change by `change`.
+/// An equation of the system: the response of an oscillator at `sample` must change by `change`.
 struct Demand {
     oscillator: usize,
     sample: usize,
@@ -54,7 +56,8 @@ struct Demand {
     weight: f64,
 }
 
-/// Solves rounds of linear systems: responses of all wavelets at all peak times against the misfits.
+/// Matches in rounds. Each round solves a linear system for wavelets that correct the responses at
+/// all peak times.
 pub(crate) fn match_in_time(
     work: &Work<'_>,
     start: &[f64],
@@ -84,8 +87,8 @@ pub(crate) fn match_in_time(
     Ok(best.acceleration)
 }
 
-/// Runs rounds that each start from the best motion and apply the share of the correction that improves it; gives up
-/// after [`PATIENCE`] rounds without improvement.
+/// Improves the best motion in rounds that apply only the fraction of each correction that helps.
+/// Gives up after [`PATIENCE`] rounds without improvement.
 pub(crate) fn polish(
     work: &Work<'_>,
     mut best: Vec<f64>,
@@ -95,10 +98,11 @@ pub(crate) fn polish(
     let mut fit = work.fit(&best);
     let (mut gained, mut share) = (0, LARGEST_SHARE);
     let target = POLISHED * settings.tolerance;
-    // Below it, compute the exact misfit, which costs more.
+    // Below this misfit, the exact misfit is computed, which is expensive.
     let mut promising = target;
     for round in 1..=settings.rounds {
-        // Every third round demands all peaks, so that the others do not drift to the edge of the band.
+        // Every third round makes demands on all peaks, so that the others do not drift to the edge
+        // of the band.
         let band = if round % 3 == 0 { 0.0 } else { BAND * settings.tolerance };
         let mut periods = matched_periods(settings, round);
         periods.extend(
@@ -171,8 +175,9 @@ fn added(a: &[f64], wavelets: &[Wavelet], amplitudes: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// Returns the motion with wavelets that bring every peak into the band about its goal and raise no other extremum
-/// above it: extrema that a solution would raise become demands, and the system is solved again.
+/// Returns the motion with wavelets that bring every peak into the band around its target without
+/// raising other extrema above the target. Extrema that a solution would raise become demands, and
+/// the system is solved again.
 fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     let oscillators = oscillators(work, periods);
     let (mut wavelets, mut demands, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -217,7 +222,8 @@ fn bounded(work: &Work<'_>, a: &[f64], periods: &[f64], band: f64) -> Vec<f64> {
     added(a, &wavelets, &amplitudes)
 }
 
-/// Returns weighted responses at every demand to every wavelet of amplitude 1, row by row.
+/// Returns the weighted response at every demand to every wavelet of amplitude 1, one row per
+/// demand.
 fn rows(
     work: &Work<'_>,
     oscillators: &[Oscillator],
@@ -257,7 +263,7 @@ fn rows(
 
 /// Oscillators whose responses are computed together.
 struct Group {
-    /// For each, the steps of 1, 2, 3, ... samples.
+    /// Coefficients of each oscillator for steps of 1, 2, 3, … samples.
     steps: Vec<Vec<Step>>,
     free: Vec<FreeVibration>,
 }
@@ -280,8 +286,8 @@ impl Group {
         Bank::new(&steps)
     }
 
-    /// Returns the displacement of oscillator `k`, `since` samples after the start of a wavelet, from the bank's state
-    /// after `whole` of the wavelet's strides.
+    /// Returns the displacement of oscillator `k`, `since` samples after the start of a wavelet,
+    /// from the state of the bank after `whole` strides of the wavelet.
     fn on(&self, k: usize, bank: &Bank, wavelet: &Wavelet, whole: usize, since: usize) -> f64 {
         let (u, v) = (bank.u[k], bank.v[k]);
         let left = since - whole * wavelet.stride;
@@ -336,7 +342,8 @@ fn demand(
     peak
 }
 
-/// Returns local extrema of every oscillator's response above a share of its goal, and always the largest.
+/// Returns the local extrema of every oscillator's response above a fraction of its target, and
+/// always the largest one.
 fn extrema(
     work: &Work<'_>,
     a: &[f64],
@@ -375,11 +382,11 @@ fn extrema(
     all
 }
 
-/// A tapered cosine whose oscillator has a response peak at a given sample.
+/// A tapered cosine that causes a response peak of its oscillator at a given sample.
 pub(crate) struct Wavelet {
     pub(crate) first: usize,
     pub(crate) values: Vec<f64>,
-    /// Number of samples that a line may span in the response of oscillators.
+    /// Number of samples per line segment when the wavelet is applied to oscillators.
     stride: usize,
 }
 
@@ -401,7 +408,7 @@ impl Wavelet {
         )]
         let index = |t: f64| (t / time_step).clamp(0.0, (n - 1) as f64) as usize;
         let (first, last) = (index(center - reach), index(center + reach));
-        // Cosine and Gaussian are computed recursively from sample to sample.
+        // Cosine and Gaussian are computed recursively, from sample to sample.
         let (turn_s, turn_c) = math::sin_cos(w * time_step);
         let from = first as f64 * time_step - center;
         let (mut s, mut c) = math::sin_cos(w * from);
@@ -421,18 +428,18 @@ impl Wavelet {
         Self { first, values, stride }
     }
 
-    /// Returns the number of its whole strides; it is zero after the last one.
+    /// Returns the number of whole strides of the wavelet; after the last one, the wavelet is zero.
     fn coarse(&self) -> usize {
         self.values.len().div_ceil(self.stride)
     }
 
-    /// Returns its value after a number of strides.
+    /// Returns the value of the wavelet after a number of strides.
     fn at(&self, strides: usize) -> f64 {
         self.values.get(strides * self.stride).copied().unwrap_or(0.0)
     }
 }
 
-/// Free vibration of an oscillator, for any number of steps in one evaluation.
+/// Free vibration of an oscillator, evaluated directly after any number of steps.
 struct FreeVibration {
     stiffness: f64,
     decay: f64,

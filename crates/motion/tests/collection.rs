@@ -1,4 +1,4 @@
-//! Grouping of files, and an agency's table of them.
+//! Tests of grouping files into records, and of flatfiles.
 
 use std::path::Path;
 
@@ -87,7 +87,7 @@ fn components_are_grouped_by_the_names_that_networks_give_them() {
         let files: Vec<String> = files.iter().map(|file| (*file).to_owned()).collect();
         group_files(&files).iter().map(|record| record.files.len()).collect()
     };
-    // AFAD, the Broadband Platform, CSMNC, and names by hand.
+    // Names of AFAD, the Broadband Platform and CSMNC, and names chosen by users.
     assert_eq!(
         groups(&["2020_9999_ap_Acc_E.asc", "2020_9999_ap_Acc_N.asc", "2020_9999_ap_Acc_U.asc"]),
         [3]
@@ -95,7 +95,8 @@ fn components_are_grouped_by_the_names_that_networks_give_them() {
     assert_eq!(groups(&["s01.000", "s01.090", "s01.ver", "s02.000"]), [3, 1]);
     assert_eq!(groups(&["00AAA200101EW.dat", "00AAA200101NS.dat", "00AAA200101UD.dat"]), [3]);
     assert_eq!(groups(&["site-EW.csv", "site-NS.csv", "other-EW.csv"]), [1, 2]);
-    // Words that end in these letters are not components, nor are files of other kinds.
+    // Words that only end in these letters are not components; other kinds of files are not
+    // grouped.
     assert_eq!(groups(&["NAPAE.txt", "NAPAN.txt", "news.txt"]), [1, 1, 1]);
     assert_eq!(groups(&["site_E.txt", "site_N.csv"]), [1, 1]);
 }
@@ -122,7 +123,8 @@ fn the_flatfile_of_esm_is_found_by_event_and_station() {
         (Some(6.6), Some(11.2), Some(9.5))
     );
     assert_eq!((row.vs30, row.strike), (Some(400.0), Some(120.0)));
-    // Two networks have this code: neither is used, unless the record names one.
+    // Two networks have a station with this code; neither is used unless the record names the
+    // network.
     station(&mut record, "1234");
     assert_eq!(flatfile.of_record(&record), None);
     station(&mut record, "TK.1234");
@@ -133,14 +135,14 @@ fn the_flatfile_of_esm_is_found_by_event_and_station() {
 
 #[test]
 fn headers_state_magnitude_and_distance() {
-    // Magnitude, its scale, and the epicentral distance (km) of the sphere.
+    // Magnitude with its scale, and epicentral distance (km) on the sphere.
     let of = |file: &str| {
         let record = read(file);
         (record.earthquake.magnitude, record.earthquake.scale.clone(), record.epicentral_distance())
     };
     let (magnitude, scale, distance) = of("csmnc/example.dat");
     assert_eq!((magnitude, scale.as_str()), (Some(5.0), "Ms"));
-    // A tenth of a degree north and east at 40°.
+    // The distance of a point 0.1 degrees north and east at latitude 40°.
     assert!((distance.unwrap() - 14.0).abs() < 0.1, "{distance:?}");
     let (magnitude, _, distance) = of("sac-text/example.sac");
     assert_eq!(magnitude.map(|m| (m * 10.0).round()), Some(66.0));

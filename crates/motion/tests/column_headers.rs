@@ -1,5 +1,5 @@
-//! Random tables under headers of every style give the right channels, units and steps, or a refusal; damaged
-//! headers do not change the peak silently.
+//! Random tables with headers of every style are read with the correct channels, units and steps,
+//! or are refused. Damaged headers never change the peak without a warning.
 
 #![allow(
     clippy::format_collect,

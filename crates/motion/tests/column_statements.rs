@@ -1,4 +1,4 @@
-//! Statements of headers about columns: step, count, unit and factor, and what the rows contradict.
+//! Header statements about columns (step, count, unit, factor) and contradictions with the rows.
 
 #![allow(clippy::format_collect, reason = "small tables are built as text")]
 
@@ -36,7 +36,7 @@ fn a_velocity_stated_on_the_line_of_the_count_is_refused_whatever_the_unit_given
     }
 }
 
-/// Returns 60 values to both sides, one to a line.
+/// Returns 60 positive and negative values, one per line.
 fn waves() -> String {
     (0..60).map(|k| format!("{:.4}\n", (0.3 * f64::from(k)).sin())).collect()
 }
@@ -58,7 +58,7 @@ fn a_step_in_other_words_or_under_the_name_of_the_rate_is_taken() {
         "interval 5 ms",
     ] {
         let text = format!("Station NOW\n{stated}\nAcceleration in cm/s2\n{}", waves());
-        // A step given must not replace the one stated.
+        // A step given by the caller must not replace the stated step.
         let given = ReadOptions { time_step: Some(0.02), ..ReadOptions::default() };
         match read(text.as_bytes(), "t.txt", &given) {
             Ok(record) => assert!((record.channels[0].time_step - 0.005).abs() < 1e-9, "{stated}"),
@@ -128,7 +128,7 @@ fn a_hole_in_times_since_1970_is_found() {
     };
     assert!((table(0.0).unwrap().channels[0].time_step - 0.01).abs() < 1e-9);
     for hole in [0.03, 0.5, 1.0] {
-        // A short hole is filled with a warning.
+        // A short gap is filled with a warning.
         if let Ok(record) = table(hole) {
             let warned = record.warnings.iter().any(|w| w.message.contains("unevenly spaced"));
             assert!(warned && hole < 0.1, "{hole}: {:?}", record.warnings);
@@ -184,7 +184,7 @@ fn pairs_of_time_and_value_beside_each_other_are_no_channels() {
             .collect()
     };
     let rows: String = (0..200).map(|k| row(k).trim_end_matches(", ").to_owned() + "\n").collect();
-    refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time to a row");
+    refused(&format!("*AMPLITUDE, NAME=QUAKE\n{rows}"), "one time per row");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Corners from the noise before the first arrival, on records with known noise.
+//! Filter corners from the noise before the first arrival, for records with known noise.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -9,8 +9,8 @@ use barrelstack_motion::{
 const STEP: f64 = 0.01;
 const ARRIVAL: f64 = 20.0;
 
-/// White noise of 1 mm/s² for 20 s, then white noise between two frequencies under a decaying
-/// envelope of 1 m/s² on top of it.
+/// Returns white noise of 1 mm/s² for 20 s, followed by band-limited white noise with a decaying
+/// envelope of 1 m/s² added to it.
 fn known(low: f64, high: f64, seed: u64) -> Channel {
     let mut random = Random::new(seed);
     let n = 8000;
@@ -42,9 +42,9 @@ fn corners_lie_where_the_signal_of_a_known_band_meets_the_noise() {
     for (low, high, seed) in [(0.1, 12.0, 1), (0.15, 20.0, 2), (0.12, 30.0, 3)] {
         let found = noise_corners(&known(low, high, seed), ARRIVAL, &criterion).unwrap();
         println!("{low} and {high} Hz: {found:?}");
-        // A signal of a hundred times the noise exceeds three times of it for another third of an octave
-        // on the flanks of this filter, and the smoothing window extends half an octave further.
-        // Measured: 1.3 octaves below and 0.4 above.
+        // A signal of 100 times the noise exceeds 3 times the noise for another third of an octave
+        // on the flanks of this filter, and the smoothing window adds half an octave. Measured: 1.3
+        // octaves below and 0.4 octaves above.
         assert!((-1.5..0.2).contains(&octaves(found.high_pass, low)), "{found:?}");
         assert!((-0.2..0.9).contains(&octaves(found.low_pass, high)), "{found:?}");
         assert!(found.least_ratio > 3.0);
@@ -61,7 +61,7 @@ fn the_arrival_is_found_and_shared_by_all_channels() {
     // Measured: 0.02 s late.
     assert!((found[0].arrival - ARRIVAL).abs() < 0.2, "{found:?}");
     assert_eq!(found[0].arrival, found[1].arrival);
-    // Both horizontals share the narrower band.
+    // Both horizontals use the narrower band.
     assert_eq!((found[0].high_pass, found[0].low_pass), (found[1].high_pass, found[1].low_pass));
 }
 
@@ -73,18 +73,21 @@ fn a_record_without_noise_is_refused_corners_with_the_reason() {
     };
     let good = known(0.1, 12.0, 1);
     assert!(
-        refusal(&good, 0.5).contains("0.50 s of noise before the shaking, where 1 s are needed")
+        refusal(&good, 0.5).contains("0.50 s of noise before the shaking; at least 1 s are needed")
     );
-    assert!(refusal(&good, 77.0).contains("3.00 s after the arrival, where 5 s are needed"));
+    assert!(
+        refusal(&good, 77.0)
+            .contains("3.00 s of shaking after the arrival; at least 5 s are needed")
+    );
     let mut silent = good.clone();
     silent.acceleration[..2000].fill(0.0);
-    assert!(refusal(&silent, ARRIVAL).contains("below the file's last digit"));
+    assert!(refusal(&silent, ARRIVAL).contains("below the resolution of the file"));
     let weak = Channel {
         acceleration: good.acceleration.iter().take(2000).cycle().take(8000).copied().collect(),
         ..good
     };
     assert!(
-        refusal(&weak, ARRIVAL).contains("signal over noise falls to"),
+        refusal(&weak, ARRIVAL).contains("the signal-to-noise ratio falls to"),
         "{}",
         refusal(&weak, ARRIVAL)
     );
@@ -95,10 +98,10 @@ fn the_bundled_record_has_the_corners_of_an_independent_program() {
     let record: Record = bundled("napa-college-2014").unwrap();
     let found = record.noise_corners(&NoiseCriterion::default());
     let east = found[0].as_ref().unwrap();
-    // gmprocess 2.8.0 with this arrival, the ratio 3 from 0.2 to 5 Hz and equal corners of both horizontals:
-    // 0.1122 and 40 Hz.
+    // gmprocess 2.8.0, with this arrival, a ratio of 3 from 0.2 to 5 Hz and equal corners for both
+    // horizontals, gives 0.1122 and 40 Hz.
     assert!(octaves(east.high_pass, 0.1122).abs() < 1.0 / 3.0, "{east:?}");
     assert_eq!(east.low_pass, 40.0);
     let sentence = east.sentence(&NoiseCriterion::default());
-    assert!(sentence.contains("so short a noise says little below 0.35 Hz"), "{sentence}");
+    assert!(sentence.contains("too short to resolve frequencies below 0.35 Hz"), "{sentence}");
 }

@@ -1,9 +1,10 @@
-//! Damaged files: cut, with lost lines, stars and words, or of other bytes; each is refused, or read with a warning.
+//! Damaged files: truncated, with missing lines, stars and words, or with other bytes. Each is
+//! refused or read with a warning.
 
 use crate::formats::{OFFSET, SAMPLES, bytes, options};
 use barrelstack_motion::{AccelerationUnit, ReadOptions, Refusal, read};
 
-/// Returns the lines of a text file with their ends.
+/// Returns the lines of a text file with their line endings.
 fn lines(file: &str) -> Vec<Vec<u8>> {
     bytes(file).split_inclusive(|b| *b == b'\n').map(<[u8]>::to_vec).collect()
 }
@@ -24,7 +25,7 @@ fn text_samples() -> Vec<&'static str> {
 #[test]
 fn a_file_cut_at_any_line_is_refused_or_says_so() {
     for file in text_samples() {
-        // Plain columns state no count: a truncation cannot be detected.
+        // Plain columns state no count, so a truncation cannot be detected.
         if file.starts_with("columns") && file != "columns/count-first.txt"
             || file.starts_with("barrelstack")
         {
@@ -51,10 +52,10 @@ fn a_file_cut_at_any_line_is_refused_or_says_so() {
 
 #[test]
 fn stars_words_and_huge_numbers_are_refused_with_their_place() {
-    // No line of pairs of time and value has numbers alone; such a file is damaged elsewhere.
+    // Files with pairs of time and value have no line of values alone; they are damaged elsewhere.
     for file in text_samples().into_iter().filter(|file| *file != "timeseries/tspair.txt") {
         let lines = lines(file);
-        // Into the first number of a line near the end of the data.
+        // Damage the first number of a line near the end of the data.
         let numeric: Vec<usize> = (0..lines.len())
             .filter(|&k| {
                 let text = lines[k].trim_ascii();

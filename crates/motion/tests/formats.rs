@@ -1,6 +1,7 @@
-//! One suite for every format, on the samples in `tests/data`.
+//! One test suite for every format, on the samples in `tests/data`.
 //!
-//! Every sample is the same decaying sine, so that the expected numbers are a formula.
+//! Every sample contains the same decaying sine, so that the expected numbers follow from a
+//! formula.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -51,8 +52,8 @@ pub(crate) fn options(file: &str) -> ReadOptions {
     }
 }
 
-/// File, stage, step; for each channel its name, component of the formula and number of samples; half a digit of the
-/// printed numbers (g).
+/// File, stage and step; for each channel its name, the component of the formula and the number of
+/// samples; and half a unit of the last printed digit (g).
 type Expected = (
     &'static str,
     Stage,
@@ -174,7 +175,8 @@ pub(crate) const SAMPLES: &[Expected] = &[
     ),
 ];
 
-/// Expectations for formats whose offset is removed: compared after removing the formula's mean.
+/// Expectations for formats whose offset is removed; the mean of the formula is removed before the
+/// comparison.
 pub(crate) const OFFSET: &[Expected] = &[
     ("cosmos/counts.v0c", Stage::Raw, 0.005, &[("90 deg", 0, 103)], 2.8e-7),
     ("knet/example.EW", Stage::Raw, 0.01, &[("E-W", 0, 200)], 3.2e-7),
@@ -204,12 +206,12 @@ fn check(expected: &Expected, offset: bool) -> Record {
         assert_eq!(channel.acceleration.len(), *samples, "{file} {name}");
         let truth: Vec<f64> = (0..*samples).map(|k| formula(*component, k as f64 * step)).collect();
         let mean = if offset { truth.iter().sum::<f64>() / *samples as f64 } else { 0.0 };
-        // The header of this sample states another sensitivity than that of its counts.
+        // The header of this sample states a sensitivity other than that of its counts.
         let scale = if file.starts_with("cosmos/counts") { 0.023_282_4 } else { 1.0 };
         let off = channel.acceleration.iter().zip(&truth).map(|(a, b)| a - scale * (b - mean));
         let off = off.fold(0.0_f64, |worst, off| worst.max(off.abs())) / STANDARD_GRAVITY;
         println!("{file} {name}: {off:.1e} g, half a digit {half:.1e} g");
-        // Measured: half a digit, and up to 1.06 of it if the offset was removed.
+        // Measured: half a digit, and up to 1.06 of half a digit if the offset was removed.
         assert!(off <= 1.1 * half, "{file} {name}: {off:e} g against {half:e} g");
         for peak in &channel.peaks {
             assert!(peak.agrees(), "{file} {name}: {peak:?}");
@@ -456,7 +458,7 @@ fn the_own_text_form_and_csv_survive_a_round_trip_with_the_initial_velocity() {
     }
 }
 
-/// Returns the refusal of a file.
+/// Returns the error of reading a file.
 fn refusal(bytes: &[u8], name: &str) -> barrelstack_motion::ReadError {
     read(bytes, name, &ReadOptions::default()).unwrap_err()
 }
@@ -501,7 +503,7 @@ fn formats_without_a_reader_are_refused_by_their_names() {
         assert_ne!(error.refusal, Refusal::Damaged, "{name}: {error}");
         assert!(error.found.contains(name), "{name}: {error}");
     }
-    // A volume of SEED without data is metadata.
+    // A SEED volume without data contains only metadata.
     let volume = bytes("seed/example.seed");
     let dataless = refusal(&volume[..4 * 4096], "dataless.seed");
     assert_eq!(dataless.refusal, Refusal::NotAcceleration, "{dataless}");
@@ -511,7 +513,7 @@ fn formats_without_a_reader_are_refused_by_their_names() {
 fn text_formats_that_contradict_themselves_are_refused_with_both_numbers() {
     let of = |file: &str| String::from_utf8(bytes(file)).unwrap();
     let cases = [
-        // (file, from, to, words of the message)
+        // (file, text to replace, replacement, words of the message)
         ("csmnc/example.dat", "DURATION:  1.03", "DURATION:  2.06", ["1.030", "2.06"]),
         ("csmnc/example.dat", "POINTS:   103", "POINTS:   140", ["140", "1.03"]),
         ("timeseries/slist.txt", "103 samples", "104 samples", ["104", "103"]),
@@ -540,14 +542,14 @@ fn velocities_of_new_formats_are_no_accelerations_until_the_caller_has_them_diff
     assert_eq!(error.refusal, Refusal::OtherInstrument, "{error}");
     let options = ReadOptions { recorded: Some(Quantity::Velocity), ..ReadOptions::default() };
     let record = read(text.as_bytes(), "velocity.txt", &options).unwrap();
-    // d/dt of a sine of 1.1 Hz: some 7 times its size.
+    // The derivative of a sine of 1.1 Hz is about 7 times as large as the sine.
     let as_read = read(&bytes("timeseries/slist.txt"), "a.txt", &ReadOptions::default()).unwrap();
     let ratio = record.channels[0].pga() / as_read.channels[0].pga();
     assert!((4.0..10.0).contains(&ratio), "{ratio}");
     let csmnc = String::from_utf8(bytes("csmnc/example.dat")).unwrap();
     let csmnc = csmnc.replace("ACCELERATION          UNIT: CM/SEC/SEC", "VELOCITY UNIT: CM/SEC");
     assert_eq!(refusal(csmnc.as_bytes(), "v.dat").refusal, Refusal::NotAcceleration);
-    // Broadband Platform text states neither unit nor quantity.
+    // Broadband Platform text states neither the unit nor the quantity.
     let bbp = refusal(&bytes("bbp/example.000"), "a.000");
     assert_eq!(bbp.refusal, Refusal::Missing(Given::Unit), "{bbp}");
 }

@@ -1,7 +1,7 @@
 //! Readers never panic, whatever the damage: mutations of every sample, and random bytes.
 //!
-//! A fixed number from a fixed seed, so that a failure repeats; `cargo xtask fuzz` runs any number, with limits of
-//! time and memory.
+//! The number and the seed are fixed, so that a failure can be repeated. `cargo xtask fuzz` runs
+//! any number, with limits on time and memory.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -32,7 +32,8 @@ fn every_reader_has_a_sample_to_be_damaged() {
 
 #[test]
 fn samples_grow_to_large_files_that_their_readers_take() {
-    // In the others several blocks, a length in seconds or rising times must agree with the count.
+    // In the other formats, several blocks, a length in seconds or rising times must agree with the
+    // count.
     let growing = [
         "sac",
         "esm",
@@ -62,7 +63,7 @@ fn samples_grow_to_large_files_that_their_readers_take() {
             .filter_map(|bytes| format.read(&bytes, "large", &given).ok())
             .map(|record| record.channels.iter().map(|c| c.acceleration.len()).sum::<usize>())
             .max();
-        // Measured 71 379 values and more; no sample has more than 400.
+        // Measured: at least 71 379 values; no sample has more than 400.
         assert!(most > Some(50_000), "{name}: {most:?}");
     }
 }

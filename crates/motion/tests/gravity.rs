@@ -1,5 +1,5 @@
-//! Accelerometers record gravity at rest: it is taken out of every axis in every unit, and no other mean is taken for a
-//! ground motion.
+//! Gravity recorded by accelerometers is removed from every axis in every unit, and no other mean
+//! is accepted as ground motion.
 
 #![allow(clippy::format_collect, reason = "small tables are built as text")]
 
@@ -15,7 +15,7 @@ const UNITS: [(&str, f64); 6] = [
     ("ft/s2", 0.3048),
 ];
 
-/// Returns a table of three axes, each with a part of gravity (m/s²).
+/// Returns a table of three axes, each with a component of gravity (m/s²).
 fn phone(unit: (&str, f64), parts: [f64; 3]) -> String {
     let (word, factor) = unit;
     let row = |k: usize| {
@@ -80,7 +80,8 @@ fn values_alone_lose_gravity_and_their_stated_peak_is_compared_without_it() {
     }
 }
 
-/// The mean of gravity under a wrong unit, and that of an axis whose companions are missing.
+/// The mean is gravity with a wrong unit, or the axis is one of several of which the others are
+/// missing.
 #[test]
 fn another_mean_is_refused_with_advice_that_works() {
     for (word, mean) in [("g", 9.81 * STANDARD_GRAVITY), ("m/s2", 1.0), ("m/s2", 6.9)] {

@@ -1,4 +1,4 @@
-//! Intensity measures of motions with closed forms.
+//! Intensity measures of motions with closed-form values.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -27,7 +27,7 @@ fn a_harmonic_has_its_closed_forms_to_a_millionth() {
     };
     let pi = std::f64::consts::PI;
     near(of(IntensityMeasure::Arias), pi / (2.0 * STANDARD_GRAVITY) * a * a * n * t / 2.0);
-    // The published values are for g = 9.81 m/s2; all three are proportional to g.
+    // The published values are for g = 9.81 m/s²; all three are proportional to g.
     let printed = 9.81 / STANDARD_GRAVITY;
     assert!((of(IntensityMeasure::Arias) * printed - 2.773_71).abs() < 6e-6);
     assert!((of(IntensityMeasure::Cav) * printed - 7.494_29).abs() < 6e-6);
@@ -36,12 +36,12 @@ fn a_harmonic_has_its_closed_forms_to_a_millionth() {
     near(of(IntensityMeasure::Pgv), a * t / pi);
     near(of(IntensityMeasure::Pga), a);
     near(of(IntensityMeasure::Rms), a / 2.0_f64.sqrt());
-    // In every second |a| exceeds the threshold, so the standardized CAV is the whole.
+    // |a| exceeds the threshold in every second, so the standardized CAV equals the CAV.
     near(of(IntensityMeasure::CavStandardized), 2.0 / pi * a * n * t);
-    // Squared sines build up evenly: 5 % to 95 % takes nine tenths of the time, within a ripple of
-    // a quarter period.
+    // The integral of a squared sine grows evenly, so 5 % to 95 % takes 90 % of the time, within a
+    // ripple of a quarter period.
     assert!((of(IntensityMeasure::D5_95) - 0.9 * n * t).abs() < 0.25 * t);
-    // From the first crossing of 0.05 g to the last.
+    // The bracketed duration extends from the first to the last crossing of 0.05 g.
     let crossing = (1.0_f64 / 6.0).asin() / TAU * t;
     near(of(IntensityMeasure::BRACKETED), n * t - 2.0 * crossing);
     assert!((of(IntensityMeasure::MeanPeriod) / t - 1.0).abs() < 0.02); // measured 0.01
@@ -61,7 +61,7 @@ fn the_spectrum_goes_to_pga_at_short_periods_and_to_pgd_at_long_ones() {
 
 #[test]
 fn the_recursion_is_the_exact_solution_of_a_ramp_at_any_step() {
-    // u'' + 2 z w u' + w^2 u = -k t from rest, in closed form.
+    // Closed-form solution of u'' + 2 z w u' + w^2 u = -k t, starting from rest.
     for (period, damping) in [(0.5, 0.05), (3.0, 0.2), (1.0, 0.0), (0.05, 0.7)] {
         let w = TAU / period;
         let exact = |t: f64| {
@@ -69,7 +69,7 @@ fn the_recursion_is_the_exact_solution_of_a_ramp_at_any_step() {
             let (c1, k) = (2.0 * damping / (w * w * w), -1.0 / (w * w));
             let decay = (-damping * w * t).exp();
             let particular = k * t + c1;
-            // Homogeneous part with u(0) = 0 and u'(0) = 0.
+            // Homogeneous part, so that u(0) = 0 and u'(0) = 0.
             let b = (-k - damping * w * c1) / wd;
             particular + decay * (-c1 * (wd * t).cos() + b * (wd * t).sin())
         };
@@ -105,9 +105,10 @@ fn rotated_peaks_of_known_paths() {
     let x: Vec<f64> = (0..7200).map(|k| circle(k).cos()).collect();
     let y: Vec<f64> = (0..7200).map(|k| circle(k).sin()).collect();
     let round = rotated_peak(&x, &y);
-    // Measured: here and below 2.2e-16 at most.
+    // Measured, here and below: at most 2.2e-16.
     assert!((round.median - 1.0).abs() < 1e-14 && (round.largest - 1.0).abs() < 1e-14);
-    // Along one line at 30 degrees: the largest is the amplitude, the median its cosine at 45.
+    // For motion along a line at 30 degrees, the largest value is the amplitude; the median is its
+    // projection at 45 degrees.
     let (s, c) = 30.0_f64.to_radians().sin_cos();
     let x: Vec<f64> = (0..100).map(|k| c * (0.1 * f64::from(k)).sin()).collect();
     let y: Vec<f64> = (0..100).map(|k| s * (0.1 * f64::from(k)).sin()).collect();
@@ -161,13 +162,13 @@ fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
             let reached = over.of(measure, &first, &second).unwrap();
             assert!((reached / target - 1.0).abs() < 1e-9, "{over} {measure}: {reached}");
         }
-        // The largest exceeds the median and both components.
+        // The largest value exceeds the median and both components.
         let of = |over: Horizontals| over.of(measure, &one, &two).unwrap();
         assert!(of(Horizontals::RotD100) >= of(Horizontals::RotD50));
         let single = measure.of(&one).unwrap().max(measure.of(&two).unwrap());
         assert!(of(Horizontals::RotD100) >= single * (1.0 - 1e-12), "{measure}");
     }
-    // Beside a component at rest the largest is the measure of the other.
+    // If one component is at rest, the largest value is the measure of the other component.
     let still = one.scaled(0.0);
     for measure in [IntensityMeasure::Pga, IntensityMeasure::Pgv, IntensityMeasure::Pgd] {
         let largest = Horizontals::RotD100.of(measure, &one, &still).unwrap();
@@ -175,7 +176,8 @@ fn two_horizontals_are_scaled_to_any_measure_over_all_directions() {
     }
     let time = Horizontals::RotD50.scale_factor(IntensityMeasure::D5_95, &one, &two, 3.0);
     assert!(time.unwrap_err().to_string().contains("does not change"));
-    // Rotated Arias intensities have a closed form: their median is that at 45 degrees from the axes.
+    // Rotated Arias intensities have a closed form: their median is the value at 45 degrees from
+    // the axes.
     let arias = |m: &Sampled| IntensityMeasure::Arias.of(m).unwrap();
     let mean = 0.5 * (arias(&one) + arias(&two));
     let median = Horizontals::RotD50.of(IntensityMeasure::Arias, &one, &two).unwrap();

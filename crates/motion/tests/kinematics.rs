@@ -1,4 +1,4 @@
-//! Displacement, velocity and acceleration are derivatives of one another in every kind of motion.
+//! Velocity and acceleration are the derivatives of displacement in every kind of motion.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -46,8 +46,8 @@ fn every_pulse_is_consistent_at_scattered_times() {
             let to = (from + 0.01 * end).min(end);
             let change_v = integral(from, to, |t| pulse.at(t).acceleration);
             let change_d = integral(from, to, |t| pulse.at(t).velocity);
-            // The end of a ramp is a kink of the acceleration, which causes an error of Simpson's rule; measured
-            // 1.6e-8.
+            // The end of a ramp is a kink in the acceleration, which limits the accuracy of
+            // Simpson's rule; measured 1.6e-8.
             let v = (pulse.at(to).velocity - pulse.at(from).velocity - change_v).abs();
             let d = (pulse.at(to).displacement - pulse.at(from).displacement - change_d).abs();
             assert!(v < 5e-8 * pgv, "{pulse:?} at {from}: velocity off by {v:e}");

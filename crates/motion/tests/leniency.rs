@@ -1,5 +1,5 @@
-//! Excess content of agencies' files is left out and reported; missing content is an error; uneven times are not taken
-//! as even.
+//! Excess content in agency files is ignored with a warning; missing content is an error; uneven
+//! times are not taken as even.
 
 #![allow(clippy::format_collect, reason = "a test fails by unwrap; small tables are built as text")]
 
@@ -20,7 +20,7 @@ fn warnings_of(record: &Record) -> String {
     record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
-/// Checks that the file reads as the same numbers without the addition.
+/// Checks that a file with an addition is read as the same numbers as without the addition.
 fn same(file: &str, changed: &[u8], word: &str) {
     let (clean, record) = (given(&bytes(file)), given(changed));
     assert_eq!(clean.channels, record.channels, "{file}");
@@ -32,7 +32,7 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
     for file in ["smc/corrected.smc", "smc/uncorrected.smc"] {
         let mut rows = bytes(file);
         rows.extend(b" 1.0000E+0 2.0000E+0 3.0000E+0 4.0000E+0\n 1.0000E+0\n");
-        same(file, &rows, "5 numbers stand behind");
+        same(file, &rows, "5 numbers follow");
         let mut zeros = bytes(file);
         zeros.extend([0_u8; 512]);
         assert_eq!(given(&zeros).channels, given(&bytes(file)).channels);
@@ -40,16 +40,16 @@ fn rows_and_padding_behind_the_stated_count_are_left_out() {
         both.extend(b" 1.0000E+0\n");
         both.extend([0_u8; 80]);
         both.extend(b"\n");
-        same(file, &both, "1 numbers stand behind");
+        same(file, &both, "1 numbers follow");
         let mut words = bytes(file);
         words.extend(b"end of file\n");
-        same(file, &words, "from this line to the last");
-        // A missing row stays an error.
+        same(file, &words, "from this line to the end");
+        // A missing row remains an error.
         let text = String::from_utf8(bytes(file)).unwrap();
         let cut: Vec<&str> = text.lines().collect();
         let cut = cut[..cut.len() - 2].join("\n");
         let error = read(cut.as_bytes(), "cut", &ReadOptions::default()).unwrap_err();
-        assert!(error.to_string().contains("the file is cut"), "{error}");
+        assert!(error.to_string().contains("the file is truncated"), "{error}");
     }
 }
 
@@ -58,20 +58,21 @@ fn numbers_in_excess_on_the_last_line_are_left_out() {
     let file = "csmip-v2/example.V2";
     let text = String::from_utf8(bytes(file)).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    // The line before the first block of velocities is the last of accelerations, and short.
+    // The line before the first block of velocities is the last line of accelerations, and is
+    // short.
     let last = lines.iter().position(|line| line.contains("veloc data")).unwrap() - 1;
     let mut more: Vec<String> = lines.iter().map(ToString::to_string).collect();
     more[last] += "   .000000";
     more.insert(last + 1, "   .000000   .000000".to_owned());
-    same(file, more.join("\n").as_bytes(), "3 numbers stand behind the 103");
+    same(file, more.join("\n").as_bytes(), "3 numbers follow the 103");
 }
 
 #[test]
 fn formats_that_count_their_rows_leave_the_rest_out() {
     for (file, row, word) in [
-        ("afad/example.txt", "0.1 0.2 0.3\n", "the last 7 are left out"),
-        ("esm/example.ACC.ASC", "0.1\n", "the last 7 are left out"),
-        ("peer/nga-west2.AT2", " .1\n", "the last 7 are left out"),
+        ("afad/example.txt", "0.1 0.2 0.3\n", "the last 7 are ignored"),
+        ("esm/example.ACC.ASC", "0.1\n", "the last 7 are ignored"),
+        ("peer/nga-west2.AT2", " .1\n", "the last 7 are ignored"),
     ] {
         let mut more = bytes(file);
         for _ in 0..7 {
@@ -81,13 +82,13 @@ fn formats_that_count_their_rows_leave_the_rest_out() {
     }
 }
 
-/// Returns volume 1 of USC with the given times (s) of a wave, in g/10.
+/// Returns a USC volume 1 file of a wave in g/10 with the given times (s).
 fn film(times: &[f64]) -> String {
     let text = String::from_utf8(bytes("usc/example.y0a")).unwrap();
     let mut head: Vec<String> = text.lines().take(27).map(str::to_owned).collect();
     let last = times.last().unwrap();
     head[10] = format!("NO. OF POINTS = {:6}      DURATION = {last:7.3} SEC", times.len());
-    // The peak that the header states is another file's.
+    // The peak stated in the header belongs to another file.
     "UNITS ARE SEC AND G/10".clone_into(&mut head[11]);
     let mut out = head.join("\n");
     for (k, t) in times.iter().enumerate() {
@@ -105,7 +106,8 @@ fn wave(t: f64) -> f64 {
 
 #[test]
 fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
-    // Steps of 4 ms, nine of ten within a millisecond of the mean, as for digitized film; some are 13 ms.
+    // Steps near 4 ms; as in digitized film, nine of ten are within a millisecond of the mean and
+    // some are 13 ms.
     let mut times = vec![0.0];
     for k in 1..2000 {
         let step = if k % 40 == 7 { 0.013 } else { 0.004 };
@@ -122,7 +124,8 @@ fn times_digitized_unevenly_are_interpolated_and_not_squeezed() {
             (a / (0.1 * STANDARD_GRAVITY) - 3.0 * wave(t)).abs()
         })
         .fold(0.0, f64::max);
-    // For a wave of 3: printed digits and chords across 13 ms; measured 0.016. With an even step it was 3.
+    // Tolerance for a wave of amplitude 3, from printed digits and chords across 13 ms; measured
+    // 0.016. With an even step, the error was 3.
     assert!(worst < 0.02, "{worst}");
     let warnings = warnings_of(&record);
     assert!(warnings.contains("unevenly spaced times (0.0040 to 0.0130 s"), "{warnings}");

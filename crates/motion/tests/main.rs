@@ -1,6 +1,7 @@
-//! Records and motions: every format, every damage, and the measures that are taken of them.
+//! Tests of records and motions: every format, every kind of damage, and all measures.
 //!
-//! One program, since each would compile and link what it tests anew.
+//! All tests are modules of one program, because separate programs would each compile and link the
+//! crate again.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panic, in its helpers too")]
 

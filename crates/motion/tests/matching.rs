@@ -1,4 +1,5 @@
-//! Matched motions follow their target and come to rest; target spectra have their code values.
+//! Matched motions follow their target and end at rest; target spectra have the values of their
+//! codes.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -110,7 +111,7 @@ fn both_methods_meet_ac156() {
 
 #[test]
 fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
-    // At some tolerance wavelets no longer converge in few rounds: measured at 0.045.
+    // Wavelets alone no longer converge within few rounds at some tolerance; measured at 0.045.
     let stalled = (0..8).find_map(|k| {
         let tolerance = 0.05 - 0.0025 * f64::from(k);
         let settings = Matching { tolerance, rounds: 20, ..Matching::default() };
@@ -122,7 +123,7 @@ fn where_wavelets_stall_the_frequency_domain_begins_and_says_so() {
     assert!(matched.misfit <= 0.05);
     let step = matched.motion.provenance.last().unwrap();
     assert!(
-        step.contains("the frequency domain, where the time domain stalled, to NCh2745 (zone 2")
+        step.contains("the frequency domain, because the time domain stalled, to NCh2745 (zone 2")
     );
 }
 
@@ -144,7 +145,7 @@ fn impossible_matches_are_refused_in_words() {
     let hopeless = Matching { tolerance: 1e-6, rounds: 2, ..Matching::default() };
     let error = motion.match_spectrum(target, &hopeless).unwrap_err().to_string();
     assert!(error.contains("misfit"), "{error}");
-    // A message must not list a page of periods.
+    // The message must not list a page of periods.
     assert!(error.contains(" other ranges") && error.len() < 500, "{error}");
     let bad = TargetSpectrum::Table { points: vec![(1.0, 1.0), (0.5, 1.0)], damping: 0.05 };
     assert!(motion.match_spectrum(&bad, &Matching::default()).is_err());
@@ -173,7 +174,7 @@ fn code_spectra_have_their_published_ordinates() {
     let nch = TargetSpectrum::NCh433 { zone: ChileanZone::Three, site: SiteClass::D };
     near(nch.acceleration(0.75), 1.2 * 0.4 * 2.75 * g);
     near(nch.acceleration(0.0), 1.2 * 0.4 * g);
-    // The branches meet within the rounding of the code's plateaus.
+    // The branches meet within the rounding of the plateaus in the code.
     for soil in [NCh2745Soil::I, NCh2745Soil::II, NCh2745Soil::III] {
         let spectrum = TargetSpectrum::NCh2745 { zone: ChileanZone::Two, soil, damping: 0.05 };
         let mut previous = spectrum.acceleration(0.01);
@@ -203,7 +204,7 @@ fn code_spectra_have_their_published_ordinates() {
         (SiteClass::D, 1.5, 1.43),
         (SiteClass::E, 1.5, 2.21),
     ] {
-        // Measured: 0.0121, as the printed table is rounded and its formula is not.
+        // Measured: 0.0121, because the printed table is rounded and its formula is not.
         assert!((nzs(site, t) - shape).abs() < 0.013, "{site:?} {t}: {}", nzs(site, t));
     }
     let near_fault = |return_period: f64, t: f64| {

@@ -1,5 +1,5 @@
-//! Two components matched together: their response over all directions follows the target, by an independent grid of
-//! periods.
+//! Two components matched together: their response over all directions follows the target on an
+//! independent grid of periods.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -21,7 +21,7 @@ fn asce() -> TargetSpectrum {
     TargetSpectrum::Asce7 { sds: 1.0, sd1: 0.6, long_period: 8.0, damping: 0.05 }
 }
 
-/// Returns the largest misfit on 200 periods per decade that the match does not use.
+/// Returns the largest misfit on an independent grid of 200 periods per decade.
 fn misfit(record: &Record, measure: Horizontals, target: &TargetSpectrum) -> f64 {
     let (one, two) = record.horizontal_pair().unwrap();
     let periods: Vec<f64> =

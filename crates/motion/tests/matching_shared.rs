@@ -1,6 +1,6 @@
-//! The frequency domain alone brings real records to their targets.
+//! The frequency domain alone brings recorded motions to their targets.
 //!
-//! The records may not be bundled; without their folder the test is reported as skipped.
+//! The records may not be bundled; the test is reported as skipped if their folder is missing.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -57,7 +57,7 @@ fn real_records_meet_codes_in_the_frequency_domain() {
             }
         }
     }
-    // Measured: 15, at 3.8 to 4.7 %; PEL360 to EN 1998-1 stalls at 5.7 %.
+    // Measured: 15 of them, with misfits of 3.8 to 4.7 %; PEL360 to EN 1998-1 stalls at 5.7 %.
     println!("{met} of 16");
     assert!(met >= 15, "{met}");
 }

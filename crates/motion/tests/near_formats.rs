@@ -1,4 +1,4 @@
-//! Messages for 75 formats and near-formats, as in the table of `docs/formats.md`.
+//! Messages about 75 formats and near-formats, compared with the table in `docs/formats.md`.
 
 #![allow(
     clippy::format_collect,
@@ -10,7 +10,7 @@ use std::path::Path;
 
 use barrelstack_motion::{AccelerationUnit, FORMATS, ReadOptions, read};
 
-/// Samples of `tests/data` by the names of their formats.
+/// Samples in `tests/data` with the names of their formats.
 const SAMPLES: [(&str, &str); 36] = [
     ("PEER AT2", "peer/nga-west2.AT2"),
     ("PEER VT2, a velocity", "peer/velocity.VT2"),
@@ -50,7 +50,7 @@ const SAMPLES: [(&str, &str); 36] = [
     ("a record inside zip", "packed/record.zip"),
 ];
 
-/// Returns files of other formats by their first bytes.
+/// Returns files of other formats, recognized by their first bytes.
 fn others() -> Vec<(&'static str, Vec<u8>)> {
     let filled = |head: &[u8]| [head, &[0, 1, 2, 3].repeat(200)].concat();
     let table = |header: &str, row: &dyn Fn(u32) -> String| {
@@ -171,8 +171,8 @@ fn what_is_said_of_formats_and_near_formats_is_as_documented() {
     }
     for (what, bytes) in others() {
         let said = row(what, "file", &bytes);
-        // A sound file must not be called truncated or damaged.
-        assert!(!said.contains("damaged") && !said.contains("is cut"), "{said}");
+        // An undamaged file must not be called truncated or damaged.
+        assert!(!said.contains("damaged") && !said.contains("is truncated"), "{said}");
         table += &said;
     }
     let document = include_str!("../../../docs/formats.md");

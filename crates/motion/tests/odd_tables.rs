@@ -1,5 +1,6 @@
-//! Tables that other programs write: orders of columns, units of instruments, marks of missing values, remarks among
-//! the rows. Each gives the wave, or a refusal whose reason is true and whose advice works.
+//! Tables as other programs write them: column orders, instrument units, placeholders for missing
+//! values, remarks among the rows. Each is read as the wave, or is refused with a correct reason
+//! and a remedy that works.
 
 #![allow(clippy::format_collect, reason = "small tables are built as text")]
 
@@ -8,7 +9,7 @@ use barrelstack_motion::{AccelerationUnit, ReadOptions, Refusal, read};
 
 const ROWS: usize = 3200;
 
-/// Returns rows of a time and the wave (m/s²) in the layout of a format.
+/// Returns rows with time and wave (m/s²) in the layout of a format.
 fn rows(row: impl Fn(usize, f64, f64) -> String) -> String {
     (0..ROWS).map(|k| row(k, 0.005 * k as f64, wave(k))).collect()
 }
@@ -23,7 +24,7 @@ fn refusal(text: &str) -> (Refusal, String) {
     (error.refusal, error.to_string())
 }
 
-/// Checks that a table is the wave alone.
+/// Checks that a table is read as the wave and nothing else.
 fn is_the_wave(text: &str, channels: usize) {
     let record = given(text, &ReadOptions::default());
     assert_eq!(record.channels.len(), channels);
@@ -90,7 +91,7 @@ fn a_mark_of_a_missing_value_is_no_acceleration() {
             assert!(said.contains("missing value"), "{unit} {mark}: {said}");
         }
     }
-    // A wave that passes through such a number is one.
+    // A wave may pass through a number that resembles a placeholder.
     let off = |k: &usize| (wave(*k) - 0.999).abs();
     let near = (0..ROWS).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
     let smooth =
@@ -155,7 +156,7 @@ fn units_of_other_quantities_in_a_row_of_units_are_units() {
     is_the_wave(&format!("Time,Table Accel,Table Disp,Load Cell\ns,m/s2,mm,kN\n{table}"), 1);
 }
 
-/// What is said of a table, the words that it must hold, and the table as the advice leaves it.
+/// Checks that a table is refused with the given words, and that the corrected table is read.
 fn obeyed(wrong: &str, word: &str, mended: &str) {
     let (_, said) = refusal(wrong);
     assert!(said.contains(word) && !said.contains("damaged"), "{word}: {said}");
@@ -188,19 +189,19 @@ fn what_stands_among_the_rows_is_named_and_may_be_left_out() {
             },
         );
     let booked = format!("Time (s),Acceleration (m/s2)\n{booked}");
-    obeyed(&booked, "without marks around it", &whole);
+    obeyed(&booked, "write only the number", &whole);
     let thousands = whole.replacen("1.4", "1.013.4", 1);
     obeyed(&thousands, "several points", &whole);
     let quoted = format!(
         "\"Time (s)\",\"Acceleration (m/s2)\"\n{}",
         rows(|_, t, a| format!("\"{t:.3}\",\"{a:.6}\"\n"))
     );
-    obeyed(&quoted, "other marks beside them", &whole);
+    obeyed(&quoted, "other characters next to them", &whole);
     let drawn = format!(
         "| Time (s) | Acceleration (m/s2) |\n|---|---|\n{}",
         rows(|_, t, a| format!("| {t:.3} | {a:.6} |\n"))
     );
-    obeyed(&drawn, "other marks beside them", &whole);
+    obeyed(&drawn, "other characters next to them", &whole);
 }
 
 #[test]
@@ -237,7 +238,8 @@ fn marks_among_comparable_values_are_found() {
             assert!(said.contains("line 702") && said.contains("missing value"), "{said}");
         }
     }
-    // A peak among its neighbors is one, and one sample of a rough record that stands out a little.
+    // A peak next to similar values is valid, and so is a single sample that stands out slightly
+    // from a rough record.
     let smooth = rows(|_, t, a| format!("{t:.3},{:.3}\n", (666.0 * a).clamp(-999.0, 999.0)));
     given(&format!("Time (s),Acceleration (mm/s2)\n{smooth}"), &ReadOptions::default());
 }
@@ -383,7 +385,7 @@ fn headings_without_rows_are_named_as_such() {
         assert!(said.contains("expected rows of numbers below the headings"), "{said}");
         assert!(said.contains("after which the file ends"), "{said}");
     }
-    // Of text that is no table nothing is said that it does not show.
+    // Text that is not a table must not be described as anything it is not.
     for text in [
         "Notes\nThe files hold accelerations, processed according to the manual.\n",
         "12 stations\nacceleration\n",

@@ -1,4 +1,4 @@
-//! Archives: NPZ reads back, and one record inside gzip or zip reads as without packing.
+//! Archives: NPZ files read back, and a record inside gzip or zip is read like the unpacked file.
 
 use std::io::{Cursor, Write as _};
 use std::path::Path;
@@ -64,7 +64,7 @@ fn zipped(files: &[(&str, &[u8])]) -> Vec<u8> {
     zipped_by(zip::CompressionMethod::Deflated, files)
 }
 
-/// Returns a zip without compression.
+/// Returns a zip archive without compression.
 fn stored(files: &[(&str, &[u8])]) -> Vec<u8> {
     zipped_by(zip::CompressionMethod::Stored, files)
 }
@@ -102,9 +102,12 @@ fn archives_that_hold_no_single_record_are_refused_in_words() {
     let at2 = bytes("peer/nga-west2.AT2");
     refused(&zipped(&[]), "expected");
     refused(&zipped(&[("[Content_Types].xml", b"<x/>"), ("xl/a.xml", b"<x/>")]), "as CSV");
-    refused(&zipped(&[("a.pdf", b"%PDF-1.4"), ("b.txt", b"no numbers")]), "2 files without one");
+    refused(
+        &zipped(&[("a.pdf", b"%PDF-1.4"), ("b.txt", b"no numbers")]),
+        "2 files, none of them a record",
+    );
     let gz = gzipped(&at2);
-    refused(&gz[..gz.len() / 2], "can be unpacked");
+    refused(&gz[..gz.len() / 2], "a readable packed file");
     // 200 MB of zeros in 200 kB.
     refused(&gzipped(&vec![b'0'; 200 << 20]), "at most 12 MB");
     // A nested archive is not opened.
@@ -117,13 +120,13 @@ fn a_component_that_cannot_be_unpacked_refuses_the_archive() {
     let named: Vec<(&str, &[u8])> = files.iter().map(|(n, b)| (n.as_str(), b.as_slice())).collect();
     assert_eq!(given(&stored(&named), "three.zip").channels.len(), 3);
     let mut damaged = stored(&named);
-    // The last digit of the second component's data, so that its checksum is wrong.
+    // Change the last digit of the second component's data, so that its checksum is wrong.
     let second = files.swap_remove(1).1;
     let at = damaged.windows(second.len()).position(|part| part == second).unwrap();
     damaged[at + second.len() - 2] ^= 1;
     let error = read(&damaged, "three.zip", &ReadOptions::default()).unwrap_err();
     assert_eq!(error.refusal, Refusal::Damaged, "{error}");
-    // What is no component may be damaged.
+    // A file that is not a component may be damaged.
     let record = (files[0].0.as_str(), files[0].1.as_slice());
     let mut other = stored(&[record, ("cover.pdf", b"%PDF-1.4 page")]);
     let at = other.windows(4).position(|part| part == b"page").unwrap();
@@ -142,7 +145,8 @@ fn tarred(files: &[(&str, &[u8])]) -> Vec<u8> {
     out.into_inner().unwrap()
 }
 
-/// Returns three components of one station named as by AFAD, with other files of a download.
+/// Returns an archive with three components of one station, named like AFAD files, and other files
+/// of a download.
 fn three() -> Vec<(String, Vec<u8>)> {
     let east = String::from_utf8(bytes("esm/example.ACC.ASC")).unwrap();
     let component = |letter: &str, stream: &str| {
@@ -181,7 +185,7 @@ fn the_components_of_one_record_in_an_archive_are_one_record_that_says_so() {
         assert_eq!(record.file, name);
         let said = record.notes.join("; ");
         assert!(said.contains("Acc_E.asc"), "{said}");
-        assert!(said.contains("left out") && said.contains("README.txt"), "{said}");
+        assert!(said.contains("ignored") && said.contains("README.txt"), "{said}");
     }
 }
 
@@ -217,14 +221,14 @@ fn counts_in_an_archive_find_the_sensitivity_beside_them() {
     let open = read(&counts, "a.mseed", &known).unwrap();
     let record = given(&archive, "a.tar");
     assert_eq!(record.channels[0].acceleration, open.channels[0].acceleration);
-    // What is wrong with one that cannot be used is said.
+    // The error says what is wrong with a `StationXML` file that cannot be used.
     let cut = tarred(&[("a.mseed", counts.as_slice()), ("a.xml", &xml[..300])]);
     let error = read(&cut, "a.tar", &ReadOptions::default()).unwrap_err();
     assert!(
         matches!(error.refusal, Refusal::Missing(_)) && error.found.contains("a.xml ("),
         "{error}"
     );
-    // Without it the refusal is the same as for the file alone.
+    // Without the `StationXML` file, the error is the same as for the unpacked file.
     let bare = read(&tarred(&[("a.mseed", counts.as_slice())]), "a.tar", &ReadOptions::default());
     assert!(matches!(bare.unwrap_err().refusal, Refusal::Missing(_)));
 }

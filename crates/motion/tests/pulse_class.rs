@@ -1,4 +1,4 @@
-//! Pulse classes against published ones and against an independent program.
+//! Pulse classification, compared with published classes and with an independent program.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -8,7 +8,7 @@ use barrelstack_motion::{
     classify_component, classify_pair, read,
 };
 
-/// Indicator and period (s) of the bundled record's components.
+/// Indicator and period (s) of the components of the bundled record.
 const NAPA_EAST: (f64, f64) = (0.9999, 1.963);
 const NAPA_NORTH: (f64, f64) = (1.0, 1.724);
 const NAPA_BOTH: (f64, f64) = (10.749, 1.935);
@@ -19,7 +19,8 @@ fn napa() -> (Sampled, Sampled) {
 
 fn near(found: ClassifiedPulse, indicator: f64, period: f64) {
     println!("{found:?}");
-    // Measured: 1.7 % of the indicator and 0.04 % of the period, from wavelets cut at the record's ends.
+    // Measured: 1.7 % of the indicator and 0.04 % of the period; the wavelets are cut at the ends
+    // of the record.
     assert!((found.indicator - indicator).abs() < 0.03 * indicator.abs(), "{found:?}");
     assert!((found.period / period - 1.0).abs() < 0.005, "{found:?}");
 }
@@ -27,7 +28,7 @@ fn near(found: ClassifiedPulse, indicator: f64, period: f64) {
 #[test]
 fn the_bundled_record_is_pulse_like_as_an_independent_program_finds() {
     let (east, north) = napa();
-    // Computed with the wavelet of PyWavelets, one product with the velocity at a time.
+    // Computed with the wavelet of PyWavelets, one product with the velocity per time.
     near(classify_component(&east).unwrap(), NAPA_EAST.0, NAPA_EAST.1);
     near(classify_component(&north).unwrap(), NAPA_NORTH.0, NAPA_NORTH.1);
     let (_, both) = classify_pair(&east, &north).unwrap();
@@ -48,7 +49,7 @@ fn published_pulses_are_found_with_their_periods() {
     // Baker (2007) gives 1.2 s for the fault-normal component, 16 degrees away.
     let found = classify_component(&rinaldi).unwrap();
     assert!(found.pulse_like && (found.period - 1.25).abs() < 0.05, "{found:?}");
-    // 5.7 s for the fault-normal component; the east one has 5.4 s.
+    // The published period is 5.7 s for the fault-normal component; the east component has 5.4 s.
     let found = classify_component(&component("RSN1503_CHICHI_TCU065-E.AT2")).unwrap();
     assert!(found.pulse_like && (found.period - 5.7).abs() < 0.6, "{found:?}");
     // El Centro and Hollywood are not in any list of pulse-like records.
@@ -69,7 +70,7 @@ fn a_pulse_is_found_at_any_direction_and_a_weak_one_is_none() {
     for degrees in [0.0, 30.0, 75.0, 140.0] {
         let found = turned(degrees);
         assert!(found.pulse_like, "{found:?}");
-        // Measured: 1e-12 degrees, one period for all directions.
+        // Measured: 1e-12 degrees; the period is the same in all directions.
         assert!((found.angle - degrees).abs() < 1e-6, "{found:?}");
         assert!((found.period - turned(0.0).period).abs() < 1e-9);
         assert!((found.period / 2.0 - 1.0).abs() < 0.2, "{found:?}");
@@ -83,8 +84,8 @@ fn a_pulse_is_found_at_any_direction_and_a_weak_one_is_none() {
 
 #[test]
 fn fiv3_of_a_long_square_wave_is_three_windows_of_its_acceleration() {
-    // Three rectangular pulses of 1 m/s2, 4 s long and 4 s apart: the filter passes them fully, and every increment
-    // over 0.7 s is 0.7 m/s.
+    // Three rectangular pulses of 1 m/s², 4 s long and 4 s apart: the filter passes them
+    // completely, and every increment over 0.7 s is 0.7 m/s.
     let a: Vec<f64> = (0..3200)
         .map(|k| {
             let second = f64::from(k) * 0.01;
@@ -94,7 +95,8 @@ fn fiv3_of_a_long_square_wave_is_three_windows_of_its_acceleration() {
     let motion = Sampled::new(0.01, a).unwrap();
     let found = IntensityMeasure::Fiv3 { period: 1.0 }.of(&motion).unwrap();
     println!("{found}");
-    // The filter overshoots by 4 % of a step, which the window averages. Measured: 1.9 % above.
+    // The filter overshoots by 4 % of a step, which the window averages. Measured: 1.9 % above the
+    // exact value.
     assert!((found / 2.1 - 1.0).abs() < 0.04, "{found}");
     let parsed: IntensityMeasure = "fiv3(1)".parse().unwrap();
     assert_eq!(parsed, IntensityMeasure::Fiv3 { period: 1.0 });

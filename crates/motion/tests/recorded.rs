@@ -1,4 +1,4 @@
-//! Time and place of recording are kept, and channels of one record begin together.
+//! Time and place of recordings are kept, and the channels of a record are aligned.
 
 use crate::shared;
 use std::path::Path;
@@ -33,7 +33,8 @@ fn start(record: &Record) -> String {
 
 #[test]
 fn starts_are_universal_time_whatever_the_clock_of_the_agency() {
-    // Japan time less nine hours and the recorder's fifteen seconds; Taiwan time less eight hours.
+    // Japan time minus nine hours and the recorder's fifteen seconds; Taiwan time minus eight
+    // hours.
     for (file, expected) in [
         ("knet/example.EW", "1903-01-02T10:51:28.000Z"),
         ("cwa/example.dat", "1903-01-02T15:50:29.000Z"),
@@ -67,7 +68,7 @@ fn headers_of_the_agencies_state_start_and_place() {
             174.1906,
             None,
         ),
-        // Five seconds of pad before 11:02:19.715.
+        // A pad of five seconds precedes 11:02:19.715.
         (
             "geonet/20161113_110259_WTMC_20.V2A",
             "2016-11-13T11:02:14.715Z",
@@ -83,7 +84,7 @@ fn headers_of_the_agencies_state_start_and_place() {
             Some(66.0),
         ),
         ("bhrc/5526-1.V1", "none", 37.734, 47.801, Some(2026.0)),
-        // The day after the event.
+        // The first sample is on the day after the event.
         ("unam/CUP50401.012", "2004-01-02T00:00:01.000Z", 19.330_24, -99.181_076, Some(2240.0)),
         ("usc/017m30cc.y0a", "none", 34.419_17, -118.426_11, None),
         ("knet/AOM0011801241951.EW", "2018-01-24T10:51:28.000Z", 41.5267, 140.9244, Some(39.0)),
@@ -140,7 +141,7 @@ fn our_own_text_keeps_start_and_place() {
         }
     };
     same(&record, &read_back(&record));
-    // One channel of another station: one line per channel.
+    // One channel belongs to another station, so there is one line per channel.
     record.channels[1].site = Site { station: "Elsewhere".to_owned(), ..Site::default() };
     record.channels[2].start = None;
     same(&record, &read_back(&record));
@@ -149,8 +150,8 @@ fn our_own_text_keeps_start_and_place() {
     assert!(error.to_string().contains("vs30"), "{error}");
 }
 
-/// Returns a record of one synthetic channel: a wave of ten seconds at 100 Hz that began `late` seconds after the full
-/// minute.
+/// Returns a record of one synthetic channel: a wave of ten seconds at 100 Hz that begins `late`
+/// seconds after the full minute.
 fn wave(name: &str, late: f64, seconds: u32) -> Record {
     let mut record = sample("barrelstack/example.txt");
     let origin: Utc = "2014-08-24T10:20:00.000Z".parse().unwrap();
@@ -170,7 +171,7 @@ fn motion_at(t: f64) -> f64 {
 fn channels_that_begin_apart_are_cut_to_their_common_span() {
     let gathered = Record::gather(&[wave("N", 20.0, 30), wave("E", 0.0, 40)]).unwrap();
     let [north, east] = gathered.channels.as_slice() else { panic!("two channels") };
-    // Both last from 20 to 39.99 s after the minute and hold the same wave.
+    // Both channels last from 20 to 39.99 s after the full minute and contain the same wave.
     assert_eq!(north.acceleration.len(), 2000);
     assert_eq!(east.acceleration.len(), 2000);
     assert_eq!(north.start, east.start);
@@ -188,7 +189,7 @@ fn parts_of_a_step_are_shifted() {
     assert_eq!(north.start, east.start);
     let n = east.acceleration.len().min(north.acceleration.len());
     assert!((1898..=1901).contains(&n), "{n}");
-    // Away from the ends, where the interpolation is less accurate; measured 2.3e-6.
+    // Compared away from the ends, where the interpolation is less accurate; measured 2.3e-6.
     let off = north.acceleration[..n].iter().zip(&east.acceleration).map(|(a, b)| (a - b).abs());
     let worst = off.skip(32).take(n - 64).fold(0.0, f64::max);
     assert!(worst < 4e-6, "{worst:e}");
@@ -198,10 +199,10 @@ fn parts_of_a_step_are_shifted() {
 #[test]
 fn channels_without_a_common_span_are_refused() {
     let error = Record::gather(&[wave("N", 0.0, 10), wave("E", 20.0, 10)]).unwrap_err();
-    assert!(error.to_string().contains("no span in common"), "{error}");
+    assert!(error.to_string().contains("no common time span"), "{error}");
 }
 
-/// Returns the sample with its channel's last letter, second of the start and location changed.
+/// Returns the sample file with another channel letter, second of the start, and location.
 fn seed(letter: u8, second: u8, location: [u8; 2]) -> Vec<u8> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/miniseed/int32.mseed");
     let mut bytes = std::fs::read(path).unwrap();
@@ -221,15 +222,15 @@ fn channels_of_one_seed_file_begin_together() {
     let both = [seed(b'E', 0, *b"00"), seed(b'N', 1, *b"00")].concat();
     let record = read(&both, "both.mseed", &options()).unwrap();
     for channel in &record.channels {
-        // The second begins a hundred samples later.
+        // The second channel begins a hundred samples later.
         assert_eq!(channel.acceleration.len(), count - 100);
         assert_eq!(start(&record), "2003-01-02T01:02:01.000Z");
     }
     assert!(record.notes.join("\n").contains("begins 1.0000 s before"));
     let apart = [seed(b'E', 0, *b"00"), seed(b'N', 50, *b"00")].concat();
     let error = read(&apart, "apart.mseed", &options()).unwrap_err();
-    assert!(error.to_string().contains("no span in common"), "{error}");
-    // Two sensors in one file are read, but not combined.
+    assert!(error.to_string().contains("no common time span"), "{error}");
+    // Two sensors in one file are read but not combined.
     let sensors = [seed(b'E', 0, *b"00"), seed(b'N', 0, *b"10")].concat();
     let record = read(&sensors, "sensors.mseed", &options()).unwrap();
     assert_eq!(record.station, "ZZ.XXXX");
@@ -237,7 +238,7 @@ fn channels_of_one_seed_file_begin_together() {
     assert!(error.contains("sensor \"00\" and sensor \"10\""), "{error}");
     let mixed = Record { mixed: true, ..record };
     assert!(mixed.horizontal_pair().is_ok());
-    // A placeholder that programs print for an empty location code.
+    // Some programs print a placeholder for an empty location code.
     let empty = read(&seed(b'E', 0, *b"--"), "empty.mseed", &options()).unwrap();
     assert_eq!(empty.channels[0].site.sensor, "");
 }
@@ -260,12 +261,10 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     refused(&one, &copy, "corrected and raw");
     let copy = Record { format: "smc", ..one.clone() };
     refused(&one, &copy, "formats peer and smc");
-    // On request they are combined, and the record states it.
+    // At the caller's request they are combined, and a warning says so.
     let mixed = Record::gather_mixed(&[one.clone(), copy]).unwrap();
-    assert!(
-        mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("taken together although"))
-    );
-    // AT2 cannot represent commas and parentheses; it is the same event.
+    assert!(mixed.mixed && mixed.warnings.iter().any(|w| w.message.contains("combined although")));
+    // AT2 cannot represent commas and parentheses; the event is the same.
     let named = Record {
         event: "Somewhere, Valley (M 6.1), \u{d1}u\u{f1}oa".to_owned(),
         ..wave("N", 0.0, 10)
@@ -279,7 +278,7 @@ fn files_of_other_stations_sensors_events_and_publishers_are_not_combined() {
     let again = read(write::at2(&unnamed).unwrap().as_bytes(), "n.at2", &options()).unwrap();
     assert_eq!((again.event.as_str(), again.station.as_str()), ("", ""));
     let kin = Record::gather(&[one, sample("peer/cut-header.AT2")]).unwrap();
-    assert!(kin.notes.join("\n").contains("taken for simultaneous"));
+    assert!(kin.notes.join("\n").contains("assumed to be simultaneous"));
 }
 
 #[test]
@@ -311,11 +310,11 @@ fn station_xml_gives_each_channel_its_sensitivity_direction_and_place() {
     let known = ReadOptions { instruments, ..ReadOptions::default() };
     let record = read(&bytes, "a.mseed", &known).unwrap();
     let (one, two) = (&by_number.channels[0], &record.channels[0]);
-    // The sensitivity valid at its time, 2000 and not 1, overrides the 1000 of the options.
+    // The sensitivity valid at the time of the record (2000, not 1) overrides the 1000 of the options.
     assert!((two.pga() / one.pga() - 0.5).abs() < 1e-12);
     assert_eq!(two.direction.azimuth, Some(85.5));
     assert_eq!((two.site.latitude, two.site.elevation), (Some(38.5), Some(697.0)));
-    // Another location code is another channel.
+    // Another location code identifies another channel.
     let error = read(&seed(b'E', 0, *b"10"), "a.mseed", &known).unwrap_err();
     assert!(error.to_string().contains("a sensitivity for channel HNE"), "{error}");
     assert!(station_xml("<FDSNStationXML>").is_err());
@@ -332,7 +331,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     assert!(error.contains("HHE, which records velocity (a high-gain seismometer)"), "{error}");
     let known =
         ReadOptions { instruments: station_xml(STATION_XML).unwrap(), ..ReadOptions::default() };
-    // Metadata that state m/s are sufficient.
+    // Metadata that state m/s are sufficient; no option is needed.
     let stated = read(&bytes, "a.mseed", &known).unwrap();
     assert!(stated.warnings.iter().any(|w| w.message.contains("a sensor of velocity")));
     let both = [bytes.clone(), seed(b'E', 0, *b"00")].concat();
@@ -343,7 +342,7 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     let velocity = read(&bytes, "a.mseed", &recorded_as(Quantity::Velocity)).unwrap();
     assert!(velocity.notes.join("\n").contains("velocity differentiated once"));
     let plain = read(&bytes, "a.mseed", &recorded_as(Quantity::Acceleration)).unwrap();
-    // Integrated again it is the recorded velocity, except for a constant and half a step.
+    // Integrating the result gives the recorded velocity, except for a constant and half a step.
     let again: Vec<f64> = velocity.channels[0]
         .acceleration
         .iter()
@@ -358,7 +357,8 @@ fn channels_of_seismometers_are_refused_or_differentiated() {
     assert!(spread < 2e-3 * plain.channels[0].pga(), "{spread}"); // measured 9.7e-4
 }
 
-/// Returns the metadata of one channel with a sensitivity in an input unit, and further lines.
+/// Returns the metadata of one channel with a sensitivity in the given input unit, and with further
+/// lines.
 fn metadata(value: &str, unit: &str, more: &str) -> Vec<Instrument> {
     let text = format!(
         "<?xml version=\"1.0\"?><FDSNStationXML><Network code=\"ZZ\"><Station code=\"XXXX\">\
@@ -417,7 +417,7 @@ fn polarity_and_dip_of_metadata_are_kept() {
     assert_eq!(plain.channels[0].direction.azimuth, Some(90.0));
     let turned: Vec<f64> = plain.channels[0].acceleration.iter().map(|a| -a).collect();
     assert_eq!(with("-1000", "").channels[0].acceleration, turned);
-    // Positive counts of a dip of 90 degrees point down, and are reversed.
+    // With a dip of 90 degrees, positive counts point down and are reversed.
     let down = with("1000", "<Azimuth>0</Azimuth><Dip>90</Dip>");
     assert!(down.channels[0].is_vertical());
     assert_eq!(down.channels[0].acceleration, turned);
@@ -434,7 +434,8 @@ fn metadata_of_another_time_are_named_where_a_sensitivity_is_missing() {
     assert!(error.contains("ZZ.XXXX.00.HNE at 2003-01-02T01:02:00.000Z among 1"), "{error}");
 }
 
-/// Returns a hundred data records of ten samples at 100 Hz, each `late` (1e-4 s) later than it should be.
+/// Returns a hundred data records of ten samples at 100 Hz, each delayed by another `late` (1e-4
+/// s).
 fn records_late(late: u32) -> Vec<u8> {
     let one = seed(b'E', 0, *b"00");
     let mut record = one[..1 << one[54]].to_vec();
@@ -459,7 +460,7 @@ fn gaps_shorter_than_a_sample_do_not_add_up_unnoticed() {
         let error = read(&records_late(late), "gaps.mseed", &options()).unwrap_err();
         assert!(error.to_string().contains("gaps of 0.0"), "{late}: {error}");
     }
-    // Records in another order, and one of them twice.
+    // Data records in another order, with one of them repeated.
     let bytes = records_late(0);
     let length = bytes.len() / 100;
     let turned = [&bytes[50 * length..], &bytes[..51 * length]].concat();

@@ -1,4 +1,4 @@
-//! From a record to a motion: processing, selection, rotation, joining and the bundled record.
+//! From records to motions: processing, selection, rotation, joining, and the bundled record.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -17,7 +17,7 @@ fn sampled(history: &History) -> &Sampled {
     }
 }
 
-/// A record in the crate's own text form with two horizontals and a vertical.
+/// A record in this crate's text format with two horizontals and a vertical.
 fn example(azimuths: (f64, f64), samples: usize) -> Record {
     let mut text = format!(
         "# barrelstack motion 1\n# stage: raw\n# unit: m/s2\n# time_step: 0.01\n\
@@ -53,7 +53,7 @@ fn rotation_recovers_any_azimuth_from_oblique_horizontals() {
     let given = example((0.0, 90.0), 2000);
     let wanted = &truth.channels[0].acceleration;
     let rotated = given.component(&Component::Azimuth(30.0)).unwrap();
-    // The offsets of the two sets differ; remove the means.
+    // The offsets of the two sets differ, so the means are removed.
     let mean = |a: &[f64]| a.iter().sum::<f64>() / a.len() as f64;
     let (m1, m2) = (mean(wanted), mean(&rotated.acceleration));
     for (a, b) in wanted.iter().zip(&rotated.acceleration) {
@@ -120,7 +120,7 @@ fn removed_pads_leave_the_length_and_the_rest_at_the_end() {
 
 #[test]
 fn the_high_pass_has_the_gain_of_a_butterworth_applied_twice() {
-    // A long sine burst well inside the record, at and around the corner.
+    // A long sine burst well inside the record, with frequencies at and around the corner.
     let dt = 0.02;
     let n: u32 = 20_000;
     for (ratio, gain) in [(0.5, 1.0 / 257.0), (1.0, 0.5), (2.0, 256.0 / 257.0), (8.0, 1.0)] {
@@ -137,7 +137,8 @@ fn the_high_pass_has_the_gain_of_a_butterworth_applied_twice() {
         let middle = &out.acceleration[out.acceleration.len() / 2 - 2000..][..4000];
         let peak = middle.iter().fold(0.0_f64, |p, v| p.max(v.abs()));
         assert!((peak - gain).abs() < 0.01, "{ratio}: {peak} against {gain}"); // measured 0.004
-        // Zero phase: the recorded part starts `lead` later and is not shifted otherwise.
+        // The filter has zero phase: the recorded part starts `lead` later but is not shifted
+        // otherwise.
         let lead = (out.acceleration.len() - a.len()) / 2;
         assert!((out.lead / dt - lead as f64).abs() < 1e-6);
         let dot: f64 = a.iter().zip(&out.acceleration[lead..]).map(|(x, y)| x * y).sum();
@@ -152,12 +153,12 @@ fn unreasonable_settings_are_refused() {
         Processing { high_pass: Some(60.0), ..Processing::none() },
         Processing { high_pass: Some(f64::NAN), ..Processing::none() },
         Processing { low_pass: Some(0.0), ..Processing::none() },
-        // Slower than one over the duration of 1 s: the pads would exceed the memory.
+        // The corner is below one over the duration of 1 s; the pads would exceed the memory.
         Processing { low_pass: Some(0.99), ..Processing::none() },
         Processing { low_pass: Some(1e-9), ..Processing::none() },
         Processing { low_pass: Some(1e-30), ..Processing::none() },
         Processing { high_pass: Some(5.0), low_pass: Some(2.0), ..Processing::none() },
-        // Raised to 1 Hz, where the low-pass is.
+        // The corner is raised to 1 Hz, where the low-pass corner is.
         Processing { high_pass: Some(0.1), low_pass: Some(1.0), ..Processing::none() },
         Processing { taper: 0.7, ..Processing::none() },
         Processing { order: 0, high_pass: Some(1.0), ..Processing::none() },
@@ -228,7 +229,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
         let mut part = whole.clone();
         part.file = file.to_owned();
         part.channels.truncate(1);
-        // Plain columns name their only channel after the file.
+        // The only channel of plain columns is named after the file.
         part.channels[0].name = stem(file);
         part.channels[0].acceleration = part.channels[0].acceleration[from..to].to_vec();
         part
@@ -236,7 +237,7 @@ fn parts_of_every_kind_are_joined_by_name_or_by_order() {
     let joined =
         Record::join(&[part(0, 1800, "part1.txt"), part(1300, 3000, "part2.txt")]).unwrap();
     assert_eq!(joined.channels[0].acceleration.len(), 3000);
-    // As in K-NET files, with the same name in both and the mean of each removed.
+    // As in K-NET files, both parts have the same channel name and their means are removed.
     let mut two = part(1300, 3000, "part1.txt");
     let mean = two.channels[0].acceleration.iter().sum::<f64>() / 1700.0;
     for a in &mut two.channels[0].acceleration {

@@ -1,7 +1,7 @@
 //! Reference values of three records, computed with independent programs.
 //!
-//! The records may not be bundled; the tests run if the folder `../shared/ground-motions` is beside the workspace,
-//! and are reported as skipped otherwise.
+//! The records may not be bundled. The tests run if the folder `../shared/ground-motions` is next
+//! to the workspace, and are reported as skipped otherwise.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -10,7 +10,8 @@ use barrelstack_motion::{
     IntensityMeasure, ReadOptions, STANDARD_GRAVITY, Sampled, dominant_pulse, read, response,
 };
 
-/// PGA (g), PGV (m/s), PGD (m), Arias (m/s), CAV (m/s), D5-95 (s), then PSA (g) at 5 % for periods.
+/// PGA (g), PGV (m/s), PGD (m), Arias intensity (m/s), CAV (m/s), D5-95 (s), then PSA (g) at 5 %
+/// damping for several periods.
 struct Row {
     file: &'static str,
     pga: f64,
@@ -76,7 +77,7 @@ fn the_reference_records_give_the_reference_values() {
         near("PGA", motion.pga() / STANDARD_GRAVITY, row.pga, 1e-4);
         near("PGV", motion.pgv(), row.pgv, 1e-4);
         near("PGD", of(IntensityMeasure::Pgd), row.pgd, 1e-4);
-        // The motion that drives a model is the exact integral; for the first record it is 0.37 % larger.
+        // The exact integral drives a model; for the first record it is 0.37 % larger.
         let exact = motion.pgd() / of(IntensityMeasure::Pgd) - 1.0;
         assert!((0.0..4e-3).contains(&exact), "{}: {exact}", row.file);
         near("Arias", of(IntensityMeasure::Arias), row.arias, 1e-3);
@@ -104,7 +105,7 @@ fn the_motion_of_the_seed_paper_scales_as_published() {
     let Some(path) = shared(file) else { return };
     let record = read(&std::fs::read(path).unwrap(), file, &ReadOptions::default()).unwrap();
     let motion = record.default_motion().unwrap();
-    // A corrected record drives the model as published, from its first sample.
+    // A corrected record drives a model as published, from its first sample.
     assert_eq!(motion.duration, 1999.0 * 0.02);
     let factor = motion.scale_factor(IntensityMeasure::Pgv, 0.6).unwrap();
     assert!((factor - 2.192).abs() < 5e-4, "{factor}"); // measured 1.9e-4
@@ -125,7 +126,7 @@ fn the_pulse_of_rinaldi_is_found() {
     let motion = Sampled::new(channel.time_step, channel.acceleration.clone()).unwrap();
     let fit = dominant_pulse(&motion, 0.4, 8.0).unwrap();
     println!("{fit:?}");
-    // Published periods of this pulse lie around 1.0 to 1.3 s.
+    // Published periods of this pulse are around 1.0 to 1.3 s.
     assert!((0.95..1.4).contains(&fit.period), "{fit:?}");
     // The record's PGV is 1.48 m/s.
     assert!((0.9..1.6).contains(&fit.peak_velocity), "{fit:?}");

@@ -1,6 +1,7 @@
-//! Every real file in `../shared/ground-motions` is read or refused for the right reason.
+//! Every real file in `../shared/ground-motions` is read, or refused for the right reason.
 //!
-//! Most of those files may not be bundled; without the folder the test is reported as skipped.
+//! Most of these files may not be bundled; the test is reported as skipped if the folder is
+//! missing.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -18,7 +19,7 @@ fn folder() -> Option<PathBuf> {
     shared("")
 }
 
-/// Returns the options for a file, from the folder's own README.
+/// Returns the reading options for a file, taken from the README of the folder.
 fn options(file: &str) -> ReadOptions {
     let g = Some(AccelerationUnit::G);
     match file {
@@ -34,7 +35,7 @@ fn options(file: &str) -> ReadOptions {
     }
 }
 
-/// Files without acceleration, and the word their refusal must contain.
+/// Files without acceleration, with a word that the error must contain.
 const REFUSED: [(&str, &str); 6] = [
     ("README.md", "convert the file"),
     ("asdf/nc72282711_workspace.h5", "HDF5"),
@@ -163,7 +164,7 @@ fn azimuth(channel: &Channel) -> String {
     }
 }
 
-/// Tabulates the results of the readers for every file, as a page.
+/// Formats the results of the readers for every file as a page.
 fn table_of_results(folder: &Path) -> String {
     let mut text = String::from(
         "# Formats read\n\nEvery file of the shared folder `ground-motions`, as read by this crate.\n\

@@ -1,4 +1,5 @@
-//! Synthetic motions: same seed same bits, ensembles meet their target in the mean, no drift.
+//! Synthetic motions: equal seeds give equal bits, ensembles meet their target on average, motions
+//! do not drift.
 
 #![allow(clippy::print_stdout, reason = "a test fails by unwrap and reports by print")]
 
@@ -30,7 +31,7 @@ fn the_generator_has_its_published_first_numbers() {
 fn stationary_noise_has_its_density_in_the_mean() {
     let soil = CloughPenzien::medium(1.5);
     let (dt, duration) = (0.02, 40.94);
-    // Bands wide enough for averages: compare the mean squared amplitude in each.
+    // The bands are wide enough for averaging; the mean squared amplitudes are compared.
     let bands = [(0.3, 0.8), (0.8, 1.5), (1.5, 2.5), (2.5, 5.0), (5.0, 12.0)];
     let mut measured = [0.0; 5];
     let mut variance = 0.0;
@@ -117,7 +118,7 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_does_not() {
 
 #[test]
 fn bits_are_those_of_every_platform() {
-    // A hash over the bits, equal on every machine because all functions are the crate's own.
+    // A hash of the bits, equal on every machine because all functions are part of the crate.
     let hash = |motion: &GroundMotion| {
         (0..2000).fold(0xcbf2_9ce4_8422_2325_u64, |hash, k| {
             let bits = motion.horizontal.at(f64::from(k) * 0.01).acceleration.to_bits();
@@ -146,8 +147,9 @@ fn a_larger_and_closer_source_shakes_harder() {
     let (strong, weak, far) = (pga(7.0, 10.0), pga(5.0, 10.0), pga(7.0, 100.0));
     println!("M7 at 10 km {strong:.2} m/s2, M5 at 10 km {weak:.2}, M7 at 100 km {far:.2}");
     assert!(strong > 1.5 * weak && strong > 5.0 * far);
-    // Random vibration: the flat part of the spectrum, C M0 (2π f0)²/R = 0.72 m/s, cut by κ = 0.04 s
-    // over a duration of 10.5 s has an rms of 0.63 m/s2; its peak is about three times that.
+    // Estimate by random vibration: the flat part of the spectrum, C M0 (2π f0)²/R = 0.72 m/s,
+    // limited by κ = 0.04 s over a duration of 10.5 s, has an rms of 0.63 m/s²; the peak is about
+    // three times the rms.
     assert!((1.4..2.6).contains(&strong), "{strong}");
 }
 
@@ -200,8 +202,8 @@ fn provenance_says_how_a_motion_was_made_in_words_and_units() {
     let fault = NearFault { pulse, start: 1.0, rest, crossover: 1.2 };
     assert_eq!(
         fault.motion(0.01, 3).unwrap().provenance[0],
-        "near-fault motion: Ricker wavelet of 2 m/s2 and period 0.5 s from 1 s on, around it the \
-         stochastic method above 1.2 of the pulse's frequency: magnitude 6 at 20 km, stress \
+        "near-fault motion: Ricker wavelet of 2 m/s2 and period 0.5 s from 1 s on, plus the \
+         stochastic method above 1.2 times the pulse frequency: magnitude 6 at 20 km, stress \
          parameter 70 bar, 3.5 km/s and 2.8 g/cm3 at the source, Q = 180 f^0.45, kappa 0.04 s, no \
          site amplification, seed 3"
     );

@@ -1,9 +1,9 @@
-//! Written files read back, whatever their texts.
+//! Written files read back, whatever texts they contain.
 
 use barrelstack_motion::write::{self, archive, at2, csv, npz};
 use barrelstack_motion::{Channel, Direction, ReadOptions, Record, Stage, read};
 
-/// Returns a record with reserved words of headers in every place of a text.
+/// Returns a record with reserved header words in every text.
 fn hostile(channels: Vec<Channel>) -> Record {
     let example = include_bytes!("data/barrelstack/example.txt");
     let mut record = read(example, "a, b (c).csv", &ReadOptions::default()).unwrap();
@@ -47,7 +47,7 @@ fn text_reads_back_bit_for_bit_whatever_the_header_says() {
     let names: Vec<&str> = again.channels.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["a b c", "a b c 2", "channel 3"]);
     assert_eq!(again.notes.len(), 3);
-    // Written again it is the same file: the history is not duplicated.
+    // Writing again gives the same file; the history is not duplicated.
     assert_eq!(write::text(&again).unwrap().lines().count(), text.lines().count());
 }
 
@@ -82,7 +82,8 @@ fn at2_reads_back_whatever_the_header_says() {
         assert_eq!(new.direction.azimuth, direction.azimuth, "{name}");
         assert_eq!(new.is_vertical(), old.is_vertical(), "{name}");
         for (a, b) in old.acceleration.iter().zip(&new.acceleration) {
-            // Eight digits: half a unit of the last is 5e-8 of a number that starts with 1.
+            // Numbers have eight digits: half a unit of the last is 5e-8 of a number that starts
+            // with 1.
             assert!((a - b).abs() <= 5.1e-8 * a.abs() + 1e-97, "{a} {b}");
         }
     }

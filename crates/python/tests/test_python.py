@@ -231,7 +231,7 @@ def test_no_reader_waits_for_a_pipe_or_reads_a_device(tmp_path: Path, read: Call
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     for path in (str(pipe), "/dev/zero"):
-        with pytest.raises(barrelstack.Error, match=r"not a file; write what it carries into a file"):
+        with pytest.raises(barrelstack.Error, match=r"not a file; write its content to a file"):
             read(path)
 
 

@@ -81,7 +81,7 @@ def test_processing_is_listed_step_by_step(napa: Record) -> None:
     assert abs(done.displacement("h1")[-1]) < 1e-6
     with pytest.raises(ValueError, match='no chain "fancy"'):
         napa.process("fancy")
-    with pytest.raises(RecordError, match="give a value in that range"):
+    with pytest.raises(RecordError, match="give a value in this range"):
         napa.process(low_pass=1e6)
 
 

@@ -1,8 +1,8 @@
-//! Errors of ground-motion computations, as sentences with a next move.
+//! Errors of ground-motion computations, as sentences with a remedy.
 
 use std::fmt;
 
-/// The reason why a request about a motion cannot be met.
+/// The reason why a computation on a ground motion failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// A parameter lies outside its range.
@@ -15,12 +15,12 @@ pub enum MotionError {
         /// The value given.
         found: String,
     },
-    /// A measure that does not grow with the motion cannot be a scaling target.
+    /// A measure that does not grow with the amplitude of the motion cannot be a scaling target.
     #[error("{measure} cannot be scaled to: {reason}; choose a measure such as PGV or Sa")]
     NotScalable {
         /// Name of the measure.
         measure: String,
-        /// Reason why no factor exists.
+        /// Reason why no scale factor exists.
         reason: String,
     },
     /// The requested measure of the motion is zero.
@@ -32,45 +32,45 @@ pub enum MotionError {
         measure: String,
         /// Name of the motion.
         motion: String,
-        /// The requested value with its unit.
+        /// The requested value, with its unit.
         target: String,
     },
-    /// No channel matches the selection.
+    /// No channel of the record matches the selection.
     #[error("{file} has no channel {wanted}; it has {available}")]
     NoChannel {
         /// Name of the file.
         file: String,
         /// The requested channel.
         wanted: String,
-        /// The available channels.
+        /// The channels of the file.
         available: String,
     },
-    /// Two series to be combined differ in step or do not match.
+    /// Two time series to be combined differ in step or do not match.
     #[error("{what}; {remedy}")]
     Mismatch {
-        /// The mismatch.
+        /// Description of the mismatch.
         what: String,
-        /// The next move.
+        /// Remedy for the user.
         remedy: String,
     },
     /// An iteration did not reach its tolerance.
     #[error("{what} reached {reached} after {rounds} rounds, wanted {wanted}; {remedy}")]
     NotConverged {
-        /// The iteration.
+        /// Name of the iteration.
         what: String,
-        /// Best misfit reached, formatted.
+        /// Smallest misfit reached, formatted.
         reached: String,
         /// Number of rounds.
         rounds: usize,
-        /// Tolerance, formatted.
+        /// Required tolerance, formatted.
         wanted: String,
-        /// The next move.
+        /// Remedy for the user.
         remedy: String,
     },
 }
 
 impl MotionError {
-    /// Creates an error of a parameter from its name, its permitted range and its value.
+    /// Creates an error about a parameter from its name, its permitted range and its value.
     pub fn parameter(
         what: impl Into<String>,
         expected: impl Into<String>,
@@ -79,7 +79,7 @@ impl MotionError {
         Self::Parameter { what: what.into(), expected: expected.into(), found: found.to_string() }
     }
 
-    /// Creates an error of mismatching inputs with the next move.
+    /// Creates an error about inputs that do not match, with a remedy.
     pub fn mismatch(what: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Mismatch { what: what.into(), remedy: remedy.into() }
     }
@@ -87,7 +87,7 @@ impl MotionError {
     /// Returns `Ok` if a condition on a parameter holds.
     ///
     /// # Errors
-    /// [`MotionError::Parameter`] if not.
+    /// [`MotionError::Parameter`] if the condition does not hold.
     pub fn require(
         holds: bool,
         what: impl Into<String>,
@@ -100,7 +100,7 @@ impl MotionError {
     /// Returns `Ok` if `value` is finite and above zero.
     ///
     /// # Errors
-    /// A message that begins with `what`, if not.
+    /// If `value` is not finite or not above zero; the message begins with `what`.
     pub fn require_positive(what: &str, value: f64) -> Result<(), Self> {
         let positive = value.is_finite() && value > 0.0;
         Self::require(positive, what, "a finite number above 0", value)
@@ -109,7 +109,7 @@ impl MotionError {
     /// Returns `Ok` if `value` is finite.
     ///
     /// # Errors
-    /// If it is not.
+    /// If `value` is not finite.
     pub fn require_finite(what: &str, value: f64) -> Result<(), Self> {
         Self::require(value.is_finite(), what, "a finite number", value)
     }

@@ -1,13 +1,14 @@
-//! Filtered incremental velocity: the three largest velocity increments over most of an oscillator's period.
+//! Filtered incremental velocity: the three largest velocity increments over 0.7 periods of an
+//! oscillator.
 
 use crate::math::{self, PI};
 
-/// Length of the time window over the period.
+/// Length of the time window, as a fraction of the period.
 const WINDOW: f64 = 0.7;
-/// Corner of the filter over the frequency of the oscillator.
+/// Corner frequency of the low-pass filter, as a fraction of the oscillator's frequency.
 const CORNER: f64 = 0.85;
 
-/// Returns FIV3 (m/s) of accelerations (m/s²) at the period `period` (s) of an oscillator:
+/// Returns FIV3 (m/s) of accelerations (m/s²) for an oscillator of period `period` (s):
 ///
 /// ```text
 /// V(t) = ∫ a dt from t to t + 0.7 T,   a low-passed at 0.85/T
@@ -15,8 +16,9 @@ const CORNER: f64 = 0.85;
 /// ```
 ///
 /// (Dávalos and Miranda 2019, Earthquake Engineering and Structural Dynamics 48:1300-1316).
-/// The filter is a causal Butterworth filter of second order, applied once; the publication leaves this
-/// open, and applying it in both directions would reduce content at the corner.
+///
+/// The filter is a causal Butterworth filter of second order, applied once. The publication does
+/// not specify the direction; filtering in both directions would reduce the content at the corner.
 pub(crate) fn fiv3(time_step: f64, acceleration: &[f64], period: f64) -> f64 {
     let filtered = low_pass(time_step, acceleration, CORNER / period);
     let velocity = crate::sampled::running_trapezoid(time_step, &filtered);
@@ -37,8 +39,9 @@ pub(crate) fn fiv3(time_step: f64, acceleration: &[f64], period: f64) -> f64 {
     pushes(1.0).max(pushes(-1.0))
 }
 
-/// Applies a causal Butterworth low-pass of second order, by the bilinear transform with prewarped corner
-/// (Hz); without effect above the Nyquist frequency.
+/// Applies a causal second-order Butterworth low-pass filter, by the bilinear transform with
+/// prewarped corner (Hz). Returns the input unchanged if the corner lies above the Nyquist
+/// frequency.
 fn low_pass(time_step: f64, a: &[f64], corner: f64) -> Vec<f64> {
     if corner * time_step >= 0.5 {
         return a.to_vec();

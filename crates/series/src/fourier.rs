@@ -1,7 +1,7 @@
 //! Discrete Fourier transform in a fixed order of operations, and the Fourier amplitude spectrum.
 //!
-//! A plain radix-2 transform of our own: its bits do not depend on the instruction set, unlike those of
-//! transforms that select vector code at run time.
+//! The transform is a plain radix-2 implementation. Its results do not depend on the instruction
+//! set, unlike those of libraries that select vector code at run time.
 
 use crate::math::{self, TAU};
 
@@ -15,24 +15,24 @@ pub struct Complex {
 }
 
 impl Complex {
-    /// Returns the absolute value.
+    /// Returns the absolute value of the number.
     pub fn norm(self) -> f64 {
         (self.re * self.re + self.im * self.im).sqrt()
     }
 
-    /// Multiplies by a real factor.
+    /// Returns the number multiplied by a real factor.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
     }
 }
 
-/// In-place forward transform `X[k] = Σ x[n] exp(-2πi kn/N)`; the length is a power of two.
+/// Transforms in place: `X[k] = Σ x[n] exp(-2πi kn/N)`; the length must be a power of two.
 pub fn forward(values: &mut [Complex]) {
     transform(values, -1.0);
 }
 
-/// In-place inverse transform, including the division by the length.
+/// Transforms back in place, including the division by the length.
 pub fn inverse(values: &mut [Complex]) {
     transform(values, 1.0);
     let factor = 1.0 / values.len() as f64;
@@ -56,7 +56,8 @@ fn transform(values: &mut [Complex], sign: f64) {
             values.swap(i, j);
         }
     }
-    // One table for all stages: twiddle k of stage `size` is entry k * n/size.
+    // One table serves all stages: twiddle factor k of the stage with `size` points is entry k *
+    // n/size.
     let table: Vec<Complex> = (0..n / 2)
         .map(|k| {
             let (s, c) = math::sin_cos(TAU * k as f64 / n as f64);
@@ -80,8 +81,8 @@ fn transform(values: &mut [Complex], sign: f64) {
     }
 }
 
-/// Correlates a series with another at every shift, from their transforms; if the second is real,
-/// the real and the imaginary part of the first remain separate.
+/// Returns the correlation of two series at every shift, from their transforms. If the kernel is
+/// real, the real and the imaginary part of the series remain separate in the result.
 pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     let mut product: Vec<Complex> = series
         .iter()
@@ -92,7 +93,7 @@ pub fn correlate(series: &[Complex], kernel: &[Complex]) -> Vec<Complex> {
     product
 }
 
-/// Returns the transform of real values, padded with zeros to `length` (a power of two).
+/// Returns the transform of real values, padded with zeros to `length`, a power of two.
 pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     let mut padded: Vec<Complex> = values.iter().map(|&re| Complex { re, im: 0.0 }).collect();
     padded.resize(length, Complex::default());
@@ -100,8 +101,8 @@ pub fn forward_real(values: &[f64], length: usize) -> Vec<Complex> {
     padded
 }
 
-/// Multiplies the transform of a real signal of step `time_step` by a real gain of frequency (Hz),
-/// which preserves the phases.
+/// Multiplies the transform of a real signal by a real gain, a function of frequency (Hz). Phases
+/// are preserved. `time_step` is the step of the signal (s).
 pub fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -> f64) {
     let n = spectrum.len();
     for k in 0..=n / 2 {
@@ -113,18 +114,18 @@ pub fn apply_gain(spectrum: &mut [Complex], time_step: f64, gain: impl Fn(f64) -
     }
 }
 
-/// Amplitudes of the Fourier transform of an acceleration.
+/// Fourier amplitude spectrum of an acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierSpectrum {
     /// Frequencies (Hz), from 0 to the Nyquist frequency.
     pub frequency: Vec<f64>,
-    /// `|∫ a exp(-2πi f t) dt|` (m/s).
+    /// Amplitudes `|∫ a exp(-2πi f t) dt|` (m/s).
     pub amplitude: Vec<f64>,
 }
 
 impl FourierSpectrum {
-    /// Computes the spectrum of accelerations (m/s²) of step `time_step` (s), padded with zeros to
-    /// the next power of two.
+    /// Computes the spectrum of accelerations (m/s²) with step `time_step` (s), padded with zeros
+    /// to the next power of two.
     pub fn new(time_step: f64, acceleration: &[f64]) -> Self {
         let length = acceleration.len().max(2).next_power_of_two();
         let transform = forward_real(acceleration, length);

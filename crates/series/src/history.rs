@@ -1,4 +1,4 @@
-//! Motion of one component at any time: sampled, analytic, or a sum of both.
+//! Motion of one component as a function of time: sampled, analytic, or a sum of both.
 
 use crate::error::MotionError;
 use crate::pulse::Pulse;
@@ -6,30 +6,30 @@ use crate::sampled::{Kinematics, Sampled};
 
 /// Displacement, velocity and acceleration of one component as functions of time.
 ///
-/// The three are exact derivatives of one another.
-/// Before t = 0 they are zero; after [`History::duration`] the acceleration is zero, the velocity is
-/// held and the displacement grows linearly.
+/// Velocity and acceleration are the exact derivatives of the displacement. Before t = 0, all three
+/// are zero. After [`History::duration`], the acceleration is zero, the velocity is constant and
+/// the displacement grows linearly.
 #[derive(Clone, Debug, PartialEq)]
 pub enum History {
-    /// Accelerations at equal steps, linear between them.
+    /// Accelerations at equal time steps, linear between the samples.
     Sampled(Sampled),
-    /// A closed form.
+    /// A closed-form pulse.
     Analytic(Pulse),
     /// Several histories, each delayed by its own time.
     Sum(Vec<Delayed>),
 }
 
-/// A delayed history.
+/// A history that starts at a later time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delayed {
-    /// Start (s), not negative.
+    /// Start of the history (s), not negative.
     pub delay: f64,
-    /// The history after the delay.
+    /// The history, with its own time counted from the start.
     pub history: History,
 }
 
 impl History {
-    /// Returns the motion at time `t` (s).
+    /// Returns the displacement, velocity and acceleration at time `t` (s).
     pub fn at(&self, t: f64) -> Kinematics {
         match self {
             Self::Sampled(sampled) => sampled.at(t),
@@ -45,7 +45,7 @@ impl History {
         }
     }
 
-    /// Returns the time after which there is no acceleration (s).
+    /// Returns the time (s) after which the acceleration is zero.
     pub fn duration(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.duration(),
@@ -56,14 +56,15 @@ impl History {
         }
     }
 
-    /// Returns the history times `factor`.
+    /// Returns the history with all amplitudes multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// Returns the history of a model of `length_scale` times the size under the same gravity: time times
-    /// `√length_scale`, displacement times `length_scale`, acceleration unchanged.
+    /// Returns the history for a model of `length_scale` times the size under the same gravity
+    /// (Froude scaling). Time is multiplied by `√length_scale` and displacement by `length_scale`;
+    /// acceleration is unchanged.
     #[must_use]
     pub fn froude(&self, length_scale: f64) -> Self {
         self.stretched(length_scale.sqrt(), 1.0)
@@ -85,8 +86,8 @@ impl History {
         }
     }
 
-    /// Returns the step at which samples describe this history well (s): its own step, or a 400th of
-    /// the period of a pulse.
+    /// Returns the time step (s) at which samples represent this history well: its own step if
+    /// sampled, or a 400th of the period of a pulse.
     pub fn natural_step(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.time_step(),
@@ -99,13 +100,13 @@ impl History {
         }
     }
 
-    /// Samples the accelerations at steps of at most `time_step`, and integrates them.
+    /// Samples the accelerations at steps of at most `time_step` (s) and integrates them.
     ///
-    /// A sampled history of the same step is returned as it is.
-    /// The step is reduced so that the last sample falls on the end.
+    /// A sampled history with the same step is returned unchanged. The step is reduced so that the
+    /// last sample falls on the end.
     ///
     /// # Errors
-    /// If the step is not above zero or would need more than 100 million samples.
+    /// If the step is not above zero or would require more than 100 million samples.
     pub fn sampled(&self, time_step: f64) -> Result<Sampled, MotionError> {
         MotionError::require_positive("time step (s)", time_step)?;
         if let Self::Sampled(sampled) = self
@@ -124,8 +125,10 @@ impl History {
         Sampled::with_initial_velocity(even, acceleration, self.at(0.0).velocity)
     }
 
-    /// Returns the time (s) from which the acceleration stays below a limit (m/s²): that of the sample after the last
-    /// one above it; for a closed form its end, since its shaking stops abruptly.
+    /// Returns the time (s) from which the absolute acceleration stays below a limit (m/s²).
+    ///
+    /// For a sampled history, this is the time of the sample after the last one above the limit.
+    /// For a closed form, it is the end, since the shaking stops abruptly.
     pub fn calm_from(&self, limit: f64) -> f64 {
         match self {
             Self::Sampled(sampled) => {
@@ -146,18 +149,19 @@ impl History {
         self.peak(Sampled::pga, |k| k.acceleration)
     }
 
-    /// Returns the largest absolute velocity (m/s); at the samples if the history is sampled.
+    /// Returns the largest absolute velocity (m/s). A sampled history is evaluated at its samples.
     pub fn pgv(&self) -> f64 {
         self.peak(Sampled::pgv, |k| k.velocity)
     }
 
-    /// Returns the largest absolute displacement up to the end of shaking (m); at the samples if sampled.
+    /// Returns the largest absolute displacement (m) up to the end of shaking. A sampled history is
+    /// evaluated at its samples.
     pub fn pgd(&self) -> f64 {
         self.peak(Sampled::pgd, |k| k.displacement)
     }
 
-    /// Returns the peak of the samples; other histories are scanned at the natural step, and every local extremum
-    /// is refined by golden section.
+    /// Returns the peak of a quantity. A sampled history has its own method; other histories are
+    /// scanned at the natural step, and every local extremum is refined by golden-section search.
     fn peak(&self, sampled: fn(&Sampled) -> f64, quantity: fn(Kinematics) -> f64) -> f64 {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
         if let Self::Sampled(samples) = self {

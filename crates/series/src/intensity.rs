@@ -11,53 +11,57 @@ use crate::math::{self, PI, STANDARD_GRAVITY};
 use crate::response::{check_oscillator, response};
 use crate::sampled::Sampled;
 
-/// A measure of the intensity of one component, in SI units.
+/// An intensity measure of one component, in SI units.
 ///
-/// Integrals over time are trapezoids of the samples, as published values are.
-/// Parses from `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner` and so on, and prints with all
-/// parameters: `sa(1,0.05)`.
+/// Integrals over time use the trapezoidal rule on the samples, like published values. The text
+/// form is `pgv`, `sa(1.0)`, `sa(1.0,0.02)`, `d5-95`, `housner` and so on; printing includes all
+/// parameters, such as `sa(1,0.05)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntensityMeasure {
     /// Peak ground acceleration (m/s²).
     Pga,
     /// Peak ground velocity (m/s).
     Pgv,
-    /// Peak ground displacement (m), by the trapezoid of the sampled velocities
+    /// Peak ground displacement (m), integrated from the sampled velocities by the trapezoidal rule
     /// ([`Sampled::pgd_by_trapezoid`]).
     Pgd,
-    /// PGV/PGA (s), long for pulse-like motions.
+    /// Ratio PGV/PGA (s); large for pulse-like motions.
     PgvOverPga,
     /// Arias intensity `π/(2g) ∫a² dt` (m/s) (Arias 1970).
     Arias,
     /// Cumulative absolute velocity `∫|a| dt` (m/s) (EPRI 1988).
     Cav,
-    /// CAV over those whole seconds in which `|a|` exceeds 0.025 g (m/s) (EPRI 1991).
+    /// Cumulative absolute velocity (m/s) over those one-second intervals in which `|a|` exceeds
+    /// 0.025 g (EPRI 1991).
     CavStandardized,
     /// Time between two fractions of the Arias intensity (s) (Trifunac and Brady 1975).
     SignificantDuration {
-        /// First fraction, such as 0.05.
+        /// Start of the duration as a fraction of the Arias intensity, such as 0.05.
         from: f64,
-        /// Last fraction, such as 0.95.
+        /// End of the duration as a fraction of the Arias intensity, such as 0.95.
         to: f64,
     },
     /// Time between the first and the last crossing of `threshold` by `|a|` (s).
     BracketedDuration {
-        /// Threshold (m/s²), by custom 0.05 g.
+        /// Threshold of the acceleration (m/s²), customarily 0.05 g.
         threshold: f64,
     },
-    /// Root mean square of the acceleration over the whole length (m/s²).
+    /// Root mean square of the acceleration over the whole record (m/s²).
     Rms,
-    /// `∫ PSV dT` from 0.1 to 2.5 s (m) (Housner 1952), trapezoid with steps of 0.01 s.
+    /// Housner intensity `∫ PSV dT` from 0.1 to 2.5 s (m) (Housner 1952), by trapezoids with steps
+    /// of 0.01 s.
     Housner {
-        /// Damping ratio; 0, 0.05 and 0.2 all occur.
+        /// Damping ratio; 0, 0.05 and 0.2 occur in the literature.
         damping: f64,
     },
-    /// Acceleration spectrum intensity `∫ PSA dT` from 0.1 to 0.5 s at 5 % (m/s)
-    /// (Von Thun et al. 1988).
+    /// Acceleration spectrum intensity `∫ PSA dT` from 0.1 to 0.5 s at 5 % damping (m/s) (Von Thun
+    /// et al. 1988).
     Asi,
-    /// Velocity spectrum intensity `∫ PSV dT` from 0.1 to 2.5 s at 5 % (m) (Von Thun et al. 1988).
+    /// Velocity spectrum intensity `∫ PSV dT` from 0.1 to 2.5 s at 5 % damping (m) (Von Thun et al.
+    /// 1988).
     Vsi,
-    /// Mean period `Σ(C²/f)/ΣC²`, 0.25 to 20 Hz (s) (Rathje et al. 1998).
+    /// Mean period `Σ(C²/f)/ΣC²` over 0.25 to 20 Hz (s), with Fourier amplitudes `C` (Rathje et al.
+    /// 1998).
     MeanPeriod,
     /// Fajfar index `PGV · D5-95^0.25` (m/s^0.75) (Fajfar et al. 1990).
     Fajfar,
@@ -68,21 +72,21 @@ pub enum IntensityMeasure {
         /// Damping ratio.
         damping: f64,
     },
-    /// Filtered incremental velocity at a period (m/s): the sum of the three largest increments of
-    /// velocity over 0.7 periods (Dávalos and Miranda 2019).
+    /// Filtered incremental velocity (m/s): the sum of the three largest increments of velocity
+    /// over 0.7 times a period (Dávalos and Miranda 2019).
     Fiv3 {
         /// Period (s).
         period: f64,
     },
 }
 
-/// Dependence of a measure on the scale factor.
+/// Dependence of a measure on the scale factor of the motion.
 enum Growth {
     /// Proportional to the given power of the factor.
     Power(f64),
-    /// Increasing, by no simple law.
+    /// Increasing with the factor, but not as a power of it.
     Monotone,
-    /// Constant, or in steps, with the reason.
+    /// Constant, or increasing in steps; holds the reason.
     None(&'static str),
 }
 
@@ -117,11 +121,13 @@ impl IntensityMeasure {
         }
     }
 
-    /// Returns the factor on a motion that brings this measure to `target` (SI units); `value` returns the
-    /// measure of the motion times a factor, `name` is that of the motion.
+    /// Returns the scale factor that brings this measure to `target` (SI units).
+    ///
+    /// `value` returns the measure of the motion multiplied by a factor; `name` is the name of the
+    /// motion in errors.
     ///
     /// # Errors
-    /// If the measure does not grow with the motion, or is zero.
+    /// If the measure does not grow with the amplitude, or is zero.
     pub fn factor(
         self,
         target: f64,
@@ -154,7 +160,7 @@ impl IntensityMeasure {
     /// Checks the parameters of the measure.
     ///
     /// # Errors
-    /// Names the parameter that is out of range.
+    /// Names the first parameter that is out of range.
     pub fn check(&self) -> Result<(), MotionError> {
         match *self {
             Self::SignificantDuration { from, to } => {
@@ -183,7 +189,7 @@ impl IntensityMeasure {
         }
     }
 
-    /// Returns the measure of a sampled motion.
+    /// Returns the value of the measure for a sampled motion.
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -214,8 +220,10 @@ impl IntensityMeasure {
         })
     }
 
-    /// Returns the measure of any history; one that is not sampled is sampled at its natural step, except
-    /// for PGA, PGV and PGD, which are found by search.
+    /// Returns the value of the measure for any history.
+    ///
+    /// A history that is not sampled is first sampled at its natural step; its PGA, PGV and PGD are
+    /// found by search instead.
     ///
     /// # Errors
     /// If a parameter of the measure is out of range.
@@ -231,7 +239,8 @@ impl IntensityMeasure {
     }
 }
 
-/// Finds the factor at which a growing measure reaches `target`, by bisection; `None` if no factor does.
+/// Finds the factor at which a growing measure reaches `target`, by bisection. Returns `None` if no
+/// factor does.
 fn bracketed(
     target: f64,
     value: impl Fn(f64) -> Result<f64, MotionError>,
@@ -262,7 +271,7 @@ pub fn arias(time_step: f64, acceleration: &[f64]) -> f64 {
     PI / (2.0 * STANDARD_GRAVITY) * math::trapezoid(acceleration.iter().map(|a| a * a), time_step)
 }
 
-/// Returns the normalized build-up of the Arias intensity at the samples (Husid plot), from 0 to 1.
+/// Returns the normalized growth of the Arias intensity at the samples (Husid plot), from 0 to 1.
 pub fn husid(acceleration: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut build_up = Vec::with_capacity(acceleration.len());
@@ -317,7 +326,8 @@ fn bracketed_duration(time_step: f64, acceleration: &[f64], threshold: f64) -> f
     else {
         return 0.0;
     };
-    // The crossing inside a step, from the sample below the threshold toward the one above.
+    // The crossing lies inside a step; interpolate from the sample below the threshold to the
+    // sample above.
     let part = |below: f64, above: f64| (threshold - below.abs()) / (above.abs() - below.abs());
     let start = if first == 0 {
         0.0
@@ -389,7 +399,7 @@ impl fmt::Display for IntensityMeasure {
     }
 }
 
-/// Converts a fraction to percent without rounding noise.
+/// Converts a fraction to a percentage without rounding noise.
 fn percent(fraction: f64) -> f64 {
     (fraction * 1e8).round() / 1e6
 }

@@ -1,24 +1,27 @@
-//! A motion at several steps, and oscillators that each run at the coarsest sufficient step.
+//! Fast approximate response spectra: each oscillator runs at the coarsest sufficient time step.
 //!
-//! For searches, which evaluate spectra thousands of times; their results are checked by the exact recursion of
-//! [`crate::response`]. Peaks differ from it by at most 0.6 % for 20 steps per period, and by 0.3 % for 40.
+//! Searches evaluate spectra thousands of times; their results are checked by the exact recursion
+//! of [`crate::response`]. Peaks differ from the exact ones by at most 0.6 % with 20 steps per
+//! period and by 0.3 % with 40.
 
 use crate::math::{self, TAU};
 use crate::response::{TOGETHER, larger};
 
-/// Smallest number of steps per period at a step coarser than that of the motion.
+/// Smallest number of steps per period when a layer coarser than the motion is used.
 const LAYER_STEPS: f64 = 40.0;
 
-/// A piecewise-linear acceleration, averaged around the samples of successively coarser steps.
+/// A piecewise-linear acceleration at successively coarser time steps.
 pub struct Layers {
     time_step: f64,
-    /// At 1, 2, 4, … steps, means weighted by a triangle of two such steps: the load of oscillators whose
-    /// impulse response is linear between the samples.
+    /// Accelerations at steps of 1, 2, 4, … samples. Each is a mean weighted by a triangle two such
+    /// steps wide, which is the exact load of oscillators whose impulse response is linear between
+    /// the samples.
     layers: Vec<Vec<f64>>,
 }
 
 impl Layers {
-    /// Creates the layers of accelerations (m/s²) of step `time_step` (s) for periods up to `longest` (s).
+    /// Creates the layers of accelerations (m/s²) with step `time_step` (s), for oscillators of
+    /// periods up to `longest` (s).
     pub fn new(time_step: f64, acceleration: &[f64], longest: f64) -> Self {
         let mut layers = vec![averaged(acceleration, 1, [4.0 / 6.0, 1.0 / 6.0])];
         let mut step = 2.0 * time_step;
@@ -30,8 +33,10 @@ impl Layers {
         Self { time_step, layers }
     }
 
-    /// Runs oscillators of up to [`TOGETHER`] ascending periods (s) through the motion; `see` is called with the
-    /// index of the motion's sample and the pseudo-accelerations (m/s²) there, sample by sample.
+    /// Computes the response of up to [`TOGETHER`] oscillators with ascending periods (s).
+    ///
+    /// `see` is called once per step, with the index of the motion's sample and the
+    /// pseudo-accelerations (m/s²).
     #[inline]
     pub fn follow(
         &self,
@@ -50,7 +55,8 @@ impl Layers {
             let (w, q) = (TAU / period, (1.0 - damping * damping).sqrt());
             let (s, c) = math::sin_cos(w * q * step);
             let decay = math::exp(-damping * w * step);
-            // Attenuation of a sine at the oscillator's frequency by linear interpolation.
+            // Compensates the attenuation of a sine at the oscillator's frequency by linear
+            // interpolation.
             let half = 0.5 * w * step;
             let taken = math::powi(math::sin(half) / half, 2);
             [2.0 * decay * c, decay * decay, -step * decay * s * w / q / taken]
@@ -82,7 +88,8 @@ impl Layers {
     }
 }
 
-/// Averages every `stride`th sample with its two neighbors, by their weights.
+/// Returns the weighted mean of every `stride`th value and its two neighbors; the weights are
+/// `[own, beside]`.
 fn averaged(values: &[f64], stride: usize, [own, beside]: [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let one = |k: usize| {

@@ -1,15 +1,14 @@
-//! Time series of ground motion: samples and their exact integrals, analytic pulses, response spectra,
-//! intensity measures, target spectra, and the transforms behind them.
+//! Time series of ground motion.
 //!
-//! Numbers are SI: files, stations and components belong to `barrelstack-motion`, which
-//! re-exports the public parts of this crate.
+//! The crate contains samples and their exact integrals, analytic pulses, response spectra,
+//! intensity measures, target spectra, and the transforms they need. All numbers are SI. Files,
+//! stations and components belong to `barrelstack-motion`, which re-exports the public parts of
+//! this crate.
 
-// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so the system's transcendental functions are not
+// used (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
-#![allow(
-    clippy::neg_cmp_op_on_partial_ord,
-    reason = "`!(x > 0.0)` refuses NaN with everything else that is not above zero"
-)]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` also rejects NaN")]
 
 mod error;
 mod fiv3;

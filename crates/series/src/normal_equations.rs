@@ -1,9 +1,9 @@
-//! Least squares with a ridge.
+//! Regularized least squares by normal equations.
 
-/// Ridge relative to the largest diagonal entry, which regularizes correlated unknowns.
+/// Ridge as a fraction of the largest diagonal entry; it regularizes correlated unknowns.
 const RIDGE: f64 = 1e-4;
 
-/// Normal equations `(CᵀC + λI) b = Cᵀ r` of many conditions on few wavelets, solved by Cholesky factorization.
+/// Normal equations `(CᵀC + λI) b = Cᵀ r`, solved by Cholesky factorization.
 pub struct System {
     size: usize,
     normal: Vec<f64>,
@@ -11,12 +11,12 @@ pub struct System {
 }
 
 impl System {
-    /// Creates a system without rows for `size` unknowns.
+    /// Creates a system for `size` unknowns, without conditions.
     pub fn new(size: usize) -> Self {
         Self { size, normal: vec![0.0; size * size], right: vec![0.0; size] }
     }
 
-    /// Adds one condition: its row and its right-hand side.
+    /// Adds one condition, a row of `C` and its right-hand side.
     pub fn add(&mut self, row: &[f64], value: f64) {
         for j in 0..self.size {
             self.right[j] += row[j] * value;
@@ -27,7 +27,7 @@ impl System {
         }
     }
 
-    /// Solves for the unknowns.
+    /// Solves the system and returns the unknowns.
     pub fn solve(mut self) -> Vec<f64> {
         let n = self.size;
         let m = &mut self.normal;

@@ -1,39 +1,41 @@
-//! Analytic pulses whose displacement, velocity and acceleration are closed forms.
+//! Analytic pulses with closed forms for displacement, velocity and acceleration.
 
 use crate::error::MotionError;
 use crate::math::{self, PI, TAU};
 use crate::sampled::Kinematics;
 
-/// A motion given by a formula, from rest at zero displacement at t = 0.
+/// A motion given by a formula, starting at t = 0 from zero displacement.
 ///
-/// Every pulse ends at [`Pulse::duration`]; afterwards the acceleration is zero, the velocity is
-/// constant and the displacement grows linearly; only after a sine the ground stands still.
-/// With `T` the period, `w = 2π/T` and `s` the time from the middle of the pulse:
+/// Every pulse ends at [`Pulse::duration`]. Afterwards the acceleration is zero, the velocity keeps
+/// its final value and the displacement grows linearly. A [`Pulse::Sine`] is the exception: its
+/// velocity is zero after the end. In the formulas, `T` is the period, `w = 2π/T`, and `s` is the
+/// time from the middle of the pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pulse {
-    /// Harmonic displacement `d = A sin(w t)`, `cycles` periods long, with a half-cosine ramp over
+    /// Harmonic displacement `d = A sin(w t)` over `cycles` periods, with half-cosine ramps over
     /// the first and the last `ramp_cycles` periods.
     ///
-    /// Without a ramp the velocity jumps from 0 to `A w` at t = 0, an impact rather than a shake,
-    /// and back to 0 at the end: the ground keeps its last displacement.
+    /// Without ramps, the velocity jumps from 0 to `A w` at t = 0, like an impact, and back to 0 at
+    /// the end, where the ground keeps its last displacement.
     Sine {
         /// Displacement amplitude `A` (m).
         amplitude: f64,
         /// Period `T` (s).
         period: f64,
-        /// Length in periods, ramps included.
+        /// Length in periods, including the ramps.
         cycles: f64,
         /// Length of each ramp in periods; 0 for none.
         ramp_cycles: f64,
     },
-    /// Acceleration `a = A sin(π t / duration)`: a push that ends with velocity `2 A duration/π`.
+    /// Acceleration `a = A sin(π t / duration)`; ends with the velocity `2 A duration/π`.
     HalfSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
-        /// Length of the half wave (s).
+        /// Length of the half-wave (s).
         duration: f64,
     },
-    /// Acceleration `a = A sin(w t)` over one period; ends at rest, displaced by `A T²/(2π)`.
+    /// Acceleration `a = A sin(w t)` over one period; ends at rest with a displacement of
+    /// `A T²/(2π)`.
     OneSine {
         /// Acceleration amplitude `A` (m/s²).
         acceleration: f64,
@@ -47,52 +49,56 @@ pub enum Pulse {
         /// Period `T` (s).
         period: f64,
     },
-    /// Constant acceleration; ends with velocity `A duration`.
+    /// Constant acceleration; ends with the velocity `A duration`.
     Rectangular {
         /// Acceleration `A` (m/s²).
         acceleration: f64,
-        /// Length (s).
+        /// Length of the pulse (s).
         duration: f64,
     },
-    /// Ricker wavelet `a = A (1 - 2u) exp(-u)`, `u = (π s/T)²`, middle at `2 T`, length `4 T`.
+    /// Ricker wavelet `a = A (1 - 2u) exp(-u)` with `u = (π s/T)²`, middle at `2 T` and length
+    /// `4 T`.
     ///
-    /// Velocity and displacement return to zero, which makes it the safest test pulse.
+    /// Velocity and displacement return to zero, which makes this the safest pulse for tests.
     Ricker {
         /// Peak acceleration `A` (m/s²).
         acceleration: f64,
-        /// Period `T` (s) of the spectral peak.
+        /// Period `T` of the spectral peak (s).
         period: f64,
     },
-    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)`, middle at `2 γ T`, length `4 γ T`.
+    /// Gabor wavelet `v = V exp(-(π s/(γ T))²) cos(w s + ν)` with middle at `2 γ T` and length
+    /// `4 γ T`.
     Gabor {
         /// Velocity amplitude `V` (m/s).
         velocity: f64,
         /// Period `T` (s).
         period: f64,
-        /// Width `γ`; the number of cycles grows with it; at most 12.
+        /// Width `γ`, at most 12; the number of cycles grows with the width.
         gamma: f64,
         /// Phase `ν` (rad).
         phase: f64,
     },
-    /// Cycloidal type A, a forward step: `v = V/2 (1 - cos w t)` over one period, ends displaced by
-    /// `V T/2` (Jacobsen and Ayre 1958; Makris 1997).
+    /// Cycloidal pulse of type A, a forward step: `v = V/2 (1 - cos w t)` over one period. Ends
+    /// displaced by `V T/2` (Jacobsen and Ayre 1958; Makris 1997).
     CycloidA {
         /// Peak velocity `V` (m/s).
         velocity: f64,
         /// Period `T` (s).
         period: f64,
     },
-    /// Cycloidal type B, forth and back: `v = V sin(w t)` over one period, ends at zero.
+    /// Cycloidal pulse of type B, forward and back: `v = V sin(w t)` over one period; ends at zero
+    /// displacement.
     CycloidB {
         /// Peak velocity `V` (m/s).
         velocity: f64,
         /// Period `T` (s).
         period: f64,
     },
-    /// Cycloidal type C with `cycles` main cycles in displacement:
+    /// Cycloidal pulse of type C with `cycles` main cycles in displacement:
     /// `v = V sin(w t + φ) - V sin φ` up to `(n + 1/2 - φ/π) T` (Makris and Chang 2000).
     ///
-    /// `φ` is the root that returns the displacement to zero; the peak velocity is `V (1 + sin φ)`.
+    /// The phase `φ` is chosen so that the displacement returns to zero; the peak velocity is
+    /// `V (1 + sin φ)`.
     CycloidC {
         /// Velocity amplitude `V` (m/s).
         velocity: f64,
@@ -116,7 +122,7 @@ pub enum Pulse {
     },
 }
 
-/// The kind of amplitude of a pulse, which determines its scaling with length.
+/// Kind of amplitude of a pulse, which determines how it scales with length.
 #[derive(Clone, Copy)]
 enum Amplitude {
     Displacement,
@@ -158,12 +164,12 @@ impl Pulse {
         }
     }
 
-    /// Returns the shortest time over which the pulse changes appreciably (s): its period or length.
+    /// Returns the time over which the pulse changes appreciably (s): its period or its length.
     pub fn time_scale(&self) -> f64 {
         *self.clone().time_scale_mut()
     }
 
-    /// Returns the motion at time `t` (s).
+    /// Returns the displacement, velocity and acceleration at time `t` (s).
     pub fn at(&self, t: f64) -> Kinematics {
         if !(t >= 0.0) {
             return Kinematics::default();
@@ -243,13 +249,13 @@ impl Pulse {
         }
     }
 
-    /// Returns the pulse times `factor`.
+    /// Returns the pulse with its amplitude multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// Returns the pulse with time times `time` and acceleration times `factor`.
+    /// Returns the pulse with all times multiplied by `time` and all accelerations by `factor`.
     #[must_use]
     pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let mut pulse = *self;
@@ -279,7 +285,7 @@ impl Pulse {
         }
     }
 
-    /// Checks every parameter.
+    /// Checks that every parameter is in range.
     ///
     /// # Errors
     /// Names the first parameter that is out of range.
@@ -319,7 +325,7 @@ impl Pulse {
     }
 }
 
-/// Evaluates `a = A sin(2π t/T)` from rest.
+/// Evaluates the acceleration `a = A sin(2π t/T)`, starting from rest.
 fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);
@@ -330,7 +336,8 @@ fn one_sine(amplitude: f64, period: f64, t: f64) -> Kinematics {
     }
 }
 
-/// Evaluates `d = A r(t) sin(w t)` with `r` a half cosine up over `ramp` and down over the last `ramp`.
+/// Evaluates `d = A r(t) sin(w t)`, with a factor `r` that rises along a half cosine over the first
+/// `ramp` seconds and falls over the last.
 fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) -> Kinematics {
     let w = TAU / period;
     let (s, c) = math::sin_cos(w * t);
@@ -348,7 +355,8 @@ fn ramped_sine(amplitude: f64, period: f64, duration: f64, ramp: f64, t: f64) ->
     }
 }
 
-/// Evaluates `(1 - cos(π x/length))/2` with its first and second time derivative; `x` changes in `direction`.
+/// Evaluates `(1 - cos(π x/length))/2` with its first and second time derivative, where `dx/dt` is
+/// `direction`.
 fn half_cosine(x: f64, length: f64, direction: f64) -> (f64, f64, f64) {
     let w = PI / length;
     let (s, c) = math::sin_cos(w * x);
@@ -360,7 +368,8 @@ fn half_cosine(x: f64, length: f64, direction: f64) -> (f64, f64, f64) {
 pub fn cycloid_c_phase(cycles: u32) -> f64 {
     let turn = (2.0 * f64::from(cycles) + 1.0) * PI;
     let mut phase = 2.0 / turn;
-    // Newton from the small-angle root; the error squares each time and starts below 0.02.
+    // Newton's method from the small-angle root. The initial error is below 0.02 and is squared in
+    // each iteration.
     for _ in 0..6 {
         let tangent = math::tan(phase);
         let value = (turn - 2.0 * phase) * tangent - 2.0;
@@ -398,7 +407,8 @@ fn mavroeidis_papageorgiou(
     }
 }
 
-/// With `b = π/(γT)`: `∫ exp(-b²s²) cos(ws + ν) ds = Re[e^{iν} e^{-γ²} √π/(2b) erf(bs - iγ)]`.
+/// Evaluates a Gabor wavelet. With `b = π/(γT)`:
+/// `∫ exp(-b²s²) cos(ws + ν) ds = Re[e^{iν} e^{-γ²} √π/(2b) erf(bs - iγ)]`.
 fn gabor(velocity: f64, period: f64, gamma: f64, phase: f64, t: f64) -> Kinematics {
     let b = PI / (gamma * period);
     let w = TAU / period;
@@ -418,13 +428,13 @@ fn gabor(velocity: f64, period: f64, gamma: f64, phase: f64, t: f64) -> Kinemati
     }
 }
 
-/// Returns real and imaginary part of `exp(-y²) erf(x - i y)` for `y > 0`
-/// (Abramowitz and Stegun 1964, 7.1.29; odd in x for the real part).
+/// Returns the real and the imaginary part of `exp(-y²) erf(x - i y)` for `y > 0`. The real part is
+/// odd in `x` (Abramowitz and Stegun 1964, 7.1.29).
 fn damped_erf(x: f64, y: f64) -> (f64, f64) {
     let damping = math::exp(-y * y);
     let gauss = math::exp(-x * x);
     let (s, c) = math::sin_cos(2.0 * x * y);
-    // (1 - cos 2xy)/(2πx) and sin(2xy)/(2πx) keep their digits in the limit x = 0.
+    // These forms of (1 - cos 2xy)/(2πx) and sin(2xy)/(2πx) stay accurate as x approaches 0.
     let (first_real, first_imaginary) = if x == 0.0 {
         (0.0, y / PI)
     } else {
@@ -435,7 +445,7 @@ fn damped_erf(x: f64, y: f64) -> (f64, f64) {
     let mut imaginary = damping * gauss * first_imaginary;
     let mut n = 1.0;
     while n <= 2.0 * y + 14.0 {
-        // exp(-n²/4 - y²) cosh(n y), kept finite by adding the exponents first.
+        // Evaluates exp(-n²/4 - y²) cosh(n y); adding the exponents first avoids overflow.
         let up = math::exp(-(0.5 * n - y) * (0.5 * n - y));
         let down = math::exp(-(0.5 * n + y) * (0.5 * n + y));
         let flat = math::exp(-0.25 * n * n) * damping;

@@ -1,4 +1,5 @@
-//! The dominant velocity pulse of a motion: its period, amplitude, position and share of the energy.
+//! Fits the dominant velocity pulse of a motion: period, amplitude, position and share of the
+//! energy.
 
 use crate::error::MotionError;
 use crate::fourier::{Complex, correlate, forward_real};
@@ -7,14 +8,15 @@ use crate::math::{self, TAU};
 use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 
-/// A velocity pulse of Mavroeidis and Papageorgiou fitted to a motion.
+/// A velocity pulse of Mavroeidis and Papageorgiou, fitted to a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulseFit {
-    /// The pulse; its displacement starts from zero at [`PulseFit::start`].
+    /// The pulse; its time 0 is at [`PulseFit::start`] of the record.
     pub pulse: Pulse,
     /// Prevailing period (s).
     pub period: f64,
-    /// Velocity amplitude `A` of the formula (m/s); above the peak if the phase is not zero.
+    /// Velocity amplitude `A` of the formula (m/s). It exceeds the peak velocity if the phase is
+    /// not zero.
     pub amplitude: f64,
     /// Largest velocity of the pulse (m/s).
     pub peak_velocity: f64,
@@ -22,23 +24,24 @@ pub struct PulseFit {
     pub start: f64,
     /// Share of the squared velocity that the pulse explains, 0 to 1.
     ///
-    /// Pulse-like near-fault records lie above about one half.
+    /// For pulse-like near-fault records, the share is above about one half.
     pub energy_share: f64,
 }
 
-/// Widths `γ` tried; below 1 the pulse has no zero crossing, above 3 it is a wave train.
+/// Trial values of the width `γ`. Below 1 the pulse has no zero crossing; above 3 it is a wave
+/// train.
 const WIDTHS: [f64; 5] = [1.05, 1.5, 2.0, 2.5, 3.0];
-/// Number of periods tried per factor of e.
+/// Number of trial periods per factor of e.
 const PER_E_FOLD: f64 = 14.0;
 
-/// Finds the pulse that explains most of the squared velocity, with period from `shortest` to
+/// Finds the pulse that explains most of the squared velocity, with a period from `shortest` to
 /// `longest` (s).
 ///
-/// Every shift, period and width is tried by correlation with the two quadratures of the pulse; the
-/// best is refined by coordinate search.
+/// Every shift, period and width is tried by correlation with the sine and cosine forms of the
+/// pulse. The best trial is refined by coordinate search.
 ///
 /// # Errors
-/// If the range is empty or shorter than eight steps, or the motion does not move.
+/// If the range is empty, the shortest period is below eight steps, or the motion does not move.
 pub fn dominant_pulse(
     motion: &Sampled,
     shortest: f64,
@@ -51,7 +54,7 @@ pub fn dominant_pulse(
     let least = 8.0 * motion.time_step();
     let expected = format!("at least eight steps, {least} s");
     MotionError::require(shortest >= least, "shortest pulse period (s)", expected, shortest)?;
-    // The correlation needs no finer step than a sixteenth of the shortest period.
+    // For the correlation, a step of a sixteenth of the shortest period is fine enough.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1")]
     let every = (shortest / 16.0 / motion.time_step()).floor().max(1.0) as usize;
     let dt = motion.time_step() * every as f64;
@@ -101,7 +104,7 @@ struct Trial {
     explained: f64,
 }
 
-/// Returns the two quadratures of the pulse at `s` from its middle.
+/// Returns the cosine and the sine form of the pulse at time `s` from its middle.
 fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     if s.abs() > 0.5 * gamma * period {
         return (0.0, 0.0);
@@ -112,7 +115,7 @@ fn quadratures(period: f64, gamma: f64, s: f64) -> (f64, f64) {
     (window * cos, window * sin)
 }
 
-/// Finds the shift that explains most, by correlation with both quadratures at once.
+/// Finds the shift that explains most of the motion, by correlation with both forms at once.
 fn best_shift(
     spectrum: &[Complex],
     dt: f64,
@@ -152,7 +155,8 @@ struct Projection {
     explained: f64,
 }
 
-/// Computes the least-squares amplitudes of the two quadratures, sampled at the velocity's own times.
+/// Computes the least-squares amplitudes of the cosine and sine forms, evaluated at the times of
+/// the samples.
 fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
     let Trial { period, gamma, center, .. } = *trial;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
@@ -179,7 +183,7 @@ fn project(velocity: &[f64], dt: f64, trial: &Trial) -> Projection {
     Projection { even, odd, explained: even * ve + odd * vo }
 }
 
-/// Refines period, width and middle by coordinate search with shrinking steps.
+/// Refines period, width and middle by coordinate search with decreasing steps.
 fn refine(velocity: &[f64], dt: f64, start: Trial, shortest: f64, longest: f64) -> Trial {
     let mut best = start;
     best.explained = project(velocity, dt, &best).explained;

@@ -1,15 +1,15 @@
-//! A seeded generator whose numbers are the same on every machine and in every version.
+//! A seeded random generator with the same numbers on every machine and in every version.
 //!
-//! xoshiro256++ (Blackman and Vigna 2021) seeded by splitmix64, from the crate `rand_xoshiro`, which
-//! guarantees its values; normal deviates by Box and Muller with this crate's logarithm,
-//! sine and cosine.
+//! The generator is xoshiro256++ (Blackman and Vigna 2021), seeded by splitmix64, from the crate
+//! `rand_xoshiro`, which guarantees its values. Normal deviates use the Box-Muller method with this
+//! crate's logarithm, sine and cosine.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::math::{self, TAU};
 
-/// The generator of all synthetic motions.
+/// Random generator of all synthetic motions.
 ///
 /// ```
 /// use barrelstack_series::random::Random;
@@ -33,12 +33,12 @@ impl Random {
         self.bits.next_u64()
     }
 
-    /// Returns a number from 0 to below 1, with 53 random bits.
+    /// Returns a uniform random number from 0 to below 1, with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / 9_007_199_254_740_992.0
     }
 
-    /// Returns a normal deviate of mean 0 and variance 1.
+    /// Returns a normal random number with mean 0 and variance 1.
     pub fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;

@@ -1,9 +1,9 @@
-//! Response of a linear oscillator to a piecewise-linear acceleration, by the exact recursion.
+//! Response of linear oscillators to a piecewise-linear acceleration, by an exact recursion.
 
 use crate::error::MotionError;
 use crate::math::{self, TAU};
 
-/// Peak response of one damped oscillator, at the samples and within the record.
+/// Peak response of one damped oscillator, at the samples of the record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResponsePeaks {
     /// Largest relative displacement `Sd` (m).
@@ -14,12 +14,12 @@ pub struct ResponsePeaks {
     pub acceleration: f64,
     /// Pseudo-velocity `PSV = w Sd` (m/s).
     pub pseudo_velocity: f64,
-    /// Pseudo-acceleration `PSA = w² Sd` (m/s²); the PGA at period 0.
+    /// Pseudo-acceleration `PSA = w² Sd` (m/s²); equals PGA at period 0.
     pub pseudo_acceleration: f64,
 }
 
-/// Coefficients that advance `(u, u̇)` by one step, exactly for a load that is linear within it
-/// (Nigam and Jennings 1969, BSSA 59:909-922).
+/// Coefficients that advance `(u, u̇)` by one time step; exact for a load that is linear within the
+/// step (Nigam and Jennings 1969, BSSA 59:909-922).
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     displacement: [f64; 4],
@@ -29,13 +29,13 @@ pub struct Step {
 }
 
 impl Step {
-    /// Creates the step of an oscillator of a period (s) and a damping ratio.
+    /// Creates the coefficients for an oscillator of the given period (s) and damping ratio.
     pub fn new(period: f64, damping: f64, time_step: f64) -> Self {
         let w = TAU / period;
         let q = (1.0 - damping * damping).sqrt();
         let decay = math::exp(-damping * w * time_step);
         let (s, c) = math::sin_cos(w * q * time_step);
-        // Impulse response h at the end of the step, its integral and its double integral.
+        // Impulse response h at the end of the step, its integral, and its double integral.
         let impulse = decay * s / (w * q);
         let (mut once, mut twice) = (0.0, 0.0);
         let x = w * time_step;
@@ -43,8 +43,8 @@ impl Step {
             once = (1.0 - decay * (c + damping / q * s)) / (w * w);
             twice = (time_step - impulse - 2.0 * damping * w * once) / (w * w);
         } else {
-            // The closed forms lose digits for short steps, the series does not: `here` is the term of
-            // order k of h, that is c_k dt^k.
+            // For short steps, the closed forms lose digits but the power series does not. `here`
+            // is the term of order k of h, which is c_k dt^k.
             let (mut before, mut here) = (0.0, time_step);
             for k in 1..24 {
                 let order = f64::from(k);
@@ -69,7 +69,8 @@ impl Step {
         }
     }
 
-    /// Returns relative displacement and velocity one step later; `load` is minus the ground acceleration.
+    /// Returns the relative displacement and velocity one step later. `load` is the negative ground
+    /// acceleration.
     #[inline]
     pub fn advance(&self, u: f64, v: f64, load: f64, next_load: f64) -> (f64, f64) {
         let d = &self.displacement;
@@ -87,10 +88,10 @@ impl Step {
     }
 }
 
-/// Checks a period (s, zero allowed) and a damping ratio (0 up to but not including 1).
+/// Checks a period (s, zero allowed) and a damping ratio (0 to below 1).
 ///
 /// # Errors
-/// If one of them is out of its range.
+/// If the period or the damping ratio is out of range.
 pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     let real = period >= 0.0 && period.is_finite();
     MotionError::require(real, "oscillator period (s)", "0 or above", period)?;
@@ -98,10 +99,10 @@ pub fn check_oscillator(period: f64, damping: f64) -> Result<(), MotionError> {
     MotionError::require(swings, "damping ratio", "0 to below 1 (5 % is 0.05)", damping)
 }
 
-/// Computes the peak response of one oscillator to accelerations (m/s²) of step `time_step` (s).
+/// Computes the peak response of one oscillator to accelerations (m/s²) with step `time_step` (s).
 ///
-/// Peaks are taken at the samples, and the free vibration after the record does not count.
-/// Below ten steps per period, peaks fall between samples.
+/// Peaks are taken at the samples; free vibration after the record is ignored. With fewer than ten
+/// steps per period, peaks between the samples are missed.
 ///
 /// # Errors
 /// If the period is negative or the damping ratio is not in `0..1`.
@@ -140,22 +141,23 @@ pub fn response(
     })
 }
 
-/// Number of oscillators that advance in parallel, which hides the latency of each recursion.
+/// Number of oscillators that advance in parallel, to hide the latency of the recursion.
 pub const TOGETHER: usize = 8;
 
-/// Oscillators of several periods in lockstep; each is bit-identical to one alone.
+/// Oscillators of several periods that advance together; each result is bit-identical to that of a
+/// single oscillator.
 pub struct Bank {
-    /// Coefficient by coefficient, as in [`Step`] for one oscillator.
+    /// Coefficients as in [`Step`], each for all oscillators.
     displacement: [[f64; TOGETHER]; 4],
     velocity: [[f64; TOGETHER]; 4],
-    /// Relative displacements.
+    /// Relative displacement of each oscillator.
     pub u: [f64; TOGETHER],
-    /// Relative velocities.
+    /// Relative velocity of each oscillator.
     pub v: [f64; TOGETHER],
 }
 
 impl Bank {
-    /// Creates oscillators at rest; for fewer than [`TOGETHER`], the last is repeated.
+    /// Creates oscillators at rest. If there are fewer than [`TOGETHER`], the last one is repeated.
     pub fn new(steps: &[Step]) -> Self {
         let lane = |k: usize| &steps[k.min(steps.len() - 1)];
         let of = |take: fn(&Step) -> &[f64; 4]| {
@@ -169,7 +171,7 @@ impl Bank {
         }
     }
 
-    /// Advances all oscillators as [`Step::advance`].
+    /// Advances all oscillators by one step, like [`Step::advance`].
     #[inline]
     pub fn advance(&mut self, load: f64, next: f64) {
         let (d, r) = (&self.displacement, &self.velocity);
@@ -181,13 +183,15 @@ impl Bank {
     }
 }
 
-/// Returns the larger magnitude; simple enough to be vectorized over several oscillators.
+/// Returns the larger of a peak and the magnitude of a value. The function is simple enough to be
+/// vectorized.
 #[inline]
 pub fn larger(peak: f64, value: f64) -> f64 {
     if value.abs() > peak { value.abs() } else { peak }
 }
 
-/// Returns the pseudo-accelerations (m/s²) at periods above zero, bit-identical to those of [`response`].
+/// Returns the pseudo-accelerations (m/s²) at periods above zero; bit-identical to those of
+/// [`response`].
 pub fn pseudo_accelerations(
     time_step: f64,
     acceleration: &[f64],
@@ -211,22 +215,22 @@ pub fn pseudo_accelerations(
     out
 }
 
-/// Response peaks over a list of periods.
+/// Peak responses over a list of periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseSpectrum {
     /// Damping ratio.
     pub damping: f64,
     /// Periods (s) in the order given.
     pub periods: Vec<f64>,
-    /// Peaks at each period.
+    /// Peak response at each period.
     pub peaks: Vec<ResponsePeaks>,
 }
 
 impl ResponseSpectrum {
-    /// Computes the spectrum of accelerations (m/s²) of step `time_step` (s).
+    /// Computes the response spectrum of accelerations (m/s²) with step `time_step` (s).
     ///
     /// # Errors
-    /// As [`response`].
+    /// The same as for [`response`].
     pub fn new(
         time_step: f64,
         acceleration: &[f64],
@@ -240,13 +244,14 @@ impl ResponseSpectrum {
         Ok(Self { damping, periods: periods.to_vec(), peaks })
     }
 
-    /// Returns the pseudo-accelerations (m/s²).
+    /// Returns the pseudo-accelerations (m/s²), one per period.
     pub fn pseudo_acceleration(&self) -> Vec<f64> {
         self.peaks.iter().map(|peaks| peaks.pseudo_acceleration).collect()
     }
 }
 
-/// Returns periods from 0.01 s to 10 s, `per_decade` per decade, equally spaced in the logarithm.
+/// Returns periods from 0.01 s to 10 s, logarithmically spaced, with `per_decade` periods per
+/// decade.
 pub fn standard_periods(per_decade: usize) -> Vec<f64> {
     math::log_space(0.01, 10.0, 3 * per_decade.max(1))
 }

@@ -1,9 +1,9 @@
-//! A sampled acceleration with the corresponding velocity and displacement at any time.
+//! A sampled acceleration with its exact velocity and displacement at any time.
 
 use crate::error::MotionError;
 use crate::math;
 
-/// Displacement (m), velocity (m/s) and acceleration (m/s²) of one component at one time.
+/// Displacement, velocity and acceleration of one component at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Kinematics {
     /// Displacement (m).
@@ -15,7 +15,7 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Returns the state `elapsed` seconds later without acceleration: constant velocity, linear displacement.
+    /// Returns the state `elapsed` seconds later if there is no acceleration.
     #[must_use]
     pub fn coast(self, elapsed: f64) -> Self {
         Self {
@@ -26,17 +26,17 @@ impl Kinematics {
     }
 }
 
-/// Equally spaced accelerations, linear between samples, with their exact integrals:
+/// Equally spaced accelerations, linear between the samples, with their exact integrals:
 ///
 /// ```text
 /// v[k+1] = v[k] + dt/2 (a[k] + a[k+1])
 /// d[k+1] = d[k] + dt v[k] + dt² (a[k]/3 + a[k+1]/6)
 /// ```
 ///
-/// Within a step velocity is quadratic and displacement cubic, so the three are derivatives of one
-/// another at every time, not only at the samples.
-/// Before t = 0 all three are zero; after the last sample the acceleration is zero, the velocity is
-/// constant and the displacement grows linearly.
+/// Within a step, the velocity is quadratic and the displacement cubic. Velocity and acceleration
+/// are therefore the exact derivatives of the displacement at every time. Before t = 0, all three
+/// are zero. After the last sample, the acceleration is zero, the velocity is constant and the
+/// displacement grows linearly.
 ///
 /// ```
 /// use barrelstack_series::sampled::Sampled;
@@ -55,20 +55,21 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Integrates `acceleration` (m/s²) of step `time_step` (s) from rest at zero displacement.
+    /// Integrates `acceleration` (m/s²) with step `time_step` (s), starting from rest at zero
+    /// displacement.
     ///
     /// # Errors
-    /// If the step is not above zero, there are fewer than two samples, or one is not finite.
+    /// If the step is not above zero, there are fewer than two samples, or a sample is not finite.
     pub fn new(time_step: f64, acceleration: Vec<f64>) -> Result<Self, MotionError> {
         Self::with_initial_velocity(time_step, acceleration, 0.0)
     }
 
-    /// Integrates like [`Sampled::new`], from an initial velocity (m/s).
+    /// Integrates like [`Sampled::new`], but from an initial velocity (m/s).
     ///
-    /// Corrected records state one; the velocity then jumps at t = 0.
+    /// Some corrected records state an initial velocity. The velocity then jumps at t = 0.
     ///
     /// # Errors
-    /// As [`Sampled::new`], or if the velocity is not finite.
+    /// The same as for [`Sampled::new`], or if the velocity is not finite.
     pub fn with_initial_velocity(
         time_step: f64,
         acceleration: Vec<f64>,
@@ -94,10 +95,10 @@ impl Sampled {
         self.time_step
     }
 
-    /// Checks that another component has the same step.
+    /// Checks that another component has the same time step.
     ///
     /// # Errors
-    /// If they differ.
+    /// If the steps differ.
     pub fn require_step(&self, other: &Self) -> Result<(), MotionError> {
         let (one, two) = (self.time_step, other.time_step);
         if (two / one - 1.0).abs() > 1e-9 {
@@ -107,7 +108,7 @@ impl Sampled {
         Ok(())
     }
 
-    /// Returns the time of the last sample (s); the first is at 0.
+    /// Returns the time of the last sample (s); the first sample is at time 0.
     pub fn duration(&self) -> f64 {
         self.time_step * (self.acceleration.len() - 1) as f64
     }
@@ -127,9 +128,9 @@ impl Sampled {
         &self.displacement
     }
 
-    /// Returns the motion at time `t` (s), in constant time.
+    /// Returns the displacement, velocity and acceleration at time `t` (s), in constant time.
     pub fn at(&self, t: f64) -> Kinematics {
-        // A NaN time fails the comparison and returns the state at rest.
+        // A NaN fails this comparison, too, and returns the state at rest.
         if !(t >= 0.0) {
             return Kinematics::default();
         }
@@ -161,12 +162,13 @@ impl Sampled {
         }
     }
 
-    /// Returns the largest absolute acceleration (m/s²); exact, because acceleration is linear between samples.
+    /// Returns the largest absolute acceleration (m/s²). It is exact, because the acceleration is
+    /// linear between samples.
     pub fn pga(&self) -> f64 {
         math::peak(&self.acceleration)
     }
 
-    /// Returns the largest absolute velocity at the samples (m/s), the value published with records.
+    /// Returns the largest absolute velocity at the samples (m/s), as published with records.
     pub fn pgv(&self) -> f64 {
         math::peak(&self.velocity)
     }
@@ -176,22 +178,22 @@ impl Sampled {
         math::peak(&self.displacement)
     }
 
-    /// Returns the largest absolute displacement by trapezoidal integration of the sampled velocities (m), like
-    /// published values and the displacement files of PEER.
+    /// Returns the largest absolute displacement (m), integrated from the sampled velocities by the
+    /// trapezoidal rule like published values and the displacement files of PEER.
     ///
-    /// The exact displacement of an acceleration linear between samples, [`Sampled::pgd`], is
-    /// different: 0.4 % larger for a record of 0.02 s with a period of 0.3 s at its peak.
+    /// The exact displacement, [`Sampled::pgd`], differs: it is 0.4 % larger for a record with a
+    /// step of 0.02 s and a period of 0.3 s at its peak.
     pub fn pgd_by_trapezoid(&self) -> f64 {
         math::peak(&running_trapezoid(self.time_step, &self.velocity))
     }
 
-    /// Returns the motion times `factor`.
+    /// Returns the motion with all amplitudes multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.stretched(1.0, factor)
     }
 
-    /// Returns the motion with time times `time` and acceleration times `factor`.
+    /// Returns the motion with all times multiplied by `time` and all accelerations by `factor`.
     #[must_use]
     pub fn stretched(&self, time: f64, factor: f64) -> Self {
         let times = |values: &[f64], f: f64| values.iter().map(|v| v * f).collect();
@@ -204,7 +206,7 @@ impl Sampled {
     }
 }
 
-/// Integrates sampled values up to every sample, by trapezoids from 0.
+/// Integrates sampled values up to every sample, by the trapezoidal rule from 0.
 pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     let mut sum = 0.0;
     let after = values.windows(2).map(|pair| {
@@ -214,7 +216,7 @@ pub fn running_trapezoid(time_step: f64, values: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(after).collect()
 }
 
-/// Integrates a piecewise-linear acceleration to velocity and displacement at the samples.
+/// Integrates a piecewise-linear acceleration to the velocity and displacement at the samples.
 pub fn integrate(
     time_step: f64,
     acceleration: &[f64],

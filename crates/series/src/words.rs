@@ -1,10 +1,11 @@
-//! Descriptions of analytic motions in sentences with units.
+//! Describes analytic motions in sentences with units.
 
 use std::fmt::{Display, Formatter, Result};
 
 use crate::pulse::Pulse;
 
-/// A number printed with at most six significant digits; the scenario or the study has all of them.
+/// A number printed with at most six significant digits. The scenario or the study file has the
+/// full precision.
 pub struct Short(pub f64);
 
 impl Display for Short {
@@ -33,7 +34,7 @@ impl Display for Pulse {
                 }
             }
             Self::HalfSine { acceleration, duration } => {
-                write!(f, "half a sine of {} m/s2 over {} s", Short(acceleration), Short(duration))
+                write!(f, "half sine of {} m/s2 over {} s", Short(acceleration), Short(duration))
             }
             Self::OneSine { acceleration, period } => {
                 of_period(f, "one sine", acceleration, "m/s2", period)

@@ -211,7 +211,7 @@ fn on_one_clock(
     horizontal: &Component,
     mut other: Record,
 ) -> Result<(Record, Record, Vec<String>), MotionError> {
-    let notes = record.unlike(&other).map(|what| format!("taken together although {what}"));
+    let notes = record.unlike(&other).map(|what| format!("combined although {what}"));
     let mut both = record.clone();
     both.channels = vec![record.component(horizontal)?];
     both.channels.extend(std::mem::take(&mut other.channels).into_iter().take(1));

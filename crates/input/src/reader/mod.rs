@@ -1,4 +1,4 @@
-//! Reads one table of a file field by field, according to its definition.
+//! Reads a table field by field, according to its definition.
 
 use std::cell::RefCell;
 
@@ -11,12 +11,12 @@ mod values;
 
 type Result<T> = std::result::Result<T, InputError>;
 
-/// Reader of one table, checked for unknown and conflicting keys.
+/// Reader of one table. Unknown and mutually exclusive keys are rejected when it is opened.
 pub struct Reader<'a> {
     sources: &'a Sources,
     section: &'static Section,
     variant: Option<&'static Variant>,
-    /// Dotted path from the root; empty at the root.
+    /// Dotted path of the table from the root; empty at the root.
     path: String,
     table: Option<&'a Table>,
     origin: Origin,
@@ -24,7 +24,8 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Opens a table, or an absent one at its position.
+    /// Opens a table for reading. If `table` is `None`, the table is absent and has only defaults;
+    /// `origin` is its place in errors.
     pub fn open(
         sources: &'a Sources,
         section: &'static Section,
@@ -95,7 +96,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Ends reading; with debug assertions, checks that every defined field has been read.
+    /// Ends reading. With debug assertions, checks that every defined field has been read.
     pub fn finish(self) {
         let read = self.read.borrow();
         for field in self.section.fields_of(self.variant) {
@@ -108,12 +109,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `true` if a field is given.
+    /// Returns `true` if a field is given.
     pub fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }
 
-    /// `true` if a field is absent and has no default value of its own.
+    /// Returns `true` if a field is absent and has no fixed default.
     pub fn leaves_out(&self, name: &'static str) -> bool {
         !self.has(name)
             && matches!(self.field(name).default, Default::Nothing | Default::Derived(_))
@@ -125,7 +126,7 @@ impl<'a> Reader<'a> {
         self.variant.map(|variant| variant.name).ok_or_else(|| self.missing(tag))
     }
 
-    /// Returns the name of the section in messages.
+    /// Returns the name of the table in messages, such as `[run]`.
     pub fn label(&self) -> String {
         if self.path.is_empty() {
             format!("the {}", self.section.name)
@@ -134,23 +135,24 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the full path of a field.
+    /// Returns the full path of a field, such as `run.step`.
     pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Creates an error about a field, placed at its value if there is one.
+    /// Creates an error about a field, located at its value if the field is given, else at the
+    /// table.
     pub fn error(&self, name: &str, problem: Problem) -> InputError {
         let origin = self.entry(name).map_or(self.origin, |node| node.origin);
         self.sources.error(origin, problem)
     }
 
-    /// Creates an error about a given value.
+    /// Creates an error located at an origin.
     pub fn error_at(&self, origin: Origin, problem: Problem) -> InputError {
         self.sources.error(origin, problem)
     }
 
-    /// Creates an error about values that are valid by themselves and inconsistent together.
+    /// Creates an error about values that are valid by themselves but inconsistent with each other.
     pub fn inconsistent(&self, name: &str, message: String) -> InputError {
         self.error(name, Problem::Inconsistent { message })
     }
@@ -160,7 +162,7 @@ impl<'a> Reader<'a> {
         self.sources.error(self.origin, problem)
     }
 
-    /// Creates an error about several fields of which none is given.
+    /// Creates an error that one of several fields is required, but none is given.
     pub fn one_of(&self, names: &[&str]) -> InputError {
         let choices: Vec<String> = names.iter().map(|name| self.example_of(name)).collect();
         let problem = Problem::OneOf { section: self.label(), choices: choices.join(", ") };
@@ -171,21 +173,22 @@ impl<'a> Reader<'a> {
         self.section.any_field(name).map_or_else(String::new, Field::example)
     }
 
-    /// Creates an error about a missing field that another value requires.
+    /// Creates an error about a missing field.
     pub fn missing(&self, name: &str) -> InputError {
         let example = self.example_of(name);
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
     }
 
-    /// Creates an error about a missing field whose kind of value depends on other fields, with a value of that kind.
+    /// Creates an error about a missing field whose kind depends on other fields. `kind` supplies
+    /// the example value.
     pub fn missing_as(&self, name: &str, kind: Kind) -> InputError {
         let example = format!("`{name} = {}`", kind.example());
         let problem = Problem::Missing { field: name.to_owned(), section: self.label(), example };
         self.sources.error(self.origin, problem)
     }
 
-    /// Returns the kind of value of a field.
+    /// Returns the kind of value that a field accepts.
     pub fn kind_of(&self, name: &'static str) -> Kind {
         self.field(name).kind
     }
@@ -194,7 +197,8 @@ impl<'a> Reader<'a> {
         self.table.and_then(|table| table.get(name)).map(|entry| &entry.node)
     }
 
-    /// Returns the definition of a field; a name without one is a bug in this library.
+    /// Returns the definition of a field and marks the field as read. Panics if the field is not
+    /// defined, which is a bug in this library.
     fn field(&self, name: &'static str) -> &'static Field {
         self.read.borrow_mut().push(name);
         let found = self.section.fields_of(self.variant).find(|field| field.name == name);
@@ -202,7 +206,7 @@ impl<'a> Reader<'a> {
             .unwrap_or_else(|| panic!("field `{name}` of {} is read but not defined", self.label()))
     }
 
-    /// Opens a table inside this one; an absent one has only defaults.
+    /// Opens a nested table. An absent table has only defaults.
     pub fn section(&self, name: &'static str) -> Result<Self> {
         let field = self.field(name);
         let (Kind::Table(section) | Kind::ChoiceOrTable(_, _, section)) = field.kind else {
@@ -221,12 +225,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Marks a field as read by another reader.
+    /// Marks a field as read, because another reader reads it.
     pub fn skip(&self, name: &'static str) {
         self.field(name);
     }
 
-    /// Returns a table inside this one as written, for another reader.
+    /// Returns a nested table as written, for another reader.
     pub fn table(&self, name: &'static str) -> Result<&'a Table> {
         let field = self.field(name);
         let Some(node) = self.entry(name) else { return Err(self.missing(name)) };
@@ -236,12 +240,12 @@ impl<'a> Reader<'a> {
         Ok(table)
     }
 
-    /// Returns the origin of a field; that of the table if the field is absent.
+    /// Returns the origin of a field, or of the table if the field is absent.
     pub fn origin_of(&self, name: &str) -> Origin {
         self.entry(name).map_or(self.origin, |node| node.origin)
     }
 
-    /// Opens a table inside this one, if present.
+    /// Opens a nested table, if present.
     pub fn optional_section(&self, name: &'static str) -> Result<Option<Self>> {
         if self.has(name) {
             self.section(name).map(Some)
@@ -251,7 +255,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Opens the tables of a list.
+    /// Opens each table of a list of tables.
     pub fn sections(&self, name: &'static str) -> Result<Vec<Self>> {
         let field = self.field(name);
         let Kind::Tables(section) = field.kind else { self.defined_otherwise(name) };
@@ -270,13 +274,14 @@ impl<'a> Reader<'a> {
         Ok(readers)
     }
 
-    /// Panics: a field read as another kind than defined is a bug in this library.
+    /// Panics, because a field that is read as another kind than defined is a bug in this library.
     fn defined_otherwise(&self, name: &str) -> ! {
         panic!("field `{name}` of {} is defined as another kind than it is read", self.label())
     }
 }
 
-/// Returns the name of a list item in paths: its name, the pair it joins, or its number from 1.
+/// Returns the name of a list item in paths: its `name`, the pair in its `between`, or its number
+/// from 1.
 pub fn item_name(item: &Node, index: usize) -> String {
     let number = (index + 1).to_string();
     let Value::Table(table) = &item.value else { return number };
@@ -296,7 +301,7 @@ fn owned(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| (*name).to_owned()).collect()
 }
 
-/// Names common in other programs, with ours.
+/// Names used by other programs, with the corresponding names in this one.
 const HABITS: &[(&str, &str)] = &[
     ("mu", "coefficient"),
     ("mu", "friction"),
@@ -314,7 +319,7 @@ const HABITS: &[(&str, &str)] = &[
     ("material", "kind"),
 ];
 
-/// Returns the most similar name, if any is close.
+/// Returns the valid name most similar to a word, if any is close enough.
 pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
     if word.len() > 60 {
         return None;
@@ -332,7 +337,8 @@ pub fn nearest(word: &str, valid: &[&str]) -> Option<String> {
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name.to_owned())
         .or_else(|| {
-            // A key that is part of the right one: `coefficient` for `static_coefficient`.
+            // The word may be part of the right key, such as `coefficient` for
+            // `static_coefficient`.
             let part = |name: &&&str| plain(name).contains(&word) || word.contains(&plain(name));
             valid.iter().filter(|_| word.len() >= 3).find(part).map(|name| (*name).to_owned())
         })

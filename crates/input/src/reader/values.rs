@@ -1,4 +1,4 @@
-//! Reads the values of one table: quantities, numbers, names, points.
+//! Methods of the reader for values: quantities, numbers, names, points.
 
 use crate::FileRef;
 use crate::dimension::Dimension;
@@ -30,17 +30,17 @@ impl Reader<'_> {
         value?.ok_or_else(|| self.missing(name))
     }
 
-    /// Reads a quantity in SI.
+    /// Reads a required quantity, in SI units.
     pub fn quantity(&self, name: &'static str) -> Result<f64> {
         self.required(name, self.optional_quantity(name))
     }
 
-    /// Reads an optional quantity in SI.
+    /// Reads an optional quantity, in SI units.
     pub fn optional_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         Ok(self.optional_quantity_with_dimension(name)?.map(|quantity| quantity.value))
     }
 
-    /// Reads an optional quantity whose meaning depends on its dimension.
+    /// Reads an optional quantity with its dimension, for fields that accept several dimensions.
     pub fn optional_quantity_with_dimension(&self, name: &'static str) -> Result<Option<Quantity>> {
         self.value(name, |reader, field, node| {
             if let Kind::Quantity(dimensions, range) = field.kind {
@@ -53,7 +53,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a quantity, or `None` for the word that replaces it.
+    /// Reads a quantity in SI units, or returns `None` for the word that replaces it.
     pub fn word_or_quantity(&self, name: &'static str) -> Result<Option<f64>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::WordOr(word, dimensions, range) = field.kind else {
@@ -67,7 +67,7 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
-    /// Reads a plain number.
+    /// Reads a required plain number.
     pub fn number(&self, name: &'static str) -> Result<f64> {
         self.required(name, self.optional_number(name))
     }
@@ -80,7 +80,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a plain number from a node.
+    /// Reads a plain number from a node, within a range.
     pub fn read_number(&self, name: &str, node: &Node, range: Range) -> Result<f64> {
         let wrong = || self.wrong_type(name, Kind::Number(range), node);
         let value = match &node.value {
@@ -100,12 +100,12 @@ impl Reader<'_> {
         Ok(value)
     }
 
-    /// Reads an integer within its range.
+    /// Reads a required integer, within the range of the field.
     pub fn integer(&self, name: &'static str) -> Result<u32> {
         self.required(name, self.optional_integer(name))
     }
 
-    /// Reads an optional integer within its range.
+    /// Reads an optional integer, within the range of the field.
     pub fn optional_integer(&self, name: &'static str) -> Result<Option<u32>> {
         self.value(name, |reader, field, node| {
             let value = reader.read_integer(name, node, field.kind)?;
@@ -113,7 +113,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads an integer of a kind from a node.
+    /// Reads an integer from a node, within the range of the given kind.
     pub fn read_integer(&self, name: &str, node: &Node, kind: Kind) -> Result<i64> {
         let Kind::Integer(least, greatest) = kind else { self.defined_otherwise(name) };
         let Value::Integer(value) = node.value else {
@@ -133,12 +133,12 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// Reads `true` or `false`.
+    /// Reads a required flag, `true` or `false`.
     pub fn flag(&self, name: &'static str) -> Result<bool> {
         self.required(name, self.optional_flag(name))
     }
 
-    /// Reads an optional `true` or `false`.
+    /// Reads an optional flag, `true` or `false`.
     pub fn optional_flag(&self, name: &'static str) -> Result<Option<bool>> {
         self.value(name, |reader, field, node| {
             let Value::Flag(value) = node.value else {
@@ -148,12 +148,12 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads text.
+    /// Reads a required text.
     pub fn text(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_text(name))
     }
 
-    /// Reads optional text; `false` counts as absent if the field allows it.
+    /// Reads an optional text. `false` counts as absent if the field allows it.
     pub fn optional_text(&self, name: &'static str) -> Result<Option<String>> {
         let value = self.value(name, |reader, field, node| {
             let text = match (&node.value, field.kind) {
@@ -174,7 +174,7 @@ impl Reader<'_> {
         Ok(value.flatten())
     }
 
-    /// Reads a single value as written, for the caller to interpret.
+    /// Reads an optional single value as written, for the caller to interpret.
     pub fn node(&self, name: &'static str) -> Result<Option<Node>> {
         self.value(name, |reader, field, node| {
             if matches!(node.value, Value::Array(_) | Value::Table(_) | Value::Date) {
@@ -184,7 +184,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a nonempty list of single values as written.
+    /// Reads an optional, nonempty list of single values as written.
     pub fn nodes(&self, name: &'static str) -> Result<Option<Vec<Node>>> {
         self.value(name, |reader, field, node| {
             let Value::Array(items) = &node.value else {
@@ -205,7 +205,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a list of texts; empty if absent.
+    /// Reads a list of texts; the list is empty if the field is absent.
     pub fn texts(&self, name: &'static str) -> Result<Vec<String>> {
         let nodes = self.nodes(name)?.unwrap_or_default();
         let text =
@@ -213,7 +213,7 @@ impl Reader<'_> {
         Ok(nodes.into_iter().filter_map(text).collect())
     }
 
-    /// Reads a file path, relative to the file that contains it.
+    /// Reads an optional file path, relative to the folder of the file that contains the path.
     pub fn file(&self, name: &'static str) -> Result<Option<FileRef>> {
         let Some(path) = self.optional_text(name)? else { return Ok(None) };
         Ok(Some(match self.entry(name).map(|node| node.origin) {
@@ -226,7 +226,7 @@ impl Reader<'_> {
         }))
     }
 
-    /// Reads a member of a closed set.
+    /// Reads a required member of a closed set.
     pub fn choice<T: Named>(&self, name: &'static str) -> Result<T> {
         self.required(name, self.optional_choice(name))
     }
@@ -240,12 +240,12 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads one of a list of names.
+    /// Reads a required name from the field's list of names.
     pub fn catalog_name(&self, name: &'static str) -> Result<String> {
         self.required(name, self.optional_catalog_name(name))
     }
 
-    /// Reads one of a list of names, if present.
+    /// Reads an optional name from the field's list of names.
     pub fn optional_catalog_name(&self, name: &'static str) -> Result<Option<String>> {
         self.value(name, |reader, field, node| {
             let Kind::Choice(names) = field.kind else { reader.defined_otherwise(name) };
@@ -253,7 +253,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads two texts.
+    /// Reads a required list of two texts.
     pub fn pair(&self, name: &'static str) -> Result<[String; 2]> {
         let value = self.value(name, |reader, field, node| {
             if let Value::Array(items) = &node.value
@@ -267,22 +267,22 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    /// Reads an optional point of two quantities.
+    /// Reads an optional point, a list of two quantities in SI units.
     pub fn optional_point(&self, name: &'static str) -> Result<Option<[f64; 2]>> {
         self.list(name)
     }
 
-    /// Reads a point of two quantities.
+    /// Reads a required point, a list of two quantities in SI units.
     pub fn point(&self, name: &'static str) -> Result<[f64; 2]> {
         self.required(name, self.optional_point(name))
     }
 
-    /// Reads three quantities.
+    /// Reads a required list of three quantities, in SI units.
     pub fn triple(&self, name: &'static str) -> Result<[f64; 3]> {
         self.required(name, self.optional_triple(name))
     }
 
-    /// Reads three quantities, if present.
+    /// Reads an optional list of three quantities, in SI units.
     pub fn optional_triple(&self, name: &'static str) -> Result<Option<[f64; 3]>> {
         self.list(name)
     }
@@ -296,7 +296,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Reads a list of points.
+    /// Reads a required list of points, in SI units.
     pub fn points(&self, name: &'static str) -> Result<Vec<[f64; 2]>> {
         let value = self.value(name, |reader, field, node| {
             let Kind::Points(dimension) = field.kind else { reader.defined_otherwise(name) };
@@ -311,7 +311,7 @@ impl Reader<'_> {
         self.required(name, value)
     }
 
-    /// Reads one of a list of names from a node.
+    /// Reads a name from a node; it must be one of `valid`.
     pub fn read_name(&self, name: &str, node: &Node, valid: &[&'static str]) -> Result<String> {
         let Value::Text(text) = &node.value else {
             return Err(self.wrong_type(name, Kind::Text, node));
@@ -353,7 +353,7 @@ impl Reader<'_> {
         Ok(point)
     }
 
-    /// Reads a quantity from a node.
+    /// Reads a quantity from a node, within a range.
     pub fn read_quantity(
         &self,
         name: &str,
@@ -361,7 +361,7 @@ impl Reader<'_> {
         dimensions: &[Dimension],
         range: Range,
     ) -> Result<Quantity> {
-        // A bare number is most often meant in SI.
+        // A number without a unit is most often meant in SI units.
         let unit = dimensions[0].si_unit();
         let kind = "a quantity with its unit";
         match &node.value {
@@ -391,7 +391,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Creates an error about a number without a unit, which advises to add the SI unit.
+    /// Creates an error about a number without a unit, with advice to add the SI unit.
     fn bare_number(&self, name: &str, node: &Node, number: &str, unit: &str) -> InputError {
         let of_a_list = self.section.any_field(name).is_some_and(|field| {
             matches!(field.kind, Kind::Values | Kind::Point(_) | Kind::Triple(_) | Kind::Points(_))
@@ -406,7 +406,7 @@ impl Reader<'_> {
         self.sources.error(node.origin, problem)
     }
 
-    /// Reads a unit, where a name alone stands for one of it.
+    /// Reads a unit or a quantity. A name alone, such as `kN`, stands for one of that unit.
     fn read_unit(&self, name: &str, node: &Node, dimension: Dimension) -> Result<Quantity> {
         if let Value::Text(text) = &node.value
             && !text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
@@ -438,7 +438,7 @@ impl Reader<'_> {
         Err(self.sources.error(node.origin, problem))
     }
 
-    /// Creates an error about a value of another type than its kind requires.
+    /// Creates an error about a value that is not of the required kind.
     pub fn wrong_type(&self, name: &str, kind: Kind, node: &Node) -> InputError {
         self.wrong_type_as(name, &kind.to_string(), node)
     }

@@ -1,6 +1,6 @@
-//! The files inside a tar archive.
+//! Access to the files inside a tar archive.
 
-/// `true` if bytes begin with the header of a tar archive with a valid checksum.
+/// Returns `true` if the bytes begin with the header of a tar archive with a valid checksum.
 pub(super) fn is_tar(bytes: &[u8]) -> bool {
     let Some(head) = bytes.get(..512) else { return false };
     let sum: u32 = head
@@ -12,11 +12,12 @@ pub(super) fn is_tar(bytes: &[u8]) -> bool {
     head[0] != 0 && stated.is_ok_and(|stated| stated == sum)
 }
 
-/// Calls `take` with name and bytes of every file, without bytes where the archive ends within them, until it
-/// returns `true`.
+/// Calls `take` with the name and the content of every file until it returns `true`.
+///
+/// If the archive ends within a file, `take` gets `None` as content.
 ///
 /// # Errors
-/// When the archive is damaged; inside, the error of `take`.
+/// If the archive is damaged. The inner result is the error of `take`.
 pub(super) fn each_file<E>(
     archive: &[u8],
     mut take: impl FnMut(&str, Option<&[u8]>) -> Result<bool, E>,

@@ -1,5 +1,5 @@
-//! Flatfiles: magnitude, distances and site of every record, by the sequence numbers of NGA-West2 or by the
-//! events and stations of ESM.
+//! Flatfiles: tables with the magnitude, distances and site of every record, identified by the
+//! sequence numbers of NGA-West2 or by the events and stations of ESM.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,12 @@ use crate::error::MotionError;
 use crate::format::shorten;
 use crate::record::Record;
 
-/// Data of a flatfile on one record.
+/// The row of a flatfile for one record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlatRow {
-    /// Earthquake.
+    /// Name of the earthquake.
     pub event: String,
-    /// Station.
+    /// Name of the station.
     pub station: String,
     /// Moment magnitude.
     pub magnitude: Option<f64>,
@@ -26,19 +26,19 @@ pub struct FlatRow {
     pub strike: Option<f64>,
 }
 
-/// Rows by record sequence number, or by event and station.
+/// A flatfile, with rows indexed by record sequence number, or by event and station.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flatfile {
     rows: BTreeMap<u64, FlatRow>,
-    /// Rows by event, network and station, in lower case.
+    /// Rows by event, network and station, all in lower case.
     stations: BTreeMap<(String, String, String), FlatRow>,
 }
 
-/// Columns of the published table and of its short forms.
+/// Column names of the published table and of its abridged forms.
 const NUMBER: &[&str] = &["record sequence number", "rsn"];
 const EVENT: &[&str] = &["earthquake name", "event", "event_id"];
 const STATION: &[&str] = &["station name", "station", "station_code"];
-/// Columns that identify a record in the flatfile of ESM.
+/// Columns that identify a record in the ESM flatfile.
 const ESM_KEY: [&str; 3] = ["event_id", "network_code", "station_code"];
 const MAGNITUDE: &[&str] = &["earthquake magnitude", "magnitude", "mw", "emec_mw", "ml"];
 const RUPTURE: &[&str] = &["clstd (km)", "rrup (km)", "rrup", "rup_dist"];
@@ -47,20 +47,24 @@ const VS30: &[&str] = &["vs30 (m/s) selected for analysis", "vs30 (m/s)", "vs30"
 const STRIKE: &[&str] = &["strike (deg)", "strike", "es_strike"];
 
 impl Flatfile {
-    /// Reads the table as CSV, its first line the names of the columns; −999 means unknown.
+    /// Parses a flatfile from CSV text with column names on the first line; −999 means unknown.
     ///
-    /// The flatfile of ESM, with semicolons, has no sequence numbers: its rows are identified by event, network
-    /// and station; the magnitude is the first known one of Mw, EMEC Mw and ML.
+    /// The ESM flatfile uses semicolons and has no sequence numbers; its rows are identified by
+    /// event, network and station. The magnitude is the first one known of Mw, EMEC Mw and ML.
     ///
     /// # Errors
-    /// If there is neither a column of sequence numbers nor those of ESM, a number is invalid, or a sequence
-    /// number is repeated.
+    /// If there is neither a column of sequence numbers nor the identifying columns of ESM, a
+    /// number is invalid, or a sequence number is repeated.
     pub fn parse(file: &str, text: &str) -> Result<Self, MotionError> {
         let head = text.lines().next().unwrap_or_default();
         let mark = if head.contains(';') && !head.contains(',') { ';' } else { ',' };
         let mut lines = rows(text, mark);
         let Some((_, head)) = lines.next() else {
-            return Err(MotionError::parameter(file, "a table with a line of names", "nothing"));
+            return Err(MotionError::parameter(
+                file,
+                "a table with column names on the first line",
+                "nothing",
+            ));
         };
         let head: Vec<String> = head
             .iter()
@@ -70,7 +74,7 @@ impl Flatfile {
         let key = ESM_KEY.map(|name| column(&[name]));
         let number = column(NUMBER);
         if number.is_none() && key.contains(&None) {
-            let expected = "a column \"Record Sequence Number\" or \"RSN\", or those of ESM, event_id, \
+            let expected = "a column \"Record Sequence Number\" or \"RSN\", or the ESM columns event_id, \
                  network_code and station_code";
             let found = format!("{} others ({})", head.len(), shorten(&head.join(", ")));
             return Err(MotionError::parameter(file, expected, found));
@@ -105,7 +109,7 @@ impl Flatfile {
                 strike: value(numbers[3])?,
             };
             if number.is_none() {
-                // Several instruments of one station share these data.
+                // Several instruments of one station share these values.
                 let [event, network, station] = key.map(|at| cell(at).to_ascii_lowercase());
                 all.stations.entry((event, network, station)).or_insert(row);
                 continue;
@@ -120,13 +124,13 @@ impl Flatfile {
         Ok(all)
     }
 
-    /// Returns the row of a record.
+    /// Returns the row with the given record sequence number.
     pub fn get(&self, number: u64) -> Option<&FlatRow> {
         self.rows.get(&number)
     }
 
-    /// Returns the row of a record by the event in its header and the code of its station; `None` if stations of
-    /// several networks have that code.
+    /// Returns the row of a record, found by the event in its header and the code of its station.
+    /// Returns `None` if stations of several networks have this code.
     pub fn of_record(&self, record: &Record) -> Option<&FlatRow> {
         let event = record.earthquake.id.to_ascii_lowercase();
         let named = record.channels.first()?.site.station.to_ascii_lowercase();
@@ -139,12 +143,12 @@ impl Flatfile {
         fitting.next().is_none().then_some(row)
     }
 
-    /// Returns the number of records.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.rows.len() + self.stations.len()
     }
 
-    /// `true` if it has no records.
+    /// Returns `true` if the flatfile has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -159,7 +163,8 @@ pub fn record_sequence_number(path: &str) -> Option<u64> {
     digits[..end].parse().ok()
 }
 
-/// Returns the rows of a table (RFC 4180) with the line on which each begins; empty lines are left out.
+/// Returns the rows of a table (RFC 4180), each with the line on which it begins; empty lines are
+/// skipped.
 fn rows(text: &str, mark: char) -> impl Iterator<Item = (usize, Vec<String>)> {
     let mut line = 1;
     let mut rest = text;

@@ -1,33 +1,34 @@
-//! Groups the files of a folder into records by their names.
+//! Groups the files of a folder into records by their file names.
 
 use std::collections::BTreeMap;
 
 use crate::format::file_stem;
 
-/// Files that hold one record.
+/// The files of one record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordFiles {
-    /// Name of the record: the path without the part that names the component.
+    /// Name of the record: the path without the part that identifies the component.
     pub name: String,
-    /// Its files, sorted.
+    /// Paths of the files, sorted.
     pub files: Vec<String>,
 }
 
 /// Groups paths (with `/` between folders) into records, sorted by name.
 ///
-/// Names of one folder belong together where they differ in the component alone:
+/// Files of one folder belong to the same record if their names differ only in the component:
 ///
-/// - `RSN995_NORTHR_PEL090.AT2` and `RSN995_NORTHR_PEL-UP.AT2` by their record sequence number, other
-///   names that end in `.AT2` by what stands before an azimuth, `-E` or `-UP`;
-/// - `AOM0011801241951.EW`, `.NS` and `.UD`, and those of a borehole (`.EW1`) apart from those of the
-///   surface (`.EW2`);
-/// - names with a SEED channel such as `HNE` between dots, dashes or underscores;
-/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as AFAD's do, or in
-///   `_EW`, `_NS` and `_UD`, with a dash or a dot too, and those of CSMNC, whose number precedes it;
-/// - names that end in `.000`, `.090` and `.ver`, as those of the Broadband Platform do.
+/// - `RSN995_NORTHR_PEL090.AT2` and `RSN995_NORTHR_PEL-UP.AT2` by their record sequence number,
+///   other names ending in `.AT2` by the part before an azimuth, `-E` or `-UP`;
+/// - `AOM0011801241951.EW`, `.NS` and `.UD`; the borehole (`.EW1`) and the surface (`.EW2`) are
+///   separate records;
+/// - names with a SEED channel code such as `HNE` between dots, dashes or underscores;
+/// - other names that end, before their extension, in `_E`, `_N` and `_U` (or `_Z`), as those of
+///   AFAD, or in `_EW`, `_NS` and `_UD`, also with a dash or a dot, and those of CSMNC, with a
+///   number before the component;
+/// - names that end in `.000`, `.090` and `.ver`, as those of the Broadband Platform.
 ///
-/// Any other file is a record of its own.
-/// [`crate::Record::gather`] checks whether the channels do belong together.
+/// Any other file is a record of its own. [`crate::Record::gather`] checks whether the channels
+/// really belong together.
 ///
 /// ```
 /// use barrelstack_motion::group_files;
@@ -55,7 +56,7 @@ pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
     }
     let mut records: Vec<RecordFiles> = groups.into_values().collect();
     for record in &mut records {
-        // A single file keeps its whole name, which is unique.
+        // A single file keeps its full name, which is unique.
         if let [file] = record.files.as_slice() {
             record.name.clone_from(file);
         }
@@ -64,7 +65,8 @@ pub fn group_files(paths: &[String]) -> Vec<RecordFiles> {
     records
 }
 
-/// Returns the part of a name that the components of a record share, and the name of the record.
+/// Returns the part of a file name that all components of a record share, and the name of the
+/// record.
 fn key(file: &str) -> (String, String) {
     let stem = file_stem(file);
     let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_uppercase();
@@ -91,7 +93,8 @@ fn key(file: &str) -> (String, String) {
     named.map_or_else(|| (file.to_owned(), file.to_owned()), |name| (name.clone(), name))
 }
 
-/// Removes the direction at the end of a name: one letter or two after a mark, two after a digit.
+/// Removes the direction at the end of a name: one or two letters after a separator, or two letters
+/// after a digit.
 fn direction_off(stem: &str) -> Option<&str> {
     let upper = stem.to_ascii_uppercase();
     let marked = |direction: &&str| {
@@ -108,7 +111,7 @@ fn direction_off(stem: &str) -> Option<&str> {
     stem.get(..stem.len() - found.len())
 }
 
-/// Removes the component from a name of PEER's.
+/// Removes the component from the name of a PEER file.
 fn without_component(stem: &str) -> String {
     let upper = stem.to_ascii_uppercase();
     for ending in ["-UP", "-DWN", "-DN", "-VER", "-V", "-N", "-E", "-S", "-W", "-NS", "-EW", "UP"] {
@@ -125,7 +128,7 @@ fn without_component(stem: &str) -> String {
     }
 }
 
-/// Replaces the direction of the SEED channel in a name by a question mark.
+/// Replaces the direction in the SEED channel code of a name by a question mark.
 fn seed(file: &str) -> Option<String> {
     let mut start = 0;
     for part in file.split_inclusive(['.', '_', '-']) {

@@ -1,4 +1,5 @@
-//! Measures of a record: of every component, of both horizontals jointly, and its pulse.
+//! Intensity measures of a record: of every component, of both horizontals jointly, and of the
+//! velocity pulse.
 
 use crate::error::MotionError;
 use crate::horizontals::Horizontals;
@@ -11,17 +12,17 @@ use crate::rotd::{RotatedPeak, rotated_spectrum};
 use crate::sampled::Sampled;
 use crate::select::processed;
 
-/// Damping ratio of all spectra.
+/// Damping ratio of all response spectra.
 const DAMPING: f64 = 0.05;
-/// Oscillator of FIV3 (s).
+/// The measure FIV3, for an oscillator with a period of 1 s.
 const FIV3: IntensityMeasure = IntensityMeasure::Fiv3 { period: 1.0 };
 
-/// Measures of one component (SI).
+/// Intensity measures of one component, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredComponent {
     /// Name of the channel.
     pub name: String,
-    /// Azimuth (degrees clockwise from north), where known.
+    /// Azimuth (degrees clockwise from north), if known.
     pub azimuth: Option<f64>,
     /// Peak acceleration (m/s²), velocity (m/s) and displacement (m).
     pub peaks: [f64; 3],
@@ -33,39 +34,39 @@ pub struct MeasuredComponent {
     pub duration: f64,
     /// FIV3 at 1 s (m/s).
     pub fiv3: f64,
-    /// Pulse after Baker (2007); `None` for a vertical component.
+    /// Classification of the velocity pulse by Baker (2007); `None` for a vertical component.
     pub pulse: Option<ClassifiedPulse>,
-    /// Pseudo-accelerations (m/s²) at 5 % damping.
+    /// Pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<f64>,
 }
 
-/// Joint measures of both horizontals (SI).
+/// Joint intensity measures of both horizontals, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPair {
     /// `RotD50` of peak acceleration (m/s²) and velocity (m/s).
     pub peaks: [f64; 2],
-    /// `RotD100` of the same.
+    /// `RotD100` of peak acceleration (m/s²) and velocity (m/s).
     pub largest: [f64; 2],
-    /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping.
+    /// `RotD50` and `RotD100` of the pseudo-accelerations (m/s²) at 5 % damping, one per period.
     pub spectrum: Vec<RotatedPeak>,
-    /// Pulse after Shahi and Baker (2014).
+    /// Classification of the velocity pulse by Shahi and Baker (2014).
     pub pulse: Option<ClassifiedPulse>,
 }
 
-/// Measures of a record.
+/// Intensity measures of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// The first two components that are not vertical, in order.
     pub horizontals: Vec<MeasuredComponent>,
-    /// The first vertical component.
+    /// The first vertical component, if there is one.
     pub vertical: Option<MeasuredComponent>,
-    /// Both horizontals, if they are a pair.
+    /// Joint measures of both horizontals, if they form a pair.
     pub pair: Option<MeasuredPair>,
-    /// Reason why there is no pair.
+    /// Reason why the horizontals do not form a pair.
     pub no_pair: Option<String>,
 }
 
-/// Measures a record after processing, its spectra at `periods` (s).
+/// Processes a record and computes its intensity measures, with spectra at `periods` (s).
 ///
 /// # Errors
 /// If the record has no channel or a setting is out of range.
@@ -87,7 +88,7 @@ pub fn measure(
         Ok(_) => {
             let (first, second) = record.horizontals(processing)?;
             let mut pair = both(&first, &second, periods)?;
-            // A motion without a velocity has no pulse, which is no reason to refuse it.
+            // A motion with zero velocity has no pulse, but its other measures are valid.
             if let Ok((singles, together)) = classify_pair(&first, &second) {
                 pair.pulse = Some(together);
                 for (component, pulse) in horizontals.iter_mut().zip(singles) {

@@ -1,4 +1,4 @@
-//! Collections of files: grouping to records, measures of each record, and flatfiles.
+//! Collections of files: grouping into records, measures of each record, and flatfiles.
 
 mod flatfile;
 mod grouping;

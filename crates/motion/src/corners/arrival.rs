@@ -1,19 +1,20 @@
-//! First arrival: the end of the noise before the shaking.
+//! Detects the first arrival, which ends the noise before the shaking.
 
 use crate::math;
 
-/// Share of the peak that marks the shaking with certainty.
+/// Fraction of the peak acceleration that marks strong motion with certainty.
 const SURE: f64 = 0.2;
-/// Extent of a search after the previous result, as a share of the time up to the strong motion.
+/// Length by which the second search extends beyond the first result, as a fraction of the time up
+/// to the strong motion.
 const BEHIND: f64 = 0.1;
 
-/// Returns the time (s) after the first sample of the first arrival; 0 if the shaking is there from the start.
+/// Returns the time (s) from the first sample to the first arrival; 0 if the shaking starts with
+/// the record.
 ///
-/// Two intervals, each of constant variance, explain the record up to its first strong motion best when
-/// they meet at the arrival: the smallest of Akaike's criterion
-/// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` (Maeda 1985).
-/// A second search, which ends shortly after the first one's result, finds a weak first arrival
-/// before a strong second one.
+/// The record up to its first strong motion is modeled as two intervals of constant variance. They
+/// fit best if they meet at the arrival, where Akaike's criterion
+/// `k ln var(a₁…k) + (n − k − 1) ln var(a₍k₊₁₎…n)` is smallest (Maeda 1985). A second search, which
+/// ends shortly after the first result, finds a weak first arrival before a strong second one.
 pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     let level = math::mean(&a[..a.len().min(100)]);
     let peak = a.iter().fold(0.0_f64, |peak, a| peak.max((a - level).abs()));
@@ -25,9 +26,10 @@ pub(super) fn arrival(time_step: f64, a: &[f64]) -> f64 {
     time_step * split(until(first)).unwrap_or(first) as f64
 }
 
-/// Returns the boundary of two intervals of constant variance; `None` if there are too few samples.
+/// Returns the sample that separates two intervals of constant variance; `None` if there are too
+/// few samples.
 fn split(a: &[f64]) -> Option<usize> {
-    // A variance of fewer samples is meaningless.
+    // The variance of fewer samples is meaningless.
     let margin = 10;
     if a.len() < 4 * margin {
         return None;
@@ -45,7 +47,8 @@ fn split(a: &[f64]) -> Option<usize> {
     let variance = |from: usize, to: usize| {
         let count = (to - from) as f64;
         let mean = (sums[to].0 - sums[from].0) / count;
-        // Digits limit the resolution of noise: an interval of equal numbers has no variance at all.
+        // Printed digits limit the resolution of noise; an interval of equal values would have zero
+        // variance.
         ((sums[to].1 - sums[from].1) / count - mean * mean).max(1e-12 * squares / n as f64)
     };
     let criterion = |k: usize| {

@@ -1,4 +1,5 @@
-//! Filter corners from the record itself: the band in which the shaking exceeds the noise before it.
+//! Suggests filter corners from the frequency band in which the shaking exceeds the noise before
+//! it.
 
 mod arrival;
 mod smooth;
@@ -12,23 +13,23 @@ use crate::record::{Channel, Record};
 use arrival::arrival;
 use smooth::konno_ohmachi;
 
-/// Shortest noise (s) that determines corners.
+/// Shortest noise (s) from which corners can be determined.
 const SHORTEST_NOISE: f64 = 1.0;
-/// Shortest shaking (s).
+/// Shortest shaking (s) from which corners can be determined.
 const SHORTEST_SHAKING: f64 = 5.0;
-/// Part of each end of noise and shaking that is tapered.
+/// Length of the taper at each end of noise and shaking, as a fraction of the length.
 const TAPER: f64 = 0.05;
-/// Highest low-pass corner, over the Nyquist frequency and in Hz.
+/// Upper limits of the low-pass corner: as a fraction of the Nyquist frequency, and in Hz.
 const HIGHEST: (f64, f64) = (0.75, 40.0);
 
-/// Criterion of the ratio of signal to noise, and its frequency range.
+/// Criterion on the signal-to-noise ratio, with its frequency range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseCriterion {
     /// Minimum ratio of the smoothed Fourier amplitudes of signal and noise.
     pub ratio: f64,
-    /// Lowest frequency (Hz) of the criterion; the high-pass lies at or below it.
+    /// Lowest frequency of the criterion (Hz); the high-pass corner is at or below it.
     pub from: f64,
-    /// Highest frequency (Hz) of the criterion; the low-pass lies above it.
+    /// Highest frequency of the criterion (Hz); the low-pass corner is above it.
     pub to: f64,
     /// Coefficient `b` of the smoothing window of Konno and Ohmachi (1998).
     pub bandwidth: f64,
@@ -41,21 +42,21 @@ impl Default for NoiseCriterion {
     }
 }
 
-/// Corners suggested by a channel's own noise.
+/// Filter corners suggested by the noise of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corners {
-    /// High-pass (Hz).
+    /// High-pass corner (Hz).
     pub high_pass: f64,
-    /// Low-pass (Hz).
+    /// Low-pass corner (Hz).
     pub low_pass: f64,
-    /// Time (s) after the first sample at which the noise ends and the shaking begins.
+    /// Time (s) from the first sample to the first arrival, where the noise ends.
     pub arrival: f64,
-    /// Smallest ratio of signal to noise between the criterion's frequencies.
+    /// Smallest signal-to-noise ratio in the frequency range of the criterion.
     pub least_ratio: f64,
 }
 
 impl Corners {
-    /// Describes their derivation, for provenance.
+    /// Describes how the corners were derived, for the provenance.
     pub fn sentence(&self, criterion: &NoiseCriterion) -> String {
         let unknown = 1.0 / self.arrival;
         format!(
@@ -69,7 +70,7 @@ impl Corners {
             criterion.from,
             criterion.to,
             if self.high_pass < unknown {
-                format!(" (so short a noise says little below {unknown:.2} Hz)")
+                format!(" (the noise is too short to resolve frequencies below {unknown:.2} Hz)")
             } else {
                 String::new()
             }
@@ -77,25 +78,27 @@ impl Corners {
     }
 }
 
-/// Smoothed spectra of noise and signal of a channel.
+/// Signal-to-noise ratio of a channel as a function of frequency.
 struct Spectra {
     frequency: Vec<f64>,
-    /// Signal over noise, see [`noise_corners`].
+    /// Signal-to-noise ratio; see [`noise_corners`].
     ratio: Vec<f64>,
 }
 
-/// Returns the corners of one channel whose noise ends at `arrival` (s).
+/// Returns the filter corners of one channel whose noise ends at `arrival` (s).
 ///
-/// The spectrum of the noise, multiplied by the root of the ratio of the lengths, is that of the noise within the
-/// shaking; the excess over it is signal.
-/// Their ratio is divided by the same root, which is stricter where the noise is short.
-/// The band is the first in which signal over noise satisfies the criterion from its lower to its upper
-/// frequency; the high-pass is not below one over the duration, nor below the frequency where the ratio has its
-/// minimum below its peak; the low-pass is at most 0.75 of the Nyquist frequency and 40 Hz.
-/// This is the rule of the USGS's automatic processing (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
+/// The spectrum of the noise is multiplied by the square root of the ratio of the lengths, which
+/// gives the noise within the shaking; the spectrum above this noise is signal. The signal-to-noise
+/// ratio is divided by the same root, which is stricter if the noise is short.
+///
+/// The band between the corners is the first band in which the ratio satisfies the criterion over
+/// its whole frequency range. The high-pass corner is not below one over the duration, nor below
+/// the frequency at which the ratio has its minimum left of its peak. The low-pass corner is at
+/// most 0.75 of the Nyquist frequency and 40 Hz. This is the rule of the automatic processing of
+/// the USGS (Hearne et al. 2019; Ramos-Sepúlveda et al. 2023).
 ///
 /// # Errors
-/// If there is less than a second of noise or five of shaking, or the criterion is not satisfied.
+/// If there is less than 1 s of noise or 5 s of shaking, or if the criterion is not satisfied.
 pub fn noise_corners(
     channel: &Channel,
     arrival: f64,
@@ -103,31 +106,31 @@ pub fn noise_corners(
 ) -> Result<Corners, MotionError> {
     let refuse = |what: String| {
         let what = format!("channel {}: {what}", channel.name);
-        MotionError::mismatch(what, "give the corners yourself")
+        MotionError::mismatch(what, "specify the corners")
     };
     let (dt, a) = (channel.time_step, &channel.acceleration);
     let split = samples(arrival, dt).min(a.len());
     if arrival < SHORTEST_NOISE {
         return Err(refuse(format!(
-            "{arrival:.2} s of noise before the shaking, where {SHORTEST_NOISE} s are needed"
+            "{arrival:.2} s of noise before the shaking; at least {SHORTEST_NOISE} s are needed"
         )));
     }
     let shaking = (a.len() - split) as f64 * dt;
     if shaking < SHORTEST_SHAKING {
         return Err(refuse(format!(
-            "{shaking:.2} s after the arrival, where {SHORTEST_SHAKING} s are needed"
+            "{shaking:.2} s of shaking after the arrival; at least {SHORTEST_SHAKING} s are needed"
         )));
     }
     let first = a[0];
     if a[..split].iter().all(|value| *value == first) {
         return Err(refuse(format!(
-            "the noise of {arrival:.2} s before the shaking is below the file's last digit"
+            "the noise of {arrival:.2} s before the shaking is below the resolution of the file"
         )));
     }
     let spectra = Spectra::of(dt, &a[..split], &a[split..], criterion.bandwidth);
     let (low, high) = spectra.band(criterion).ok_or_else(|| {
         refuse(format!(
-            "signal over noise falls to {:.2} between {} and {} Hz, where {} is needed",
+            "the signal-to-noise ratio falls to {:.2} between {} and {} Hz; at least {} is needed",
             spectra.least(criterion),
             criterion.from,
             criterion.to,
@@ -140,10 +143,10 @@ pub fn noise_corners(
 }
 
 impl Record {
-    /// Returns the corners of every channel, in order; both horizontals share the narrower band, so that they can be
-    /// rotated jointly.
+    /// Returns the filter corners of every channel, in order.
     ///
-    /// All channels use the earliest arrival of any of them.
+    /// Both horizontals get the narrower of their two bands, so that they can be rotated jointly.
+    /// All channels use the earliest arrival of any channel.
     pub fn noise_corners(&self, criterion: &NoiseCriterion) -> Vec<Result<Corners, MotionError>> {
         let first = self
             .channels
@@ -187,13 +190,14 @@ impl Spectra {
             .zip(smooth(noise))
             .map(|(all, noise)| (all - stretch * noise) / (stretch * noise) / stretch)
             .collect::<Vec<f64>>();
-        // Frequencies below one over the length of the shaking are not resolved.
+        // Frequencies below one over the length of the shaking cannot be resolved.
         let known = 1.0 / (shaking.len() as f64 * dt);
         let first = centers.partition_point(|f| *f < known);
         Self { frequency: centers[first..].to_vec(), ratio: ratio[first..].to_vec() }
     }
 
-    /// Returns the first frequency band with enough signal that includes the range of the criterion.
+    /// Returns the first frequency band with sufficient signal that covers the range of the
+    /// criterion.
     fn band(&self, criterion: &NoiseCriterion) -> Option<(f64, f64)> {
         let enough = |ratio: &f64| *ratio >= criterion.ratio;
         let mut begin = 0;
@@ -208,7 +212,7 @@ impl Spectra {
         None
     }
 
-    /// Returns the smallest ratio between the frequencies of the criterion.
+    /// Returns the smallest ratio in the frequency range of the criterion.
     fn least(&self, criterion: &NoiseCriterion) -> f64 {
         let inside = self.frequency.iter().zip(&self.ratio);
         inside
@@ -216,7 +220,8 @@ impl Spectra {
             .fold(f64::INFINITY, |least, (_, ratio)| least.min(*ratio))
     }
 
-    /// Returns the frequency of the smallest ratio below that of the largest: drift raises lower frequencies.
+    /// Returns the frequency of the smallest ratio below the peak; at lower frequencies, drift
+    /// raises the ratio.
     fn foot(&self) -> f64 {
         let best = |range: std::ops::Range<usize>, sign: f64| {
             range.reduce(

@@ -2,14 +2,14 @@
 
 use crate::math;
 
-/// Returns amplitudes smoothed at `centers` (Hz) with the window
+/// Returns amplitudes smoothed at `centers` (Hz), with the window
 ///
 /// ```text
 /// W(f, fc) = (sin(b log10(f/fc)) / (b log10(f/fc)))⁴
 /// ```
 ///
-/// cut off where `b log10(f/fc)` exceeds 3 (Konno and Ohmachi 1998, BSSA 88:228-241); it has the same
-/// width at all frequencies on a logarithmic axis.
+/// cut off where `b log10(f/fc)` exceeds 3 (Konno and Ohmachi 1998, BSSA 88:228-241). On a
+/// logarithmic frequency axis, the window has the same width everywhere.
 pub(super) fn konno_ohmachi(
     frequency: &[f64],
     amplitude: &[f64],

@@ -1,4 +1,4 @@
-//! AFAD, Turkey: `KEY : value` lines and three columns in gal.
+//! Reader of AFAD files (Turkey): `KEY : value` lines and three columns in gal.
 //!
 //! Spec: header lines of the Turkish National Strong Motion Network (NSMN) text files.
 

@@ -1,8 +1,9 @@
-//! Text of the SCEC Broadband Platform and of the programs in it (`.000`, `.090`, `.ver`): station and
-//! component, then count, step and times, then values by blanks.
+//! Reader of Broadband Platform text (SCEC, `.000`, `.090`, `.ver`).
 //!
-//! Accelerations and velocities have the same layout, and the files state neither quantity nor unit: the unit is
-//! an option of the caller. Files of four columns with a time (`.bbp`) are plain columns.
+//! The first line has station and component, the second count, step and times; values separated by
+//! blanks follow. Accelerations and velocities have the same layout, and the files state neither
+//! quantity nor unit, so the caller must provide the unit. Files with four columns including time
+//! (`.bbp`) are read as plain columns.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};
@@ -16,10 +17,11 @@ use crate::units::{AccelerationUnit, MotionUnit};
 pub(crate) const FORMAT: Format =
     Format { name: "bbp", title: "Broadband Platform text (SCEC)", sniff, read };
 
-/// Count, step, hour, minute, second, epicentral distance, azimuth, back azimuth.
+/// Number of values on the second line: count, step, hour, minute, second, epicentral distance,
+/// azimuth, back azimuth.
 const NUMBERS: usize = 8;
 
-/// Parses count and step of the second line.
+/// Parses the count and the step on the second line.
 fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     let mut row = Vec::new();
     source.tokens(1, f64::INFINITY, &mut row).ok()?;
@@ -29,7 +31,8 @@ fn count_and_step(source: &Source<'_>) -> Option<(usize, f64)> {
     fits.then_some((whole, *step))
 }
 
-/// `true` for a first line of words, and a second that states the number of values below it.
+/// Returns `true` if the first line contains words and the second states the number of values below
+/// it.
 fn sniff(source: &Source<'_>) -> bool {
     let title = source.text(0);
     let words: Vec<&str> = title.split_whitespace().collect();
@@ -100,11 +103,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the unit that the title states behind station and component, as some programs write it.
+/// Returns the unit that some programs write after station and component in the title.
 fn stated_unit(source: &Source<'_>) -> Option<MotionUnit> {
     let text = source.text(0).to_lowercase();
     let words = text.split([' ', '\t', '(', ')', '[', ']', ',']).filter(|word| !word.is_empty());
-    // A length alone may be a word of the title, such as "in".
+    // A unit of length alone may be a word of the title, such as "in".
     words.skip(2).filter_map(MotionUnit::parse).find(|u| u.quantity != Quantity::Displacement)
 }
 
@@ -113,7 +116,7 @@ fn missing_unit(source: &Source<'_>, values: &[f64]) -> ReadError {
         (),
         Refusal::Missing(Given::Unit),
         "a unit of acceleration (this Broadband Platform text states none)",
-        format!("numbers up to {:.4} without one", math::peak(values)),
+        format!("numbers up to {:.4} without a unit", math::peak(values)),
         "state the unit of accelerations, mostly cm/s2, or that velocities in cm/s are to be \
          differentiated",
     )

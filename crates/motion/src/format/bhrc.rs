@@ -1,4 +1,4 @@
-//! BHRC, Iran: volume 1 per component, `10E13.6` in g/10, closed by `/&`.
+//! Reader of BHRC files (Iran): volume 1 per component, `10E13.6` in g/10, closed by `/&`.
 //!
 //! Spec: header lines of files from the Iran Strong Motion Network (Building and Housing Research
 //! Center); the layout descends from CDMG volume 1 with equally spaced values.
@@ -14,7 +14,7 @@ use crate::units::AccelerationUnit;
 pub(crate) const FORMAT: Format =
     Format { name: "bhrc", title: "BHRC (Iran) volume 1", sniff, read };
 
-/// 13 text lines, 7 lines of integers, 7 lines of reals.
+/// Number of header lines: 13 of text, 7 of integers, 7 of reals.
 const HEADER_LINES: usize = 27;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -46,7 +46,7 @@ fn read_component(
             )
         })?;
     let count = super::whole(source, count_line, "a number of points", stated.0)?;
-    // The stated duration is the count times the step, not one step less.
+    // The stated duration is the count times the step, which includes a step after the last sample.
     let time_step = stated.1 / stated.0;
     if !source.has(first + 11, "G/10") {
         return Err(source.not_acceleration(
@@ -84,7 +84,7 @@ fn read_component(
     source.end_of_channel(next, "VOL1DS FILE")
 }
 
-/// Parses `Azimuth L 50    T 140`: either may be missing.
+/// Parses an azimuth from text such as `Azimuth L 50    T 140`; either component may be missing.
 fn azimuth(text: &str, component: &str) -> Option<f64> {
     let mut words = text.split("Azimuth").nth(1)?.split_whitespace();
     while let Some(word) = words.next() {

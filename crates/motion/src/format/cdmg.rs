@@ -1,5 +1,7 @@
-//! The CDMG volume 1 layout that CSMIP, RENADIC and USC share, one block per channel:
-//! 13 text lines, 7 lines 16I5, 7 lines of reals, then data.
+//! Readers of the CDMG volume 1 layout, shared by CSMIP, RENADIC and USC.
+//!
+//! Each channel is a block of 13 text lines, 7 lines of integers (16I5), 7 lines of reals, and
+//! data.
 
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
@@ -14,9 +16,9 @@ use crate::utc::{DateOrder, Utc};
 
 /// CSMIP, CDMG and CGS volume 1: uncorrected accelerograms in three data layouts.
 ///
-/// Time and value pairs `10F7.3` in g/10; a data line with its own format; a data line without one.
-/// Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03, "CSMIP strong-motion data file
-/// format"; CDMG volume 1 of the 1970s.
+/// The data are time and value pairs (`10F7.3`, g/10), or values with or without a Fortran format
+/// on the data line. Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03, "CSMIP
+/// strong-motion data file format"; CDMG volume 1 of the 1970s.
 pub(crate) const CSMIP: Format = Format {
     name: "csmip-v1",
     title: "CSMIP/CDMG/CGS volume 1 (uncorrected)",
@@ -27,11 +29,10 @@ pub(crate) const CSMIP: Format = Format {
     read: |source, hints| read_blocks(source, hints, CSMIP.name, 0),
 };
 
-/// RENADIC, Universidad de Chile: pairs in g/10 and often a clock channel.
+/// RENADIC, Universidad de Chile: time and value pairs in g/10, often with a clock channel.
 ///
-/// Coordinates, dates and azimuth integers of these files are mostly zero or of another day and are
-/// not used.
-/// Spec: "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
+/// Coordinates, dates and azimuths in the integers of these files are not used; they are mostly
+/// zero or of another day. Spec: "UNIVERSIDAD DE CHILE - RENADIC" on line 8 of each channel.
 pub(crate) const RENADIC: Format = Format {
     name: "renadic",
     title: "RENADIC (Universidad de Chile)",
@@ -54,13 +55,13 @@ pub(crate) const USC: Format = Format {
     read: |source, hints| read_blocks(source, hints, USC.name, 1),
 };
 
-/// Lines within which the integers of a header stand.
+/// Number of lines that contain the integers of a header.
 const FIRST_LINES: usize = 40;
-/// Shortest line of integers, of five characters each.
+/// Minimum length of a line of integers (five characters each).
 const INTEGERS: usize = 40;
 
-/// `true` if a line of the header holds integers in fixed columns (16I5), as all files of this layout do; a title alone
-/// may stand above any table.
+/// Returns `true` if a header line contains integers in fixed columns (16I5), as in all files of
+/// this layout. A title alone is not sufficient, because it may stand above any table.
 pub(super) fn holds_integers(source: &Source<'_>) -> bool {
     (1..FIRST_LINES).any(|line| {
         let raw = source.raw(line);
@@ -69,23 +70,24 @@ pub(super) fn holds_integers(source: &Source<'_>) -> bool {
     })
 }
 
-/// Text lines and the 7 + 7 lines of integers and reals.
+/// Number of header lines: text, and 7 lines each of integers and reals.
 const HEADER_LINES: usize = 27;
 
 fn read_renadic(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     let mut record = read_blocks(source, hints, RENADIC.name, 0)?;
-    // Times and coordinates of these headers are the software's defaults, or zero.
+    // Times and coordinates in these headers are zero or defaults of the software.
     record.place(None, &Site::default());
     if source.name.to_ascii_lowercase().contains("parte") {
         record.warn(
             None,
-            "the name says that this is one part of a longer record; join the parts, which overlap",
+            "the file name indicates one part of a longer record; join the overlapping parts",
         );
     }
     Ok(record)
 }
 
-/// Reads every block of a volume 1 file, whose pairs of time and value start after `indent` blanks.
+/// Reads every block of a volume 1 file. `indent` is the number of blanks before the pairs of time
+/// and value.
 fn read_blocks(
     source: &Source<'_>,
     hints: &Hints<'_>,
@@ -113,7 +115,7 @@ fn read_block(
         record.station = station_name(source, first + 5);
     }
     let name = channel_name(source, first + 6);
-    // Integer 27 of the header is the direction's code.
+    // Integer 27 of the header is the direction code.
     let code = super::source::parse_number(source.slice(first + 14, 50, 5));
     let direction = Direction::of_name_or_code(&name, code);
     let data = first + HEADER_LINES;
@@ -141,15 +143,16 @@ fn read_block(
         record.warn_of_start(line, stated.trim(), channel.start);
     }
     channel.site = Site::default().at(position(&source.text(first + 4)));
-    // `MAX  =  -.200 G`: in g even where the data are in g/10.
+    // The peak, as in `MAX  =  -.200 G`, is in g even if the data are in g/10.
     let factor = if source.has(first + 11, "CM/SEC") { GAL } else { STANDARD_GRAVITY };
     channel.state_peak(source.printed_after(first + 11, "MAX"), factor);
     record.channels.push(channel);
     source.end_of_channel(next, "UNCORRECTED ACCELEROGRAM")
 }
 
+/// Reads equally spaced values below a data line such as
 /// `31932 Accelerogram points at 100 pts/sec in units of g. Format: (8f9.6)` or
-/// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.  (UNITS: G)`.
+/// `12001 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC. (UNITS: G)`.
 fn read_equal(
     source: &Source<'_>,
     record: &mut Record,
@@ -189,31 +192,33 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
     source.header(line, what, quoted(&source.text(line)))
 }
 
-/// Returns the name in columns 1 to 40; network and kind of data follow it.
+/// Returns the station name in columns 1 to 40; the network and the kind of data follow it.
 pub(crate) fn station_name(source: &Source<'_>, line: usize) -> String {
     let text = latin1(source.slice(line, 0, 40));
     text.trim_start().split("   ").next().unwrap_or("").trim().to_owned()
 }
 
-/// Parses `START TIME:  7/06/19, 03:19:37.0 UTC` among the text lines; a film recorder starts at its trigger.
+/// Parses the start, such as `START TIME:  7/06/19, 03:19:37.0 UTC`, from the text lines. A film
+/// recorder starts at its trigger time.
 pub(crate) fn start(source: &Source<'_>, first: usize) -> Option<Utc> {
     (first..first + 6)
         .find_map(|line| Utc::in_header(&start_in(source, line)?, DateOrder::MonthFirst))
 }
 
-/// Returns the line and the text of the first stated start, whether it can be read or not.
+/// Returns the line and the text of the first stated start, even if the text cannot be parsed.
 pub(crate) fn stated_start(source: &Source<'_>, first: usize) -> Option<(usize, String)> {
     (first..first + 6).find_map(|line| Some((line, start_in(source, line)?)))
 }
 
-/// Returns what follows the key of a start in a line.
+/// Returns the text after the key of a start time.
 fn start_in(source: &Source<'_>, line: usize) -> Option<String> {
     let keys = ["START TIME:", "TRIGGER TIME:"];
     let at = keys.into_iter().find_map(|key| Some(source.find(line, key)? + key.len()))?;
     Some(latin1(&source.raw(line)[at..]))
 }
 
-/// Parses `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W`, ignoring columns 73 to 80.
+/// Parses a channel name from `CHAN  1:  90 DEG`, `CHAN  2: V   (STA CHN:  2)` or `COMP N00W`;
+/// columns 73 to 80 are ignored.
 pub(crate) fn channel_name(source: &Source<'_>, line: usize) -> String {
     let text = latin1(source.slice(line, 0, 72));
     let text = text.split('(').next().unwrap_or("");

@@ -1,7 +1,7 @@
-//! COSMOS format 1.20, volumes 0 (counts), 1 and 2.
+//! Reader of COSMOS format 1.20, volumes 0 (counts), 1 and 2.
 //!
-//! Every count and Fortran format is read from the line that states it.
-//! Spec: Strong-Motion Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
+//! Every count and every Fortran format is taken from the line that states it. Spec: Strong-Motion
+//! Data Format of the COSMOS Board, version 1.20 (2001), tables 2 to 6.
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Printed, Source, latin1, leading_number, quoted, shorten,
@@ -82,11 +82,11 @@ fn damaged(source: &Source<'_>, line: usize, expected: &str) -> ReadError {
         line.min(source.lines.len().saturating_sub(1)),
         expected,
         quoted(&source.text(line)),
-        "lines are missing or in excess; get the file again from its source",
+        "lines are missing or added; get the file again from its source",
     )
 }
 
-/// Reads the chain of counts: text lines, integers, reals, comments, data line.
+/// Reads the header from its counts: text lines, integers, reals, comments, data line.
 fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     if !source.has(first, "(Format v") {
         return Err(damaged(source, first, "\"... (Format v01.20 with 13 text lines)\""));
@@ -124,7 +124,7 @@ fn header(source: &Source<'_>, first: usize) -> Result<Header, ReadError> {
     Ok(Header { integers, reals, unknown, data_line })
 }
 
-/// Parses `Format= (10I8)` or `Format=(8F10.5)`.
+/// Parses a Fortran format such as `Format= (10I8)` or `Format=(8F10.5)`.
 fn format_after(source: &Source<'_>, line: usize) -> Option<Columns> {
     let at = source.find(line, "format")?;
     let text = latin1(&source.raw(line)[at..]);
@@ -158,7 +158,7 @@ fn read_channel(
             "give the acceleration file of the same record",
         )
     };
-    // The closing line is free text: anything up to the next header.
+    // The closing line is free text; any line up to the next header is accepted.
     if next < source.lines.len() && !source.has(next, "(Format v") {
         if !source.has(next, "end") {
             return Err(damaged(source, next, "\"End-of-data\""));
@@ -219,13 +219,14 @@ fn read_channel(
     Ok((Ok(channel), next))
 }
 
-/// Returns the time of the first sample: integers 40 to 45 and real 30.
+/// Returns the time of the first sample, from integers 40 to 45 and real 30.
 fn start(header: &Header) -> Option<Utc> {
     let part = |n: usize| header.integer(n);
     Utc::new(part(40)?, part(42)?, part(43)?, part(44)?, part(45)?, header.real(30)?)
 }
 
-/// Returns the site: reals 1 to 3, and the sensor's place in a structure from text line 9.
+/// Returns the site, from reals 1 to 3; the location of the sensor in a structure comes from text
+/// line 9.
 fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     let line = source.text(first + 8);
     let sensor = line.split_once("Location:").map_or("", |(_, place)| place.trim()).to_owned();
@@ -233,7 +234,8 @@ fn site(source: &Source<'_>, first: usize, header: &Header) -> Site {
     site.at(header.real(1).zip(header.real(2)))
 }
 
-/// Returns `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the caller's counts per m/s².
+/// Returns the counts-to-acceleration factor `LSB (µV) / (sensor sensitivity (V/g) × gain)`, or the
+/// caller's counts per m/s².
 fn counts_to_si(
     source: &Source<'_>,
     hints: &Hints<'_>,
@@ -260,13 +262,13 @@ fn counts_to_si(
     Ok(lsb * 1e-6 / (sensor * gain) * STANDARD_GRAVITY)
 }
 
-/// Parses `Sta Chan   1: 90 Deg (Rcrdr Chan  ?) Location:...`
+/// Parses a channel name from `Sta Chan   1: 90 Deg (Rcrdr Chan  ?) Location:...`.
 fn channel_name(source: &Source<'_>, first: usize) -> String {
     let text = source.text(first + 8);
     let name = text.split('(').next().unwrap_or("");
     let name = name.strip_prefix("Sta").map_or(name, str::trim);
     let name = name.strip_prefix("Chan").or_else(|| name.strip_prefix("Cha")).unwrap_or(name);
-    // "Sta Cha:  1: 340 deg" and "Sta Chan   1: 90 Deg".
+    // Examples are "Sta Cha:  1: 340 deg" and "Sta Chan   1: 90 Deg".
     name.rsplit(':').next().unwrap_or("").trim().to_owned()
 }
 

@@ -1,4 +1,4 @@
-//! Channels with SEED codes whose samples are counts, or have a unit stated in the file.
+//! Converts channels with SEED codes whose samples are counts or have a stated unit.
 
 use super::source::Source;
 use super::{Hints, seed};
@@ -10,20 +10,20 @@ use crate::site::Site;
 use crate::units::MotionUnit;
 use crate::utc::Utc;
 
-/// The samples of one channel as in a file.
+/// The samples of one channel, as in the file.
 pub(super) struct Samples {
     pub(super) codes: SeedName,
     pub(super) start: Option<Utc>,
-    /// Step (s).
+    /// Time step (s).
     pub(super) time_step: f64,
     pub(super) values: Vec<f64>,
-    /// Stated unit.
+    /// Unit stated in the file.
     pub(super) unit: Unit,
-    /// Direction of the channel, if the file states more than its code.
+    /// Direction of the channel, if the file states more than the channel code.
     pub(super) direction: Option<Direction>,
 }
 
-/// Unit of samples, as stated in a file.
+/// Unit of samples, as stated in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Unit {
     /// Counts of a digitizer.
@@ -43,9 +43,10 @@ impl Unit {
     }
 }
 
-/// Converts a channel to m/s²: divides counts by the sensitivity that the caller gives, converts samples with a
-/// unit; differentiates velocities and displacements if the caller requests it.
+/// Converts a channel to m/s².
 ///
+/// Counts are divided by the sensitivity given by the caller or by metadata; samples with a unit
+/// are converted. Velocities and displacements are differentiated if the caller requests it.
 /// `format` is the name of the format in messages.
 pub(super) fn channel(
     source: &Source<'_>,
@@ -56,7 +57,7 @@ pub(super) fn channel(
 ) -> Result<Channel, ReadError> {
     let Samples { codes, start, time_step, values, unit, direction } = samples;
     let name = codes.channel.clone();
-    // Metadata are for counts; a stated unit needs none.
+    // Metadata describe counts; samples with a stated unit need none.
     let known = (unit == Unit::Counts).then(|| hints.instrument(&codes, start)).flatten();
     let factor = match unit {
         Unit::Counts => {
@@ -76,7 +77,7 @@ pub(super) fn channel(
             1.0 / sensitivity
         }
         Unit::Motion(MotionUnit { quantity, factor }) => {
-            // A quantity stated in the file takes precedence over the code of the channel.
+            // A quantity stated in the file takes precedence over the channel code.
             if quantity != Quantity::Acceleration && hints.recorded().is_none() {
                 return Err(source.error(
                     (),
@@ -113,7 +114,7 @@ pub(super) fn channel(
     Ok(channel)
 }
 
-/// Returns the stations of all channels, each once.
+/// Returns the codes of the stations of all channels, each once.
 pub(super) fn stations(record: &Record) -> String {
     let mut all: Vec<&str> = record.channels.iter().map(|c| c.site.station.as_str()).collect();
     all.dedup();

@@ -1,7 +1,8 @@
-//! CSMIP volume 2: corrected acceleration, velocity and displacement; volume 3 spectra are refused.
+//! Reader of CSMIP volume 2: corrected acceleration, velocity and displacement. Volume 3 spectra
+//! are refused.
 //!
-//! 25 text lines, 7 lines 16I5, 13 lines of reals, then three blocks, each with a data line.
-//! Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
+//! A channel has 25 text lines, 7 lines of integers (16I5), 13 lines of reals, then three blocks,
+//! each with a data line. Spec: Shakal, Huang and Rojahn 1985, CSMIP report OSMS 85-03.
 
 use super::cdmg::{channel_name, format_in, holds_integers, start, stated_start, station_name};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, quoted};
@@ -18,7 +19,7 @@ pub(crate) const FORMAT: Format =
 
 const TEXT_LINES: usize = 25;
 const INTEGER_LINES: usize = 7;
-/// Text, integers and reals.
+/// Number of header lines: text, integers and reals.
 const HEADER_LINES: usize = 45;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -53,14 +54,14 @@ fn read_channel(
     if record.channels.is_empty() {
         record.event = source.text(first + 2);
     }
-    // Normally line 7; the first line that begins with CHAN if a line is missing.
+    // Normally line 7; if a line is missing, the first line that begins with CHAN.
     let name_line = header
         .clone()
         .find(|&line| source.text(line).to_ascii_uppercase().starts_with("CHAN"))
         .unwrap_or(first + 6);
     let name = channel_name(source, name_line);
     if record.channels.is_empty() {
-        // Normally the line before it.
+        // The station is normally on the line before the channel name.
         record.station = station_name(source, name_line.saturating_sub(1));
     }
     let (accelerations, mut next) =
@@ -106,7 +107,7 @@ fn read_channel(
     source.end_of_channel(next, "CORRECTED ACCELEROGRAM")
 }
 
-/// Reads one block of `key` (acc, vel, dis) if its data line is here.
+/// Reads one block of the quantity `key` (acc, vel, dis), if this line is its data line.
 fn read_block(
     source: &Source<'_>,
     record: &mut Record,
@@ -143,7 +144,8 @@ fn unit(
     })
 }
 
-/// Returns the step on the data line; real 61 of the header refines it if both agree in the printed digits.
+/// Returns the step on the data line. Real 61 of the header refines it if both agree within the
+/// printed digits.
 fn time_step(source: &Source<'_>, first: usize, data: usize) -> Result<f64, ReadError> {
     let printed = source
         .printed_after(data, "spaced at")

@@ -1,6 +1,7 @@
-//! CSMNC (China Strong Motion Networks Center): a header of sixteen lines, then values by blanks.
+//! Reader of CSMNC files (China Strong Motion Networks Center): a header of sixteen lines, then
+//! values separated by blanks.
 //!
-//! Times are those of Beijing (BTM, UTC+8).
+//! Times are Beijing time (BTM, UTC+8).
 
 use super::source::{LARGEST_ACCELERATION, Source, latin1, leading_number, quoted};
 use super::{Format, Hints};
@@ -60,8 +61,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         source.tokens(line, f64::INFINITY, &mut row).map_or(0, |()| row.len())
     };
     let below = peak_line + 1..source.lines.len();
-    // A line of the header may be a single number, such as that of the record; values one to a line are as many as
-    // stated.
+    // A header line may be a single number, such as the number of the record. Values one per line
+    // are as many as the header states.
     let first = below
         .clone()
         .find(|&line| numbers(line) > 1)
@@ -105,8 +106,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Checks that count and step agree with the stated duration, to within one step and half of its last digit, as
-/// conventions of counting and rounding differ.
+/// Checks that count and step agree with the stated duration. A difference of one step and half of
+/// the last digit is allowed, because conventions of counting and rounding differ.
 fn check_duration(
     source: &Source<'_>,
     line: usize,

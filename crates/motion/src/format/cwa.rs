@@ -1,7 +1,8 @@
-//! CWA (formerly CWB), Taiwan: `#` lines, then time and three components in gal, vertical first.
+//! Reader of CWA (formerly CWB) files, Taiwan: `#` lines, then time and three components in gal,
+//! the vertical first.
 //!
-//! Spec: header lines of the Taiwan Strong Motion Instrumentation Program text files; `#DataSequence` states the
-//! order of the columns.
+//! Spec: header lines of the Taiwan Strong Motion Instrumentation Program text files;
+//! `#DataSequence` states the order of the columns.
 
 use super::even::{Timed, even_steps};
 use super::source::{
@@ -40,7 +41,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
             "give the acceleration file of the same station",
         ));
     }
-    // "#Data:" with its colon; "#DataSequence:" is another line.
+    // The key is "#Data:" with its colon; "#DataSequence:" is another line.
     let (format_line, format) = need("#Data:")?;
     let columns = Columns::parse(&format).ok_or_else(|| {
         source.header(format_line, "a Fortran format such as 4F10.3", quoted(&format))
@@ -104,12 +105,12 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         let plain = name.split('(').next().unwrap_or("").trim().to_owned();
         let mut direction = Direction::parse(&plain);
         if name.contains("(-)") && direction.orientation.is_some() {
-            record.notes.push(format!("channel {plain} is stated as negative and was turned"));
+            record.notes.push(format!("channel {plain} is stated as negative and was reversed"));
             direction.downward = true;
         }
         let mut channel = Channel::new(plain.clone(), direction, time_step, values);
         if let Some((_, text)) = field(source, &format!("#AmplitudeMAX. {plain}:")) {
-            // Both extremes are stated: "0.658~   -0.837".
+            // Both extremes are stated, as in "0.658~   -0.837".
             let extremes = text.split('~').filter_map(|part| leading_printed(part.as_bytes()));
             let largest = extremes.max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
             channel.state_peak(largest, GAL);
@@ -121,7 +122,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let magnitudes = [("Mw", stated("#Magnitude(Mw):")), ("ML", stated("#Magnitude(Ml):"))];
     record.earthquake = Earthquake::of_magnitude(magnitudes).at(epicenter, stated("#Depth(km):"));
     let position = stated("#StationLatitude(N):").zip(stated("#StationLongitude(E):"));
-    // Taiwan is eight hours ahead.
+    // Local time in Taiwan is UTC+8.
     let (line, stated) = field(source, "#StartTime(GMT+08):").unwrap_or_default();
     let local = Utc::in_header(&stated, DateOrder::DayFirst);
     record.warn_of_start(line, &stated, local);

@@ -1,4 +1,4 @@
-//! ESM and ITACA ASCII (DYNA 1.2): `KEY: value` lines, then one value per line.
+//! Reader of ESM and ITACA ASCII files (DYNA 1.2): `KEY: value` lines, then one value per line.
 //!
 //! Spec: Luzi et al. 2016, "Engineering Strong-Motion database, format DYNA 1.2" (INGV).
 
@@ -16,7 +16,7 @@ use crate::utc::{DateOrder, Utc};
 
 pub(crate) const FORMAT: Format = Format { name: "esm", title: "ESM and ITACA ASCII", sniff, read };
 
-/// Longest header searched.
+/// Largest number of header lines that are searched.
 const MOST_HEADER_LINES: usize = 120;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -25,7 +25,7 @@ fn sniff(source: &Source<'_>) -> bool {
             && (0..MOST_HEADER_LINES).any(|line| source.text(line).starts_with("NDATA:")))
 }
 
-/// Returns line and value of a key, if it has one; values may contain colons.
+/// Returns the line and the value of a key, if present; the value may contain colons.
 fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> {
     let found = source.field(end, |text| {
         text.split_once(':').filter(|(name, _)| name.trim() == key).map(|(_, value)| value)
@@ -33,7 +33,8 @@ fn field(source: &Source<'_>, end: usize, key: &str) -> Option<(usize, String)> 
     found.filter(|(_, value)| !value.is_empty())
 }
 
-/// Parses `20190728_160905.700`, or `2020/10/30 11:51:24.000000` as AFAD's TADAS writes it.
+/// Parses a start time such as `20190728_160905.700`, or `2020/10/30 11:51:24.000000` as written by
+/// AFAD's TADAS.
 fn start(text: &str) -> Option<Utc> {
     let compact = || {
         let (date, clock) = text.split_once('_')?;

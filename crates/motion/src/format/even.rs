@@ -1,19 +1,19 @@
-//! Step from a time column: even times determine it, uneven ones are interpolated; it is never assumed.
+//! Derives the time step from a time column; uneven times are interpolated.
 
 use super::source::{Columns, Source};
 use crate::error::ReadError;
 use crate::math;
 use crate::record::Record;
 
-/// Columns with the time of each row.
+/// Columns of values, with the time of each row.
 pub(crate) struct Timed {
-    /// Line of the first row, 0-based.
+    /// Line of the first row, counted from 0.
     pub(crate) first_line: usize,
-    /// Rows per line.
+    /// Number of rows per line.
     pub(crate) per_line: usize,
     /// Times (s).
     pub(crate) time: Vec<f64>,
-    /// One column per channel.
+    /// Values, one column per channel.
     pub(crate) values: Vec<Vec<f64>>,
     /// One unit of the last printed digit of the times (s).
     pub(crate) resolution: f64,
@@ -32,10 +32,10 @@ impl Timed {
     }
 }
 
-/// Returns the even step of the times and the columns at that step.
+/// Returns the even step of the times, and the columns at that step.
 ///
-/// Times that are even within their printed digits give the step exactly; others are interpolated linearly to a
-/// finer even step, with a warning.
+/// Times that are even within their printed digits give the step exactly. Other times are
+/// interpolated linearly to a finer even step, with a warning.
 pub(crate) fn even_steps(
     source: &Source<'_>,
     record: &mut Record,
@@ -47,7 +47,7 @@ pub(crate) fn even_steps(
     if time.len() < 2 {
         return Err(source.cut("at least 2 rows", format!("{} rows", time.len())));
     }
-    // Coarsely printed times may repeat; only decreasing times are damage.
+    // Coarsely printed times may repeat; only decreasing times indicate damage.
     let back = (1..time.len()).find(|&row| !(time[row] >= time[row - 1]));
     let stuck = (time.len() > 2 && time[time.len() - 1] <= time[0]).then_some(1);
     if let Some(row) = back.or(stuck) {
@@ -72,13 +72,14 @@ pub(crate) fn even_steps(
         record.warn(
             first_line + 1,
             format!(
-                "channel {label}: the times jitter about an even step of {step} s by their last \
+                "channel {label}: the times deviate from an even step of {step} s by their last \
                  digits; the even step is used"
             ),
         );
         return Ok((step, values));
     }
-    // An even step throughout with a hole is a lost line, not a digitized trace.
+    // If the step is even except for one gap, a line was lost; the record was not digitized by
+    // hand.
     let (mut shortest, mut longest, mut hole) = (f64::INFINITY, 0.0_f64, 1);
     for row in 1..time.len() {
         let gap = time[row] - time[row - 1];
@@ -125,25 +126,25 @@ pub(crate) fn even_steps(
     Ok((step, columns))
 }
 
-/// Returns the rounding (s) of a time: of the length since the first one, and of the double that holds it, as times
-/// since 1970 are large.
+/// Returns the rounding error (s) of a time. It depends on the time since the first sample and on
+/// the magnitude of the number, because times since 1970 are large.
 fn slack(time: f64, first: f64) -> f64 {
     1e-9 * (time - first).abs() + 4.0 * f64::EPSILON * time.abs()
 }
 
-/// Returns a round step from which no time deviates by more than one unit of its last digit, as for truncated
-/// times.
+/// Returns a round step for which no time deviates by more than one unit of its last digit, as with
+/// truncated times.
 fn jittered(time: &[f64], mean: f64, resolution: f64) -> Option<f64> {
     let step = 1.0 / (1.0 / mean).round();
     let strays = |(k, t): (usize, &f64)| {
         (t - time[0] - k as f64 * step).abs() > 1.01 * resolution + slack(*t, time[0])
     };
-    // Times coarser than the step would be no evidence of evenness.
+    // Times printed more coarsely than the step would not show whether they are even.
     let fine = resolution < 0.5 * step;
     (fine && !time.iter().enumerate().any(strays)).then_some(step)
 }
 
-/// Returns round steps near the mean, then the mean itself.
+/// Returns round steps near the mean, then the mean.
 fn candidates(mean: f64, relative: f64) -> impl Iterator<Item = f64> {
     let rate = (1.0 / mean).round();
     let decimal = (mean * 1e5).round() / 1e5;

@@ -1,8 +1,9 @@
-//! GeoNet, New Zealand: V1A uncorrected and V2A corrected accelerograms in millimeters.
+//! Reader of GeoNet V1A (uncorrected) and V2A (corrected) accelerograms, New Zealand, in
+//! millimeters.
 //!
-//! 16 text lines, 10 lines of ten numbers of 8 columns, then ten columns of 8 per block; V2A keeps
-//! its filter pads in the file.
-//! Spec: GeoNet, "Strong motion data, file formats" (GNS Science).
+//! A component has 16 text lines, 10 lines of ten numbers of 8 columns, then blocks of ten columns
+//! of 8; V2A files include the pads of the filter. Spec: GeoNet, "Strong motion data, file formats"
+//! (GNS Science).
 
 use super::source::{Columns, LARGEST_ACCELERATION, Source, quoted};
 use super::{Format, Hints};
@@ -46,7 +47,7 @@ fn read_component(
         return Err(source.damaged(first,
             "\"Corrected accelerogram\" or \"Uncorrected accelerogram\" at the start of a component",
             quoted(&source.text(first)),
-            "a header states another number of points than the file holds; get the file again \
+            "a header states another number of points than the file contains; get the file again \
              from its source",
         ));
     }
@@ -73,8 +74,8 @@ fn read_component(
         .unwrap_or("")
         .to_owned();
     let mut channel = Channel::new(name.clone(), Direction::parse(&name), time_step, values);
-    // Year and month, day and hour, minute and milliseconds of time zero; a corrected record begins with the
-    // filter's pad before it.
+    // Time zero is given as year and month, day and hour, minute and milliseconds. A corrected
+    // record begins earlier, with the pad of the filter.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |row: usize, column: usize| cell(row, column) as i64;
     let zero = Utc::new(
@@ -87,7 +88,7 @@ fn read_component(
     );
     channel.start = zero.map(|zero| zero.later(-cell(7, 2)));
     channel.site = Site::default().at(position(&source.text(first + 1)));
-    // "Epicentre 42 41 33S 173 01 19E  Bearing S18W  Dist    9km  Depth   15km Mw 7.82".
+    // Example: "Epicentre 42 41 33S 173 01 19E  Bearing S18W  Dist    9km  Depth   15km Mw 7.82".
     let origin = source.text(first + 8);
     let place = first + 8;
     record.earthquake = Earthquake {

@@ -1,27 +1,29 @@
-//! Gravity, which accelerometers record at rest: found by the means of channels, and taken out.
+//! Detects and removes gravity, which accelerometers record at rest.
 
 use crate::error::ReadError;
 use crate::format::Source;
 use crate::math::{STANDARD_GRAVITY, peak, take_mean};
 use crate::record::{Channel, Quantity, Record};
 
-/// Tolerance of a mean, relative to gravity: errors of calibration and the tilt of a single axis.
+/// Relative tolerance of a mean compared with gravity, for calibration errors and for the tilt of a
+/// single axis.
 const TOLERANCE: f64 = 0.05;
-/// Largest mean (m/s²) of a ground motion over a whole record: a larger one is an offset.
+/// Largest mean (m/s²) of a ground motion over a whole record; a larger mean is an offset.
 const LARGEST_MEAN: f64 = 0.5 * STANDARD_GRAVITY;
-/// Largest mean (m/s²) of values of one sign alone.
+/// Largest mean (m/s²) of a ground motion whose values all have the same sign.
 const LARGEST_ONE_SIDED: f64 = 0.05 * STANDARD_GRAVITY;
-/// Shortest record (s) whose mean is judged; pulses of formulas are shorter.
+/// Shortest record (s) whose mean is checked; analytic pulses are shorter.
 const SHORTEST: f64 = 2.0;
-/// Smallest mean (m/s²) of an axis that is a part of gravity.
+/// Smallest mean (m/s²) of an axis that is considered a component of gravity.
 const SMALLEST_PART: f64 = 0.05;
-/// Largest angle (degrees) between gravity and an axis that is vertical.
+/// Largest angle (degrees) between gravity and an axis that is considered vertical.
 const LARGEST_TILT: f64 = 3.0;
 
-/// Subtracts gravity from each channel that has it, with a warning, also where it is spread over the axes of a sensor.
+/// Subtracts gravity from each channel that contains it, with a warning. Gravity may be spread over
+/// several axes of a sensor.
 ///
 /// # Errors
-/// If another mean is too large to be that of a ground motion.
+/// If another mean is too large for a ground motion.
 pub(super) fn take_out(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     let means: Vec<f64> = record.channels.iter().map(mean).collect();
     let sensor = |channel: &Channel| (channel.site.station.clone(), channel.site.sensor.clone());
@@ -41,7 +43,7 @@ pub(super) fn take_out(source: &Source<'_>, record: &mut Record) -> Result<(), R
             record.warn(
                 None,
                 format!(
-                    "the vertical is {tilt:.0} degrees off the nearest axis of the sensor: turn the record into \
+                    "the vertical is {tilt:.0} degrees off the nearest axis of the sensor: rotate the record into \
                      vertical and horizontal components before use"
                 ),
             );
@@ -81,7 +83,7 @@ pub(super) fn take_out(source: &Source<'_>, record: &mut Record) -> Result<(), R
     Ok(())
 }
 
-/// Returns the mean of a channel; 0 for one that is too short.
+/// Returns the mean of a channel, or 0 for a channel that is too short.
 fn mean(channel: &Channel) -> f64 {
     let values = &channel.acceleration;
     if channel.duration() < SHORTEST { 0.0 } else { crate::math::mean(values) }

@@ -1,4 +1,4 @@
-//! GSE 2 and IMS 1 waveforms with integers (INT) or their six-bit compression (CM6).
+//! Reader of GSE 2 and IMS 1 waveforms with integers (INT) or six-bit compression (CM6).
 //!
 //! Spec: GSETT-3, CRP/243 (1995), formats and protocols, sections WID2, DAT2 and CHK2, appendix on
 //! compression.
@@ -15,9 +15,9 @@ use crate::utc::Utc;
 pub(crate) const FORMAT: Format =
     Format { name: "gse2", title: "GSE 2 (INT and CM6)", sniff, read };
 
-/// Number of lines of a message above the first waveform that are searched.
+/// Number of lines searched before the first waveform of a message.
 const MOST_LINES_BEFORE: usize = 60;
-const AGAIN: &str = "the file is cut or damaged; get it again from its source";
+const AGAIN: &str = "the file is truncated or damaged; get it again from its source";
 
 fn begins(source: &Source<'_>, line: usize, key: &str) -> bool {
     source.raw(line).starts_with(key.as_bytes())
@@ -40,7 +40,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Reads one waveform from its `WID2`; returns it with the line after its `CHK2`.
+/// Reads one waveform from its `WID2` line; also returns the line after its `CHK2` line.
 fn section(source: &Source<'_>, head: usize) -> Result<(Samples, usize), ReadError> {
     let text =
         |from: usize, to: usize| latin1(source.slice(head, from, to - from)).trim().to_owned();
@@ -85,7 +85,7 @@ fn section(source: &Source<'_>, head: usize) -> Result<(Samples, usize), ReadErr
         return Err(source.damaged((head, 48), expected, integers.len().to_string(), AGAIN));
     }
     let stated = source.number_after(end, "CHK2").ok_or_else(|| {
-        source.damaged(end, "a checksum behind CHK2", quoted(&source.text(end)), AGAIN)
+        source.damaged(end, "a checksum after CHK2", quoted(&source.text(end)), AGAIN)
     })?;
     let found = checksum(&integers);
     if stated != found as f64 {
@@ -102,7 +102,7 @@ fn section(source: &Source<'_>, head: usize) -> Result<(Samples, usize), ReadErr
         location: text(39, 43),
         channel: text(35, 38),
     };
-    // Azimuth, and angle from the vertical; the code of the channel takes precedence.
+    // The azimuth and the angle from the vertical; the channel code takes precedence.
     let angles = [text(95, 100), text(101, 105)].map(|text| parse_number(text.as_bytes()));
     let stated = match angles {
         [Some(azimuth), Some(90.0)] if (0.0..=360.0).contains(&azimuth) => {
@@ -131,7 +131,7 @@ fn integers(source: &Source<'_>, from: usize, to: usize) -> Result<Vec<i64>, Rea
     Ok(all)
 }
 
-/// Returns the value of a character, 0 to 63.
+/// Returns the value of a six-bit character, 0 to 63.
 fn six(byte: u8) -> Option<u8> {
     Some(match byte {
         b'+' => 0,
@@ -143,13 +143,13 @@ fn six(byte: u8) -> Option<u8> {
     })
 }
 
-/// Decodes numbers from six-bit characters: the highest bit marks a continuation, the next bit of the first is the
-/// sign, all others are digits.
+/// Decodes numbers from six-bit characters. The highest bit marks a continuation, the next bit of
+/// the first character is the sign, and all other bits are digits.
 fn six_bits(encoded: impl Iterator<Item = u8>, count: usize) -> Option<Vec<i64>> {
     let mut numbers = Vec::new();
     let mut open: Option<(bool, i64)> = None;
     for byte in encoded.filter(|byte| !byte.is_ascii_whitespace()) {
-        // Padding of the last line is ignored.
+        // Ignore the padding of the last line.
         if numbers.len() == count {
             break;
         }
@@ -169,7 +169,7 @@ fn six_bits(encoded: impl Iterator<Item = u8>, count: usize) -> Option<Vec<i64>>
     open.is_none().then_some(numbers)
 }
 
-/// Sums second differences to samples; `None` if one exceeds 32 bits.
+/// Integrates second differences to samples; `None` if a sample exceeds 32 bits.
 fn twice_summed(differences: &[i64]) -> Option<Vec<i64>> {
     let (mut value, mut slope) = (0_i64, 0_i64);
     let mut all = Vec::with_capacity(differences.len());
@@ -181,7 +181,7 @@ fn twice_summed(differences: &[i64]) -> Option<Vec<i64>> {
     Some(all)
 }
 
-/// Returns the checksum of the format: the absolute value of a sum kept below 10⁸.
+/// Returns the checksum of the format: the absolute value of a running sum kept below 10⁸.
 fn checksum(values: &[i64]) -> i64 {
     const MODULUS: i64 = 100_000_000;
     let sum = values.iter().fold(0_i64, |sum, value| (sum + value % MODULUS) % MODULUS);

@@ -1,4 +1,4 @@
-//! Options of the caller, with a record of which the reader used.
+//! Options of the caller, with a record of which were used by the reader.
 
 use std::cell::{Cell, RefCell};
 
@@ -8,19 +8,20 @@ use crate::record::Quantity;
 use crate::units::AccelerationUnit;
 use crate::utc::Utc;
 
-/// Largest relative difference of two sensitivities of one channel that counts as rounding.
+/// Largest relative difference between two sensitivities of one channel that counts as rounding.
 const LARGEST_DIFFERENCE: f64 = 0.005;
 
-/// Options of the caller, for readers.
+/// Options of the caller, as seen by a reader.
 ///
-/// A reader queries only what the file does not state; unused options are ignored, and reported.
+/// A reader queries only information that the file does not state. Unused options are ignored and
+/// reported.
 pub(super) struct Hints<'a> {
     options: &'a ReadOptions,
     unit: Cell<bool>,
     time_step: Cell<bool>,
     sensitivity: Cell<bool>,
     recorded: Cell<bool>,
-    /// Metadata of one channel that contradict each other.
+    /// Metadata of one channel that contradict each other, in words.
     contradiction: RefCell<Option<String>>,
 }
 
@@ -42,7 +43,7 @@ impl<'a> Hints<'a> {
         self.options
     }
 
-    /// Marks as used what another reader used of the same options.
+    /// Marks the options used by another reader as used.
     pub(super) fn used_as(&self, other: &Hints<'_>) {
         for (mine, theirs) in [
             (&self.unit, &other.unit),
@@ -75,7 +76,7 @@ impl<'a> Hints<'a> {
         let mut fitting =
             self.options.instruments.iter().filter(|known| known.describes(seed, start));
         let first = fitting.next()?;
-        // What the caller gives by itself names no station and precedes the metadata.
+        // Metadata given by the caller without a station take precedence over those of a file.
         let differs = |other: &&Instrument| {
             (other.sensitivity / first.sensitivity - 1.0).abs() > LARGEST_DIFFERENCE
         };
@@ -95,12 +96,12 @@ impl<'a> Hints<'a> {
         Some(first)
     }
 
-    /// Returns the words on metadata of one channel that contradict each other, if any did.
+    /// Returns a description of contradictory metadata of one channel, if there are any.
     pub(super) fn contradiction(&self) -> Option<String> {
         self.contradiction.borrow().clone()
     }
 
-    /// States that no metadata match a channel, for the error of a missing sensitivity.
+    /// Describes that no metadata match a channel, for the error about a missing sensitivity.
     pub(super) fn no_instrument(&self, seed: &SeedName, start: Option<Utc>) -> String {
         let count = self.options.instruments.len();
         if count == 0 {
@@ -109,7 +110,7 @@ impl<'a> Hints<'a> {
         let SeedName { network, station, location, channel } = seed;
         let at = start.map_or_else(String::new, |start| format!(" at {start}"));
         format!(
-            "none for {network}.{station}.{location}.{channel}{at} among {count} that are given"
+            "none for {network}.{station}.{location}.{channel}{at} among {count} channels with metadata"
         )
     }
 
@@ -118,7 +119,7 @@ impl<'a> Hints<'a> {
         self.options.recorded
     }
 
-    /// Returns the names of unused options.
+    /// Returns the names of the options that were given but not used.
     pub(super) fn ignored(&self) -> impl Iterator<Item = &'static str> {
         let options = self.options;
         let counts = options.sensitivity.is_some() || !options.instruments.is_empty();

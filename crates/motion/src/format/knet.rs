@@ -1,8 +1,8 @@
-//! K-NET and KiK-net, NIED Japan: counts with a scale factor and a large offset, one component.
+//! Reader of K-NET and KiK-net files (NIED, Japan): one component in counts, with a scale factor
+//! and a large offset.
 //!
-//! The offset, often larger than the motion, is the mean of the whole record; the header's peak is
-//! stated after its removal.
-//! Spec: NIED, "K-NET ASCII format" (knetform).
+//! The offset, often larger than the motion, is the mean of the whole record; the peak in the
+//! header is stated after its removal. Spec: NIED, "K-NET ASCII format" (knetform).
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
@@ -20,8 +20,8 @@ pub(crate) const FORMAT: Format =
     Format { name: "knet", title: "K-NET and KiK-net (NIED)", sniff, read };
 
 const HEADER_LINES: usize = 17;
-/// Difference between the record time and that of the first sample (s): the delay of the recorder and the nine
-/// hours of Japan time.
+/// Difference (s) between the stated record time and the time of the first sample in UTC: the delay
+/// of the recorder and the nine hours of Japan time.
 const LATE: f64 = 15.0 + 9.0 * 3600.0;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -29,7 +29,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && (0..HEADER_LINES).any(|line| source.has(line, "Scale Factor"))
 }
 
-/// Returns line and text of a header field by the start of its key.
+/// Returns the line and the text of a header field, found by the start of its key.
 fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     source.field(HEADER_LINES + 2, |text| {
         text.starts_with(key).then(|| text.get(18..).unwrap_or_default())
@@ -57,7 +57,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     let counts = read_counts(source, first, LARGEST_ACCELERATION / factor)?;
     let mut used = counts.len();
     let (duration_line, duration) = need("Duration")?;
-    // Some state no duration, or none above 0.
+    // Some files state no duration, or zero.
     if let Some(seconds) = leading_number(duration.as_bytes()).filter(|s| *s > 0.0) {
         let length = [seconds, rate];
         used = super::check_seconds(source, &mut record, duration_line, length, counts.len())?;
@@ -96,7 +96,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Reads eight integers of nine columns per line; the last line may be short.
+/// Reads eight integers of nine columns per line; the last line may be shorter.
 fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>, ReadError> {
     let last = source.lines.len();
     let mut values = Vec::with_capacity(8 * last.saturating_sub(first));
@@ -109,7 +109,7 @@ fn read_counts(source: &Source<'_>, first: usize, limit: f64) -> Result<Vec<f64>
     Ok(values)
 }
 
-/// Parses `3920(gal)/6182761` to gal per count.
+/// Parses a scale factor such as `3920(gal)/6182761`; returns gal per count.
 fn scale(text: &str) -> Option<f64> {
     let (full, counts) = text.split_once('/')?;
     let unit = full.find("(gal)")?;
@@ -119,7 +119,8 @@ fn scale(text: &str) -> Option<f64> {
     (factor.is_finite() && factor > 0.0).then_some(factor)
 }
 
-/// Parses a direction: K-NET names it; KiK-net numbers it, 1 to 3 in the borehole and 4 to 6 at the surface.
+/// Parses a direction. K-NET names it; KiK-net numbers it 1 to 3 in the borehole and 4 to 6 at the
+/// surface.
 fn direction(text: &str) -> (String, Direction, bool) {
     let (name, borehole) = match text.trim() {
         "1" => ("N-S", true),

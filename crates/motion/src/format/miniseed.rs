@@ -1,10 +1,11 @@
-//! miniSEED 2: data records of integers, floats or Steim-compressed counts, joined by channel.
+//! Reader of miniSEED 2: data records of integers, floats or Steim-compressed counts, joined by
+//! channel.
 //!
-//! The decoder is part of this crate. The only maintained one in Rust, miniseed-rs (0.2.2), decodes the same
-//! encodings, but reads neither the time correction of a header nor the microseconds of blockette 1001, which
-//! align channels here, and does not compare the last sample of Steim's frames with the one that the record
-//! states, which detects damage. The other crates wrap a C library.
-//! Spec: FDSN, Standard for the Exchange of Earthquake Data, version 2.4, chapter 8 and appendix B.
+//! The decoder is part of this crate. The only maintained Rust crate, miniseed-rs (0.2.2), decodes
+//! the same encodings but ignores the time correction in the header and the microseconds of
+//! blockette 1001, which are needed to align channels. It also does not compare the last sample of
+//! Steim frames with the stated value, which detects damage. Other crates wrap a C library. Spec:
+//! FDSN, Standard for the Exchange of Earthquake Data, version 2.4, chapter 8 and appendix B.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +31,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && b[8..20].iter().all(|c| c.is_ascii_alphanumeric() || matches!(*c, b' ' | b'-'))
 }
 
-/// One data record's header.
+/// Header of one data record.
 struct Header {
     id: SeedName,
     samples: usize,
@@ -49,16 +50,16 @@ struct Piece {
     values: Vec<f64>,
 }
 
-/// Samples of one channel.
+/// Samples of one channel, joined from its data records.
 struct Trace {
     rate: f64,
     start: Utc,
     values: Vec<f64>,
 }
 
-/// Largest difference between times and samples that does not count as a gap (samples).
+/// Largest difference between the stated times and the sample count that is not a gap, in samples.
 const LARGEST_OFFSET: f64 = 0.6;
-/// Largest relative error of the sample rate due to a recorder's clock.
+/// Largest relative error of the sampling rate caused by the recorder's clock.
 const LARGEST_CLOCK_ERROR: f64 = 2e-4;
 
 fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
@@ -135,7 +136,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Leaves out the channels of other sensors if the file has any of accelerometers.
+/// Removes the channels of other sensors if the file contains channels of accelerometers.
 fn keep_accelerometers(
     hints: &Hints<'_>,
     record: &mut Record,
@@ -158,12 +159,18 @@ fn keep_accelerometers(
     });
     if !names.is_empty() {
         let names = names.join(", ");
-        record.warn(None, format!("left out, as no channels of an accelerometer: {names}"));
+        record
+            .warn(None, format!("channels not recorded by an accelerometer were ignored: {names}"));
     }
 }
 
 fn damaged(source: &Source<'_>, expected: &str, found: String) -> ReadError {
-    source.damaged((), expected, found, "the file is cut or damaged; get it again from its source")
+    source.damaged(
+        (),
+        expected,
+        found,
+        "the file is truncated or damaged; get it again from its source",
+    )
 }
 
 fn two(bytes: &[u8], at: usize, big: bool) -> u16 {
@@ -177,7 +184,7 @@ fn signed_pair(bytes: &[u8], at: usize, big: bool) -> f64 {
 
 fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     let bytes = &source.bytes[at..];
-    // The year determines the byte order, for which there is no flag.
+    // The year determines the byte order; there is no flag.
     let big = (1900..2200).contains(&two(bytes, 20, true));
     let year = two(bytes, 20, big);
     let day = two(bytes, 22, big);
@@ -189,7 +196,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         ));
     }
     let part = |from: usize, to: usize| latin1(&bytes[from..to]).trim().to_owned();
-    // The location code is empty if blank or printed as a placeholder.
+    // The location code is empty if it is blank or the placeholder "--".
     let location = Some(part(13, 15)).filter(|code| code != "--").unwrap_or_default();
     let id =
         SeedName { network: part(18, 20), station: part(8, 13), location, channel: part(15, 18) };
@@ -209,7 +216,7 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
         (if factor > 0.0 { factor } else { -1.0 / factor })
             * (if multiplier > 0.0 { multiplier } else { -1.0 / multiplier })
     };
-    // Bit 1 of the activity flags: the time already includes the correction.
+    // Bit 1 of the activity flags is set if the time already includes the correction.
     if bytes[36] & 2 == 0 {
         start = start.later(1e-4 * f64::from(i32::from_be_bytes(order(&bytes[40..44], big))));
     }
@@ -244,11 +251,12 @@ fn header(source: &Source<'_>, at: usize) -> Result<Header, ReadError> {
     Ok(Header { id, samples, rate, start, data, length, encoding, big })
 }
 
-/// Joins the data records of one channel in the order of their times; repeated ones are left out, and a gap or an
-/// overlap is an error, because samples must not be invented.
+/// Joins the data records of one channel in the order of their times. Repeated data records are
+/// ignored; a gap or an overlap is an error, because samples must not be invented.
 ///
-/// The times are compared with the number of samples since the first record, so that gaps shorter than a sample
-/// cannot accumulate unnoticed; a recorder's clock may run fast or slow by [`LARGEST_CLOCK_ERROR`].
+/// The times are compared with the number of samples since the first data record, so that gaps
+/// shorter than a sample cannot accumulate unnoticed. A recorder's clock may be fast or slow by up
+/// to [`LARGEST_CLOCK_ERROR`].
 fn joined(
     source: &Source<'_>,
     record: &mut Record,
@@ -275,7 +283,7 @@ fn joined(
         if piece.rate != rate {
             return Err(source.damaged(
                 (),
-                format!("one sample rate in channel {channel}"),
+                format!("one sampling rate in channel {channel}"),
                 format!("{rate} and {} Hz", piece.rate),
                 "give the data records of one rate in a file of their own",
             ));
@@ -305,7 +313,7 @@ fn joined(
             None,
             format!(
                 "channel {channel}: the times of its data records differ by up to {drift:.4} s from its \
-                 samples at {rate} Hz, as a clock that is not exact has it; the stated rate is used"
+                 samples at {rate} Hz, because the recorder's clock is inexact; the stated rate is used"
             ),
         );
     }
@@ -356,7 +364,7 @@ fn decode(
     }
 }
 
-/// Converts bytes to big-endian order.
+/// Converts bytes from the given byte order to big-endian order.
 fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
     let mut ordered = [0; N];
     ordered.copy_from_slice(&bytes[..N]);
@@ -366,7 +374,10 @@ fn order<const N: usize>(bytes: &[u8], big: bool) -> [u8; N] {
     ordered
 }
 
-/// Decodes Steim-1 and Steim-2: frames of 16 words, first differences packed by the nibbles of the top word.
+/// Decodes Steim-1 and Steim-2 data.
+///
+/// The data are frames of 16 words that hold first differences. The first word of a frame has a
+/// two-bit code for every word, which states how its differences are packed.
 fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64>> {
     let mut differences: Vec<i64> = Vec::with_capacity(samples);
     let (mut first, mut last) = (0_i64, 0_i64);
@@ -411,7 +422,7 @@ fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64
     if differences.len() < samples || samples == 0 {
         return None;
     }
-    // The first difference leads from the previous record and is not used.
+    // The first difference leads from the previous data record and is not used.
     let mut value = first;
     let mut values = Vec::with_capacity(samples);
     values.push(value as f64);
@@ -422,7 +433,7 @@ fn steim(data: &[u8], samples: usize, second: bool, big: bool) -> Option<Vec<f64
     (value == last).then_some(values)
 }
 
-/// Returns the lowest `bits` of a word as a signed number.
+/// Returns the lowest `bits` bits of a word as a signed number.
 fn signed(word: u32, bits: u32) -> i64 {
     let shift = 64 - bits;
     #[expect(clippy::cast_possible_wrap, reason = "sign extension of two's complement")]

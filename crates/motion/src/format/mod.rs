@@ -1,4 +1,4 @@
-//! Readers of strong-motion files, one file per format, selected by content.
+//! Readers of strong-motion files, one module per format; the format is detected from the content.
 
 mod afad;
 mod bbp;
@@ -48,41 +48,44 @@ pub(crate) use source::{Printed, Source, quoted, shorten, utf8};
 
 /// Information that a file may lack.
 ///
-/// A value stated in the file takes precedence; one given in addition is reported as ignored.
+/// A value stated in the file takes precedence; an option given in addition is ignored and
+/// reported.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Unit of acceleration for formats that state none.
+    /// Unit of acceleration, for formats that do not state it.
     pub unit: Option<AccelerationUnit>,
-    /// Step (s) for formats that state none.
+    /// Time step (s), for formats that do not state it.
     pub time_step: Option<f64>,
-    /// Counts per m/s² for files of counts, overriding a COSMOS header; per m/s or m if
-    /// [`ReadOptions::recorded`] is velocity or displacement.
+    /// Sensitivity in counts per m/s², for files of counts; overrides a COSMOS header. In counts
+    /// per m/s or per m if [`ReadOptions::recorded`] is velocity or displacement.
     pub sensitivity: Option<f64>,
-    /// Metadata of single channels; the first match takes precedence over the sensitivity for all.
+    /// Metadata of single channels. The first match takes precedence over the sensitivity for all
+    /// channels.
     pub instruments: Vec<Instrument>,
-    /// Quantity in SEED and SAC files, overriding their channel codes; velocity and displacement are
-    /// differentiated.
+    /// Quantity recorded in SEED and SAC files, which overrides their channel codes. Velocity and
+    /// displacement are differentiated.
     pub recorded: Option<Quantity>,
 }
 
-/// A readable format.
+/// A file format that can be read.
 #[derive(Clone, Copy)]
 pub struct Format {
     /// Short name, as in [`Record::format`].
     pub name: &'static str,
-    /// Full name with its publisher.
+    /// Full name, with the publisher of the format.
     pub title: &'static str,
     sniff: fn(&Source<'_>) -> bool,
     read: fn(&Source<'_>, &Hints<'_>) -> Result<Record, ReadError>,
 }
 
 impl Format {
-    /// Reads `bytes` as this format, whether or not they look like it; `name` is used in messages only.
+    /// Reads `bytes` as this format, without detecting the format. `name` is used only in messages.
     ///
-    /// [`read`] detects the format; this method is for callers that know it, or run every reader on the same bytes.
+    /// [`read`] detects the format. This method is for callers that know the format or run every
+    /// reader on the same bytes.
     ///
     /// # Errors
-    /// As [`read`].
+    /// The same as for [`read`].
     pub fn read(
         &self,
         bytes: &[u8],
@@ -102,14 +105,17 @@ impl Format {
             return Err(source.error(
                 (),
                 Refusal::Options,
-                "one sensitivity of each channel in the metadata given",
+                "one sensitivity for each channel in the metadata given",
                 found,
-                "give the StationXML that holds at the time of the record alone",
+                "give only the StationXML valid at the time of the record",
             ));
         }
         record.format = self.name;
         for what in hints.ignored() {
-            record.warn(None, format!("{what} given was ignored, as this file does not need it"));
+            record.warn(
+                None,
+                format!("{what} given was ignored, because this file does not need it"),
+            );
         }
         finish(source, &mut record)?;
         Ok(record)
@@ -122,7 +128,7 @@ impl std::fmt::Debug for Format {
     }
 }
 
-/// Every format, in the order in which they are tried.
+/// All readable formats, in the order in which they are tried.
 pub const FORMATS: &[Format] = &[
     sac::FORMAT,
     miniseed::FORMAT,
@@ -151,7 +157,7 @@ pub const FORMATS: &[Format] = &[
     columns::FORMAT,
 ];
 
-/// Known formats that are refused; they are tried first.
+/// Known formats that are refused; these are tried first.
 const KNOWN_OTHERS: &[Format] = &[
     refused::HDF5,
     refused::WEB_PAGE,
@@ -178,16 +184,17 @@ const KNOWN_OTHERS: &[Format] = &[
     refused::PACKED,
 ];
 
-/// Reads a strong-motion file of any format, also one inside gzip, and the one record of a zip, tar or
-/// tar.gz archive; `name` is used in messages only.
+/// Reads a strong-motion file of any format.
 ///
-/// The components of a record may be spread over several files of an archive; its notes list them, and the files
-/// left out. An archive of several records is refused ([`Refusal::SeveralRecords`]): [`crate::Archive`]
-/// returns its files one by one.
+/// The file may be compressed with gzip, or be a zip, tar or tar.gz archive of one record. `name`
+/// is used only in messages. The components of a record may be spread over several files of an
+/// archive; the notes of the record list these files and the files left out. An archive of several
+/// records is refused ([`Refusal::SeveralRecords`]); [`crate::Archive`] returns its files one by
+/// one.
 ///
 /// # Errors
-/// If no format matches, the file holds no acceleration, is damaged, or lacks a unit, step or
-/// sensitivity that `options` does not give.
+/// If no format matches, the file contains no acceleration or is damaged, or the unit, step or
+/// sensitivity is neither in the file nor in `options`.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, read};
@@ -208,7 +215,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
     }
 }
 
-/// Reads bytes that are not packed.
+/// Reads bytes that are not compressed.
 fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadError> {
     let Some(format) = KNOWN_OTHERS.iter().chain(FORMATS).find(|format| (format.sniff)(source))
     else {
@@ -230,8 +237,8 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
                 line,
                 Refusal::Unrecognized,
                 "numbers between blanks, commas, semicolons or tabs",
-                format!("other marks beside them, {}", quoted(&utf8(source.raw(line)))),
-                "write the numbers alone, with hyphens for minus signs, and times in seconds",
+                format!("other characters next to them, {}", quoted(&utf8(source.raw(line)))),
+                "write only the numbers, with hyphens for minus signs, and times in seconds",
             ));
         }
         if let Some(line) = refused::headings_alone(source) {
@@ -240,7 +247,7 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
                 Refusal::Unrecognized,
                 "rows of numbers below the headings",
                 format!("{}, after which the file ends", quoted(&source.text(line))),
-                "the file is cut or was never filled; export it again, or get it again from its source",
+                "the file is truncated or was never filled; export it again, or get it again from its source",
             ));
         }
         let first_line = || format!("\"{}\" as first line", shorten(&source.text(0)));
@@ -249,7 +256,7 @@ fn read_any(source: &Source<'_>, options: &ReadOptions) -> Result<Record, ReadEr
             Refusal::Unrecognized,
             format!("one of {}", names()),
             quoted::binary(source.bytes).unwrap_or_else(first_line),
-            "convert the file to plain columns, one value or time and value to a line",
+            "convert the file to plain columns, with one value, or time and value, per line",
         ));
     };
     format.read_source(source, options)
@@ -267,7 +274,7 @@ fn check_bytes(source: &Source<'_>) -> Result<(), ReadError> {
     Err(source.damaged((), expected, found, remedy))
 }
 
-/// Parses velocities (m/s) at the first samples from `text` in a header line of this crate.
+/// Parses velocities (m/s) at the first samples from a header line of this crate.
 fn initial_velocities(
     source: &Source<'_>,
     line: usize,
@@ -276,13 +283,13 @@ fn initial_velocities(
 ) -> Result<Vec<f64>, ReadError> {
     let velocities: Option<Vec<f64>> =
         text.split_whitespace().map(|word| parse_number(word.as_bytes())).collect();
-    // No velocity in m/s comes near the limit of accelerations in m/s².
+    // The limit of accelerations in m/s² is far above any velocity in m/s.
     velocities
         .filter(|v| v.len() == channels && v.iter().all(|v| v.abs() <= LARGEST_ACCELERATION))
         .ok_or_else(|| {
             source.damaged(
                 line,
-                format!("{channels} velocities (m/s), one to a channel"),
+                format!("{channels} velocities (m/s), one per channel"),
                 quoted(text),
                 "correct the header line",
             )
@@ -307,7 +314,7 @@ fn check_options(source: &Source<'_>, options: &ReadOptions) -> Result<(), ReadE
                 Refusal::Options,
                 format!("a {what} above 0"),
                 format!("{value}, as given"),
-                "give another",
+                "give a positive number",
             ));
         }
     }
@@ -345,15 +352,15 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
                 (),
                 format!("at least 2 samples in channel {label}"),
                 channel.acceleration.len().to_string(),
-                "the file is cut; get it again from its source",
+                "the file is truncated; get it again from its source",
             ));
         }
         if let Some(sample) = missing_value(&channel.acceleration) {
             return Err(source.damaged(
                 (),
-                "accelerations alone",
+                "accelerations only",
                 format!(
-                    "{:.6} m/s2 at sample {}, by its digits and its neighbors the mark of a missing value",
+                    "{:.6} m/s2 at sample {}, which looks like a placeholder for a missing value",
                     channel.acceleration[sample],
                     sample + 1
                 ),
@@ -380,7 +387,7 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
             }
             channel.initial_velocity = -channel.initial_velocity;
             channel.direction.downward = false;
-            record.notes.push(format!("channel {label} points down and was turned upward"));
+            record.notes.push(format!("channel {label} points down and was reversed"));
         }
         let mut messages = Vec::new();
         for peak in &record.channels[index].peaks {
@@ -406,15 +413,15 @@ pub(crate) fn finish(source: &Source<'_>, record: &mut Record) -> Result<(), Rea
     record.align_each_site().map_err(|error| {
         source.damaged(
             (),
-            "channels of one station and sensor that were recorded at one time",
+            "channels of one station and sensor that were recorded at the same time",
             error.to_string(),
-            "split the file by time",
+            "split the file into separate times",
         )
     })
 }
 
-/// Returns a sample that is a mark of a missing value, such as -9999, in one of the units of files: it stands out from
-/// its neighbors three times as far as any other sample does.
+/// Returns the sample that is a placeholder for a missing value, such as -9999 in one of the units
+/// of files. It differs from its neighbors three times as much as any other sample.
 fn missing_value(values: &[f64]) -> Option<usize> {
     let jump = |row: usize| (values[row] - values[row - 1]).abs();
     let largest = (1..values.len()).max_by(|a, b| jump(*a).total_cmp(&jump(*b)))?;
@@ -428,7 +435,8 @@ fn missing_value(values: &[f64]) -> Option<usize> {
     })
 }
 
-/// `true` for a value whose number in a unit of files has nines alone, at least three, or is another mark in use.
+/// Returns `true` if a value, in one of the units of files, has only nines (at least three) or is
+/// another common placeholder.
 fn is_mark(value: f64) -> bool {
     AccelerationUnit::ALL.iter().any(|unit| {
         let number = (value / unit.factor()).abs();
@@ -439,14 +447,14 @@ fn is_mark(value: f64) -> bool {
     })
 }
 
-/// `true` for a number above 99 that is written with nines alone, at least three.
+/// Returns `true` if a number above 99 is written with nines only, at least three.
 fn is_nines(number: f64) -> bool {
     let text = format!("{number:.6}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     text.chars().all(|c| c == '9' || c == '.') && text.len() >= 3 && number > 99.0
 }
 
-/// Parses a positive integer from a header.
+/// Converts a number in a header to a positive integer.
 fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usize, ReadError> {
     if value.fract() == 0.0 && (1.0..=1e9).contains(&value) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to 1e9")]
@@ -455,14 +463,16 @@ fn whole(source: &Source<'_>, line: usize, what: &str, value: f64) -> Result<usi
     Err(source.header(line, format!("{what}, 1 or more"), value.to_string()))
 }
 
-/// Most values by which a last line is filled up: one less than the ten of the widest layouts.
+/// Largest number of values that may fill up a last line: one less than ten, the widest layout.
 const FILLED: usize = 9;
 
-/// Returns the number of values used where a count is stated: all, for one less or two more, because headers in
-/// circulation are off by that much; the stated number, where a last line is filled up.
+/// Returns the number of values to use if the header states a count.
+///
+/// All values are used if they are one less or up to two more than stated, because headers in
+/// circulation are off by that much. The stated number is used if the last line was filled up.
 ///
 /// # Errors
-/// For fewer and for more: the file is cut, or its header belongs to another.
+/// If there are fewer or more values: the file is truncated, or its header belongs to another file.
 fn check_count(
     source: &Source<'_>,
     record: &mut Record,
@@ -476,16 +486,16 @@ fn check_count(
     if found + 1 == stated || found == stated + 1 || found == stated + 2 {
         record.warn(
             line + 1,
-            format!("the header states {stated} values, the file holds {found}; all are used"),
+            format!("the header states {stated} values, the file contains {found}; all are used"),
         );
         return Ok(found);
     }
-    // Twice as many are not a filled line: a comma for the point makes two numbers of each.
+    // Twice as many values are not a filled line; decimal commas split each number into two.
     if found > stated && found <= stated + FILLED && found < 2 * stated {
         record.warn(
             line + 1,
             format!(
-                "the header states {stated} values, the file holds {found}; the last {} are left out",
+                "the header states {stated} values, the file contains {found}; the last {} are ignored",
                 found - stated
             ),
         );
@@ -496,12 +506,12 @@ fn check_count(
         column.map_or(Place::from(line), |column| Place::from((line, column))),
         format!("{stated} values as stated here"),
         format!("{found}"),
-        "the file is cut or its header belongs to another; get it again from its source",
+        "the file is truncated or its header belongs to another file; get it again from its source",
     ))
 }
 
-/// Checks the count, as [`check_count`], where the header states a length in whole seconds: up to one second more or
-/// less is rounding.
+/// Checks the count as [`check_count`], for a header that states the length in whole seconds; a
+/// difference of up to one second is rounding.
 fn check_seconds(
     source: &Source<'_>,
     record: &mut Record,
@@ -514,7 +524,10 @@ fn check_seconds(
         return check_count(source, record, line, stated, found);
     }
     if found != stated {
-        record.warn(line + 1, format!("the header states {stated} values, the file holds {found}"));
+        record.warn(
+            line + 1,
+            format!("the header states {stated} values, the file contains {found}"),
+        );
     }
     Ok(found)
 }
@@ -525,7 +538,7 @@ pub(crate) fn file_stem(name: &str) -> String {
     base.rsplit_once('.').map_or(base, |(stem, _)| stem).to_owned()
 }
 
-/// Reads rows of `width` numbers separated by blanks, as columns.
+/// Reads rows of `width` numbers separated by blanks, and returns them as columns.
 fn rows(
     source: &Source<'_>,
     from: usize,
@@ -548,7 +561,7 @@ fn rows(
     Ok(columns)
 }
 
-/// Leaves out constant channels: clocks and unused inputs.
+/// Removes constant channels, such as clocks and unused inputs.
 fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), ReadError> {
     let dead = |channel: &mut Channel| match channel.acceleration.as_slice() {
         [first, rest @ ..] => !rest.is_empty() && rest.iter().all(|value| value == first),
@@ -566,13 +579,16 @@ fn drop_dead_channels(source: &Source<'_>, record: &mut Record) -> Result<(), Re
     for channel in left_out {
         record.warn(
             None,
-            format!("channel {} holds one value throughout (a clock or an unused input) and was left out", channel.name),
+            format!(
+                "channel {} is constant (a clock or an unused input) and was ignored",
+                channel.name
+            ),
         );
     }
     Ok(())
 }
 
-/// Removes the mean of a raw digital channel, whose zero is arbitrary, and notes it.
+/// Removes the mean of a raw digital channel, whose zero is arbitrary, and adds a note.
 fn remove_offset(record: &mut Record, name: &str, values: &mut [f64]) {
     let offset = crate::math::take_mean(values);
     record.notes.push(format!(

@@ -1,6 +1,6 @@
-//! The text format of this crate: `# key: value` lines, then one column per channel.
+//! Reader of this crate's text format: `# key: value` lines, then one column per channel.
 //!
-//! Spec: [`crate::write::text`], which writes it; its module explains each key.
+//! Spec: [`crate::write::text`] writes the format; its module documentation explains each key.
 
 use super::source::{LARGEST_ACCELERATION, Source, parse_number, quoted};
 use super::{Format, Hints};
@@ -19,7 +19,7 @@ fn sniff(source: &Source<'_>) -> bool {
     written(source, 0).starts_with("# barrelstack motion")
 }
 
-/// Returns a line as it was written, in UTF-8.
+/// Returns a line in UTF-8 as it was written.
 fn written(source: &Source<'_>, line: usize) -> String {
     std::str::from_utf8(source.raw(line))
         .map_or_else(|_| source.text(line), |t| t.trim().to_owned())
@@ -42,8 +42,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     })
 }
 
-/// Reads the record described by the header in the lines before `end`; `columns` returns the numbers of the named
-/// channels, none of them above a limit, in the unit that the header states.
+/// Builds the record described by the header in the lines before `end`. `columns` returns the
+/// samples of the named channels in the stated unit; none may exceed the given limit.
 pub(super) fn described(
     source: &Source<'_>,
     end: usize,
@@ -129,7 +129,8 @@ pub(super) fn described(
     Ok(record)
 }
 
-/// Reads start and place of every channel: one line for all, or one per channel.
+/// Reads the start and site of every channel, from one line for all channels or one line per
+/// channel.
 fn places(
     source: &Source<'_>,
     end: usize,
@@ -163,7 +164,8 @@ fn places(
     }
 }
 
-/// Parses `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.
+/// Parses a start and a site, such as
+/// `start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, sensor surface`.
 fn place(words: &str) -> Option<(Option<Utc>, Site)> {
     let (mut start, mut site) = (None, Site::default());
     for part in words.split(',').map(str::trim).filter(|part| !part.is_empty()) {

@@ -1,7 +1,8 @@
-//! NumPy archives as this crate writes them: arrays of accelerations, and the header in arrays of
-//! strings.
+//! Reader of NumPy archives written by this crate: arrays of accelerations, and the header in
+//! arrays of strings.
 //!
-//! Spec: NumPy enhancement proposal 1, the `.npy` format, versions 1.0 and 2.0; [`crate::write::npz`].
+//! Spec: NumPy enhancement proposal 1, the `.npy` format, versions 1.0 and 2.0;
+//! [`crate::write::npz`].
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,7 +16,7 @@ use crate::write::{TITLE, array_name};
 pub(crate) const FORMAT: Format =
     Format { name: "npz", title: "NumPy archive of this crate", sniff, read };
 
-/// Maximum size (bytes) of all arrays.
+/// Largest total size of all arrays (bytes).
 const LARGEST: u64 = 64 << 20;
 
 enum Array {
@@ -56,7 +57,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         return Err(source.error(
             (),
             Refusal::Unrecognized,
-            "an array of strings named channels, as this program writes it",
+            "an array of strings named channels, as written by this program",
             found,
             "save the accelerations as plain columns and state their unit and step",
         ));
@@ -85,7 +86,10 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
                 ));
             };
             if *rows.get_or_insert(values.len()) != values.len() {
-                return Err(damaged("arrays of one length", format!("{} in {key}", values.len())));
+                return Err(damaged(
+                    "arrays of the same length",
+                    format!("{} in {key}", values.len()),
+                ));
             }
             if let Some(bad) = values.iter().find(|value| !(value.abs() <= limit)) {
                 return Err(damaged(&format!("accelerations in {key}"), bad.to_string()));
@@ -94,11 +98,11 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         }
         Ok(columns)
     });
-    // Archives have no lines.
+    // Archives have no lines, so positions are removed from the error.
     described.map_err(|error| ReadFailure { line: None, column: None, ..(*error).clone() }.into())
 }
 
-/// Parses a one-dimensional array of numbers or strings; `None` for anything else.
+/// Parses a one-dimensional array of numbers or strings; returns `None` for anything else.
 fn array(bytes: &[u8]) -> Option<Array> {
     let rest = bytes.strip_prefix(b"\x93NUMPY")?;
     let (start, length) = match rest.first()? {

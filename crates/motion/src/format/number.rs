@@ -1,18 +1,19 @@
-//! Parsing of printed numbers.
+//! Parses printed numbers.
 
 use super::quoted::latin1;
 
-/// A number with one unit of its last printed digit.
+/// A number with the resolution of its printed digits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Printed {
     pub(crate) value: f64,
     pub(crate) resolution: f64,
 }
 
-/// Parses a finite decimal number with optional Fortran exponent letter `D`; nothing else.
+/// Parses a finite decimal number, optionally with the Fortran exponent letter `D`; rejects
+/// anything else.
 pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
     let field = field.trim_ascii();
-    // Rejects words that the standard parser accepts: inf, nan, infinity.
+    // Reject words that the standard parser accepts: inf, nan, infinity.
     let mut fortran = false;
     for &byte in field {
         match byte {
@@ -27,7 +28,8 @@ pub(crate) fn parse_number(field: &[u8]) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Splits `-.123E-02-.456E-02` at signs that do not follow an exponent letter.
+/// Splits touching numbers such as `-.123E-02-.456E-02` at signs that do not follow an exponent
+/// letter.
 pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
     let mut pieces = Vec::new();
     let mut start = 0;
@@ -36,7 +38,7 @@ pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
             || (matches!(token[at], b'+' | b'-')
                 && (token[at - 1].is_ascii_digit() || token[at - 1] == b'.'));
         if boundary {
-            // A piece without a decimal point is not a Fortran real: refuse to guess where it ends.
+            // A piece without a decimal point is not a Fortran real, so its end would be a guess.
             let piece = &token[start..at];
             if !piece.contains(&b'.') {
                 return None;
@@ -48,12 +50,12 @@ pub(super) fn split_touching(token: &[u8]) -> Option<Vec<(usize, f64)>> {
     Some(pieces)
 }
 
-/// Returns the number at the start of `bytes` after blanks, `=` and `:`.
+/// Returns the number at the start of `bytes`, after blanks, `=` and `:`.
 pub(crate) fn leading_number(bytes: &[u8]) -> Option<f64> {
     leading_text(bytes).map(|(value, _)| value)
 }
 
-/// Returns the [`leading_number`] with its text.
+/// Returns the [`leading_number`] together with its text.
 pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     let skip = bytes.iter().position(|&b| !matches!(b, b' ' | b'\t' | b'=' | b':'))?;
     let rest = &bytes[skip..];
@@ -75,7 +77,7 @@ pub(crate) fn leading_text(bytes: &[u8]) -> Option<(f64, String)> {
     Some((value, latin1(&rest[..end])))
 }
 
-/// Returns the [`leading_number`] with the resolution of the printed digits.
+/// Returns the [`leading_number`] together with the resolution of its printed digits.
 pub(crate) fn leading_printed(bytes: &[u8]) -> Option<Printed> {
     leading_text(bytes).map(|(value, text)| Printed { value, resolution: resolution(&text) })
 }
@@ -90,7 +92,7 @@ pub(crate) fn resolution(text: &str) -> f64 {
     crate::math::powf(10.0, f64::from(power))
 }
 
-/// `true` if a field is a placeholder that programs print instead of a number.
+/// Returns `true` if a text is a placeholder that programs print instead of a number.
 pub(super) fn is_no_number(text: &str) -> bool {
     let lower = text.trim_matches(['+', '-', '"']).to_ascii_lowercase();
     let printed =

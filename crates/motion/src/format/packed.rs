@@ -1,4 +1,4 @@
-//! Records inside gzip, zip and tar.
+//! Reads records inside gzip, zip and tar files.
 
 use std::io::Read;
 
@@ -10,18 +10,21 @@ use crate::error::{Given, ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::Record;
 
-/// Maximum size (bytes) of an unpacked file, so that a small archive cannot exhaust the memory: lines of one digit need
-/// sixteen times their size while they are read, 192 MB at this limit; 64 MB of them would need 1 GB.
-/// An hour of one component at 100 Hz has a quarter of it as text.
+/// Largest size of an unpacked file (bytes), so that a small archive cannot exhaust the memory.
+///
+/// While they are read, lines of one digit need sixteen times their size: 192 MB at this limit, 1
+/// GB for a limit of 64 MB. An hour of one component at 100 Hz needs a quarter of the limit as
+/// text.
 pub(crate) const LARGEST: u64 = 12 << 20;
 
-/// Reads the record of a packed file; `None` if the file is not packed.
+/// Reads the record in a packed file; `None` if the file is not packed.
 pub(super) fn read(
     source: &Source<'_>,
     options: &ReadOptions,
 ) -> Result<Option<Record>, ReadError> {
     let packed = [&b"PK"[..], &[0x1F, 0x8B]].iter().any(|magic| source.bytes.starts_with(magic));
-    // Copy the bytes only if they may be an archive; tar has a name and a checksum in its header.
+    // Copy the bytes only if they may be an archive; the check for tar needs the header with name
+    // and checksum.
     let tar = source.bytes.get(257..262) == Some(b"ustar");
     if !packed && !tar {
         return Ok(None);
@@ -39,7 +42,7 @@ pub(super) fn read(
     Ok(Some(record))
 }
 
-/// Reads an unpacked file; doubly packed files are not opened.
+/// Reads an unpacked file; a file that is packed again is not opened.
 fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, ReadError> {
     let inside = Source::new(name, bytes);
     check_bytes(&inside)?;
@@ -48,16 +51,16 @@ fn unpacked(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Record, R
         return Err(inside.error(
             (),
             Refusal::Unrecognized,
-            "a record, or an archive inside one other archive",
-            "an archive packed more often",
-            "unpack it and give what it holds",
+            "a record, or an archive inside one other archive at most",
+            "a more deeply nested archive",
+            "unpack it and give its content",
         ));
     }
     read_any(&inside, options)
 }
 
-/// Reads the one record of an archive: groups its files by their names, and leaves out files without acceleration, with
-/// their reasons.
+/// Reads the record in an archive. Files are grouped by their names; files without acceleration are
+/// left out and listed with the reason.
 fn from_archive(
     source: &Source<'_>,
     archive: &Archive,
@@ -80,7 +83,7 @@ fn from_archive(
             continue;
         }
         let record = Record::gather(&parts).map_err(|error| {
-            let remedy = "give the files of one record by their paths inside the archive";
+            let remedy = "give the paths of the files of one record inside the archive";
             source.damaged((), "files of one record", error.to_string(), remedy)
         })?;
         match found.last_mut() {
@@ -90,7 +93,8 @@ fn from_archive(
             }
             _ => found.push((group.name.clone(), record)),
         }
-        // The names bound the number of records; two readable ones prove that there are several.
+        // The file names give an upper bound on the number of records; two readable records prove
+        // that there are several.
         if found.len() > 1 {
             return Err(several(source, &groups, &found));
         }
@@ -98,7 +102,8 @@ fn from_archive(
     let Some((_, mut record)) = found.pop() else {
         return Err(none(source, &names, left_out));
     };
-    // A component that cannot be read is missing, which would change every measure of both horizontals.
+    // A component that cannot be read would change every measure of both horizontals, so the
+    // archive is refused.
     let ending = |file: &str| file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     let alike = |file: &str| record.file.split(", ").any(|read| ending(read) == ending(file));
     let lost =
@@ -116,13 +121,14 @@ fn from_archive(
     if !left_out.is_empty() {
         let list: Vec<String> =
             left_out.iter().map(|(file, error)| format!("{file} ({})", error.found)).collect();
-        record.notes.push(format!("files of the archive that were left out: {}", list.join(", ")));
+        record.notes.push(format!("files of the archive that were ignored: {}", list.join(", ")));
     }
     source.name.clone_into(&mut record.file);
     Ok(record)
 }
 
-/// `true` if two records of one archive are components of one although their names do not match.
+/// Returns `true` if two records of an archive are components of one record although their names do
+/// not match.
 fn belongs(one: &Record, other: &Record) -> bool {
     let named = !(one.event.is_empty() && one.station.is_empty());
     let new = |name: &str| one.channels.iter().all(|channel| channel.name != name);
@@ -131,11 +137,11 @@ fn belongs(one: &Record, other: &Record) -> bool {
         && Record::gather(&[one.clone(), other.clone()]).is_ok()
 }
 
-/// `StationXML` in the archive, read once a file of counts needs it.
+/// `StationXML` files in the archive, read only if a file of counts needs them.
 struct Metadata<'a> {
     names: &'a [String],
     options: Option<ReadOptions>,
-    /// What is wrong with the first that cannot be used.
+    /// Description of the first damaged `StationXML` file.
     damaged: Option<String>,
 }
 
@@ -149,7 +155,7 @@ impl Metadata<'_> {
     ) -> Result<Record, ReadError> {
         let name = format!("{}/{file}", source.name);
         let bytes = archive.file(file)?;
-        // A single file may be packed once more, as `.gz`.
+        // A file in an archive may be compressed once more with gzip.
         let read = |options: &ReadOptions| match bytes.strip_prefix(&[0x1F, 0x8B]) {
             Some(_) => {
                 let packed = Source::new(&name, &bytes);
@@ -205,16 +211,17 @@ fn several(source: &Source<'_>, groups: &[RecordFiles], found: &[(String, Record
         (),
         Refusal::SeveralRecords,
         "an archive of one record",
-        format!("several: {} are two of up to {} by their names", named.join(" and "), groups.len()),
+        format!("several: {} are two of up to {} records, judged by their names", named.join(" and "), groups.len()),
         format!(
-            "give one by its path inside, such as {}/{}, or take the archive as a folder of records",
+            "give the path of one file inside, such as {}/{}, or use the archive as a folder of records",
             source.name,
             first.unwrap_or_default()
         ),
     )
 }
 
-/// Returns the error for an archive without a record: that of its only file, or of the first that lacks information.
+/// Returns the error for an archive without a record: the error of its only file, or of the first
+/// file that lacks information.
 fn none(
     source: &Source<'_>,
     names: &[String],
@@ -250,7 +257,11 @@ fn none(
         (),
         Refusal::Unrecognized,
         "a record",
-        format!("{} files without one ({}){reason}", names.len(), shorten(&names.join(", "))),
+        format!(
+            "{} files, none of them a record ({}){reason}",
+            names.len(),
+            shorten(&names.join(", "))
+        ),
         "give an archive with the acceleration files of a record",
     )
 }
@@ -261,9 +272,9 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
     read.map_err(|error| {
         source.damaged(
             (),
-            "a file that can be unpacked",
+            "a readable packed file",
             error.to_string(),
-            "unpack it by itself, or get it again from its source",
+            "unpack it with another program, or get it again from its source",
         )
     })?;
     if bytes.len() as u64 > LARGEST {
@@ -271,7 +282,7 @@ fn all(source: &Source<'_>, inside: impl Read) -> Result<Vec<u8>, ReadError> {
             (),
             format!("at most {} MB when unpacked", LARGEST >> 20),
             "more",
-            "unpack it by itself and give that file",
+            "unpack it with another program and give the unpacked file",
         ));
     }
     Ok(bytes)

@@ -1,10 +1,10 @@
-//! PEER strong-motion database: AT2 accelerations; VT2 velocities and DT2 displacements are refused.
+//! Reader of the PEER strong-motion database: AT2 accelerations. VT2 velocities and DT2
+//! displacements are refused.
 //!
-//! A few title lines, a line that names quantity and unit, a line with count and step, then values
-//! row by row.
-//! Spec: header lines of the NGA and NGA-West2 flat files (Chiou et al. 2008, Earthquake Spectra
-//! 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings surveyed over 2416
-//! files.
+//! A file has a few title lines, a line with quantity and unit, a line with count and step, then
+//! values row by row. Spec: header lines of the NGA and NGA-West2 flat files (Chiou et al. 2008,
+//! Earthquake Spectra 24:23-44; Ancheta et al. 2014, Earthquake Spectra 30:989-1005); spellings
+//! surveyed over 2416 files.
 
 use super::columns::facts;
 use super::source::{LARGEST_ACCELERATION, Source, leading_number, leading_text, quoted};
@@ -18,7 +18,7 @@ use crate::write::{NO_EVENT, NO_STATION};
 pub(crate) const FORMAT: Format =
     Format { name: "peer", title: "PEER AT2 (NGA, NGA-West2, PEER 2000)", sniff, read };
 
-/// Number of lines searched for the count and step.
+/// Number of lines searched for the count and the step.
 const HEADER_LINES: usize = 12;
 
 struct Counts {
@@ -28,7 +28,7 @@ struct Counts {
 }
 
 fn sniff(source: &Source<'_>) -> bool {
-    // Other headers state count and step on lines of their own.
+    // Other formats state count and step on separate lines.
     (0..HEADER_LINES.min(source.lines.len()))
         .any(|line| source.has(line, "NPTS") && source.has(line, "DT"))
 }
@@ -58,7 +58,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         for (line, column) in blanks {
             record.warn(
                 line + 1,
-                format!("column {}: a blank field, which Fortran reads as 0", column + 1),
+                format!("column {}: a blank field, read as 0 like in Fortran", column + 1),
             );
         }
         values = by_column;
@@ -73,11 +73,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Positions of blank fields: line and first column, 0-based.
+/// Positions of blank fields: line and first column, counted from 0.
 type Blanks = Vec<(usize, usize)>;
 
-/// Reads the values by columns as wide as in the first row, and the positions of blank fields; `None` if the rows do
-/// not have that form.
+/// Reads the values in columns as wide as in the first row, and the positions of blank fields.
+/// Returns `None` if the rows do not have fixed columns.
 fn in_columns(
     source: &Source<'_>,
     start: usize,
@@ -113,7 +113,7 @@ fn in_columns(
     Ok(Some((values, blanks)))
 }
 
-/// `true` for `*** Begin data ***` and similar marks around the values of some copies.
+/// Returns `true` for `*** Begin data ***` and similar lines around the values of some copies.
 fn is_begin_mark(source: &Source<'_>, line: usize) -> bool {
     let text = source.text(line);
     text.is_empty() || text.starts_with("***") && source.has(line, "begin")
@@ -124,7 +124,7 @@ fn is_end_mark(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with("***") && source.has(line, "end")
 }
 
-/// Parses `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
+/// Parses count and step from `NPTS= 2000, DT= .0200 SEC` or `4096 0.0100 NPTS, DT`.
 fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
     let line = (0..HEADER_LINES)
         .find(|&line| source.has(line, "NPTS") && source.has(line, "DT"))
@@ -140,7 +140,7 @@ fn find_counts(source: &Source<'_>) -> Result<Counts, ReadError> {
             line,
             "count and step, such as \"NPTS= 2000, DT= .0200 SEC\"",
             quoted(&source.text(line)),
-            "write the number of values and the step in seconds on this line, in these words",
+            "write the number of values and the step in seconds on this line, in this form",
         )
     })?;
     let count = super::whole(source, line, "a number of points", count)?;
@@ -181,7 +181,7 @@ fn find_unit(
             });
         }
     }
-    // Headers of other programs state it in their own words.
+    // Headers of other programs state the unit in other words.
     let elsewhere = (0..=last).find_map(|line| facts::unit(&facts::folded(source.raw(line))));
     let known = AccelerationUnit::ALL.into_iter().find(|known| {
         elsewhere.is_some_and(|unit| {
@@ -199,7 +199,7 @@ fn find_unit(
     })
 }
 
-/// Returns event, station and component from the title lines.
+/// Returns the event, station and component in the title lines.
 fn names(source: &Source<'_>, last: usize) -> (String, String, String) {
     for line in 0..last.min(4) {
         let text = source.text(line);

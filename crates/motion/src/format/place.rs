@@ -1,13 +1,13 @@
-//! Positions in a text file: a line, a column, a block of columns.
+//! Positions in a text file: a line, a column, or a block of columns.
 
-/// A block of numbers in Fortran columns.
+/// Layout of a block of numbers in Fortran columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
-    /// Blank columns before the first field.
+    /// Number of blank columns before the first field.
     pub(crate) indent: usize,
-    /// Fields per line.
+    /// Number of fields per line.
     pub(crate) per_line: usize,
-    /// Characters per field.
+    /// Number of characters per field.
     pub(crate) width: usize,
 }
 
@@ -16,7 +16,8 @@ impl Columns {
         Self { indent: 0, per_line, width }
     }
 
-    /// Parses `8F10.5`, `(10I8)` and `(1X,10F7.3)`; repeated groups such as `5(E15.7)` are not supported.
+    /// Parses a Fortran format such as `8F10.5`, `(10I8)` or `(1X,10F7.3)`; repeated groups such as
+    /// `5(E15.7)` are not supported.
     pub(crate) fn parse(format: &str) -> Option<Self> {
         let inner = format.trim().trim_start_matches('(');
         let inner = inner.split(')').next()?.trim();
@@ -38,7 +39,7 @@ impl Columns {
     }
 }
 
-/// Position in a file, 0-based.
+/// Position in a file, counted from 0.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Place {
     pub(crate) line: Option<usize>,

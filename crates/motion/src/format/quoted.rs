@@ -1,16 +1,16 @@
-//! Contents of a file as text in messages.
+//! Formats the content of files for messages.
 
-/// Converts bytes to text, one character each (Latin-1).
+/// Decodes bytes as Latin-1 text, one character per byte.
 pub(crate) fn latin1(bytes: &[u8]) -> String {
     bytes.iter().map(|&byte| char::from(byte)).collect()
 }
 
-/// Converts bytes to text as UTF-8, for messages.
+/// Decodes bytes as UTF-8 text, for messages.
 pub(crate) fn utf8(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
 }
 
-/// Shortens a text to at most 40 characters, for messages.
+/// Truncates a text to 40 characters, for messages.
 pub(crate) fn shorten(text: &str) -> String {
     if text.chars().count() <= 40 {
         text.to_owned()
@@ -19,12 +19,12 @@ pub(crate) fn shorten(text: &str) -> String {
     }
 }
 
-/// Shortens a text, as [`shorten`], and encloses it in quotation marks.
+/// Truncates a text like [`shorten`] and encloses it in quotation marks.
 pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}\"", shorten(text))
 }
 
-/// Describes the start of a binary file; `None` for text with a stray byte further down.
+/// Describes the start of a binary file; returns `None` for text with a stray byte further down.
 pub(crate) fn binary(bytes: &[u8]) -> Option<String> {
     let head = bytes.get(..512).unwrap_or(bytes);
     let odd = head.iter().filter(|&&b| b < 0x09 || (0x0E..0x20).contains(&b)).count();

@@ -1,4 +1,4 @@
-//! Known formats without an acceleration history that can be read here.
+//! Recognizes known formats that are refused, and explains what to do instead.
 
 use super::columns::facts::says_acceleration;
 use super::source::{Source, leading_text, parse_number};
@@ -7,7 +7,7 @@ use crate::error::{ReadError, Refusal};
 use crate::instrument::station_xml;
 use crate::record::{Quantity, Record};
 
-/// Number of lines among which rows that begin with a date are looked for.
+/// Number of lines searched for rows that begin with a date.
 const LINES_BEFORE_DATES: usize = 100;
 
 pub(crate) const HDF5: Format = Format {
@@ -34,8 +34,8 @@ pub(crate) const XML: Format = Format {
     read: xml,
 };
 
-/// Blocks of acceleration, velocity and displacement published by the USGS around 1987; no sample may be
-/// redistributed, so that a reader could not be tested.
+/// Blocks of acceleration, velocity and displacement published by the USGS around 1987. A reader
+/// could not be tested, because no sample may be redistributed.
 pub(crate) const USGS_BLOCKS: Format = Format {
     name: "usgs-1987",
     title: "USGS blocks of 1987 (refused)",
@@ -46,17 +46,17 @@ pub(crate) const USGS_BLOCKS: Format = Format {
         Err(source.error(
             (0..7).find(|&line| source.has(line, "DATA TYPE=")),
             Refusal::Unrecognized,
-            "a format with a reader",
+            "a readable format",
             "blocks of the USGS layout of 1987",
             "cut the block with DATA TYPE=AC into a file of plain columns and state its unit and step",
         ))
     },
 };
 
-/// USGS SLAMMER: bare columns of values in g whose steps are in a separate table.
+/// USGS SLAMMER table of records, with their time steps.
 ///
-/// The records themselves are read as plain columns with unit and step given by the caller.
-/// Spec: Jibson et al. 2013, USGS Techniques and Methods 12-B1, "Adding records".
+/// The record files are bare columns in g; they are read as plain columns with unit and step given
+/// by the caller. Spec: Jibson et al. 2013, USGS Techniques and Methods 12-B1, "Adding records".
 pub(crate) const SLAMMER: Format = Format {
     name: "slammer",
     title: "USGS SLAMMER record table (refused)",
@@ -72,7 +72,7 @@ pub(crate) const SLAMMER: Format = Format {
             0,
             "an acceleration history",
             "SLAMMER's table of records",
-            "give a record file beside it with unit g and the step that this table states for it",
+            "give a record file with unit g and the step stated in this table",
         ))
     },
 };
@@ -93,7 +93,8 @@ fn xml(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Err(source.not_acceleration((), "an acceleration history", "XML metadata", remedy))
 }
 
-/// Returns the first of two rows in succession that begin with a date or a time of day and end with a number.
+/// Returns the first of two consecutive rows that begin with a date or a time of day and end with a
+/// number.
 pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
     let clock = |text: &str| {
         let numbers = |text: &str, marks: &[char]| {
@@ -117,7 +118,8 @@ pub(super) fn clock_times(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| dated(line) && dated(line + 1))
 }
 
-/// Returns the first of two rows in succession that are numbers but for marks around them, such as quotation marks.
+/// Returns the first of two consecutive rows that are numbers surrounded by other characters, such
+/// as quotation marks.
 pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     let marks =
         ["\"", "'", "|", "&", "\\", "[", "]", "{", "}", "(", ")", "$", ":", "\u{e2}\u{88}\u{92}"];
@@ -133,8 +135,8 @@ pub(super) fn marked_rows(source: &Source<'_>) -> Option<usize> {
     (0..source.lines.len().min(LINES_BEFORE_DATES)).find(|&line| marked(line) && marked(line + 1))
 }
 
-/// Returns the last line of a file without a row of numbers, if it can be one of headings: it names an acceleration or a
-/// time, and is no sentence.
+/// Returns the last line of a file without rows of numbers, if it looks like a line of headings: it
+/// names acceleration or time, and is not a sentence.
 pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
     let text = |line: usize| source.text(line);
     let last = (0..source.lines.len()).rfind(|&line| !text(line).trim().is_empty())?;
@@ -146,7 +148,7 @@ pub(super) fn headings_alone(source: &Source<'_>) -> Option<usize> {
     (names && short && !(0..source.lines.len()).any(numbers)).then_some(last)
 }
 
-/// Declares a format that is recognized by its first bytes and refused by its name.
+/// Declares a format that is recognized by its first bytes and refused by name.
 macro_rules! refused_by_name {
     ($constant:ident, $name:literal, $what:literal, $fits:expr, $remedy:literal) => {
         pub(crate) const $constant: Format = Format {
@@ -157,7 +159,7 @@ macro_rules! refused_by_name {
                 Err(source.error(
                     (),
                     Refusal::Unrecognized,
-                    "a format with a reader",
+                    "a readable format",
                     concat!("a file of the format ", $what),
                     $remedy,
                 ))
@@ -215,7 +217,8 @@ refused_by_name!(
     "SEG-Y or SEG-2",
     |source| {
         let b = source.bytes;
-        // The text header of SEG-Y has 40 cards of 80 characters that begin with C, in EBCDIC or ASCII.
+        // The text header of SEG-Y has 40 cards of 80 characters that begin with C, in EBCDIC or
+        // ASCII.
         let cards = |c: u8| (0..40).all(|card| b.get(80 * card) == Some(&c));
         cards(0xC3) || cards(b'C') || b.starts_with(&[0x55, 0x3A]) || b.starts_with(&[0x3A, 0x55])
     },
@@ -247,7 +250,7 @@ refused_by_name!(
     "npy",
     "NumPy (one array)",
     |source| source.bytes.starts_with(b"\x93NUMPY"),
-    "write time and acceleration with numpy.savetxt, one row to a sample, and give that file"
+    "write time and acceleration with numpy.savetxt, one row per sample, and give that file"
 );
 refused_by_name!(
     PARQUET,
@@ -311,17 +314,17 @@ refused_by_name!(
     "html",
     "HTML (a web page)",
     |source| {
-        // Some begin with an XML declaration.
+        // Some pages begin with an XML declaration.
         (0..4).any(|line| {
             let start = source.text(line).to_ascii_lowercase();
             ["<!doctype html", "<html", "<head"].iter().any(|tag| start.starts_with(tag))
         })
     },
-    "the download gave a page in place of the record, often one that asks to log in; open it in a \
+    "the download returned a web page instead of the record, often a login page; open it in a \
      browser and download the record again"
 );
 
-/// COSMOS volume 3: response and Fourier spectra, from which no motion can be derived.
+/// COSMOS volume 3: response and Fourier spectra, which do not determine a motion.
 pub(crate) const COSMOS_SPECTRA: Format = Format {
     name: "cosmos-v3",
     title: "COSMOS volume 3 (refused)",
@@ -339,8 +342,8 @@ pub(crate) const COSMOS_SPECTRA: Format = Format {
     },
 };
 
-/// `true` for the tag at the head of a Kinemetrics file: `K`, byte order, version, instrument, and the kind of
-/// frame as a 32-bit number, 1 for the header of the file.
+/// Returns `true` for the tag at the start of a Kinemetrics file: `K`, byte order, version,
+/// instrument, and the kind of frame as a 32-bit number, which is 1 for the file header.
 fn is_evt(source: &Source<'_>) -> bool {
     let Some(&[b'K', order @ 0..=1, version @ 0..=3, _, a, b, c, d]) =
         source.bytes.first_chunk::<8>()
@@ -351,8 +354,8 @@ fn is_evt(source: &Source<'_>) -> bool {
     (version > 0 || order > 0) && kind.contains(&1)
 }
 
-/// `true` if bytes are a date and a time in binary-coded decimals: year, month, day, hour, minute,
-/// second.
+/// Returns `true` if the bytes are a date and time in binary-coded decimal: year, month, day, hour,
+/// minute, second.
 fn is_coded_time(bytes: &[u8]) -> bool {
     let decimal =
         |byte: u8| (byte >> 4 < 10 && byte & 15 < 10).then_some(10 * (byte >> 4) + (byte & 15));
@@ -366,7 +369,8 @@ fn big_endian(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(u32::from_be_bytes(four)).ok()
 }
 
-/// `true` for blocks of one second, each with its length and its time; also checks the second block.
+/// Returns `true` for blocks of one second, each with its length and its time; the second block is
+/// also checked.
 ///
 /// Spec: Urabe and Tsukada 1991, WIN format (Earthquake Research Institute, Tokyo).
 fn is_win(bytes: &[u8]) -> bool {
@@ -376,12 +380,13 @@ fn is_win(bytes: &[u8]) -> bool {
     fits && (length == bytes.len() || timed(length))
 }
 
-/// `true` for WIN with four leading zero bytes, and a time of eight bytes.
+/// Returns `true` for WIN data with four leading zero bytes and a time of eight bytes.
 fn is_win32(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0; 4]) && bytes.get(5..11).is_some_and(is_coded_time) && bytes.len() > 20
 }
 
-/// `true` for unformatted Fortran whose first record is a line of 80 characters between its lengths.
+/// Returns `true` for an unformatted Fortran file whose first record is a line of 80 characters
+/// between its lengths.
 ///
 /// Spec: Ottemöller, Voss and Havskov, SEISAN manual, appendix B.
 fn is_seisan(source: &Source<'_>) -> bool {
@@ -389,7 +394,7 @@ fn is_seisan(source: &Source<'_>) -> bool {
     let line = |from: usize| {
         b.get(from..from + 80).is_some_and(|line| line.iter().all(|c| (0x20..0x7F).contains(c)))
     };
-    // Lengths of one byte (PC), four bytes in either order, or eight.
+    // Record lengths have one byte (PC), four bytes in either order, or eight bytes.
     (b.starts_with(b"KP") && b.get(82) == Some(&b'P') && line(2))
         || ((b.starts_with(&[80, 0, 0, 0]) || b.starts_with(&[0, 0, 0, 80])) && line(4))
         || ((b.starts_with(&[80, 0, 0, 0, 0, 0, 0, 0])

@@ -1,7 +1,8 @@
-//! SAC binary: a header of 158 words and one component; the unit must come from the caller.
+//! Reader of SAC binary files: a header of 158 words and one component. The caller must provide the
+//! unit.
 //!
-//! Spec: SAC users manual, "SAC data file format", header versions 6 and 7; that of version 7 has a footer of 22 numbers in
-//! double precision, of which the first is the step.
+//! Spec: SAC users manual, "SAC data file format", header versions 6 and 7. Version 7 has a footer
+//! of 22 numbers in double precision; the first of them is the step.
 
 use super::source::{Source, latin1};
 use super::{Format, Hints, seed};
@@ -17,11 +18,11 @@ use crate::utc::Utc;
 pub(crate) const FORMAT: Format = Format { name: "sac", title: "SAC binary", sniff, read };
 
 const HEADER_BYTES: usize = 632;
-/// Length of the footer of version 7.
+/// Length of the footer in version 7 (bytes).
 const FOOTER_BYTES: usize = 176;
 const UNDEFINED: f64 = -12345.0;
-/// Word 76: header version; word 79: number of points; word 85: file type, 1 = time series;
-/// word 105: evenly spaced.
+/// Index of the header version. Other words: 79, number of points; 85, file type, where 1 is a time
+/// series; 105, evenly spaced.
 const VERSION: usize = 76;
 const POINTS: usize = 79;
 const FILE_TYPE: usize = 85;
@@ -69,7 +70,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             (),
             Refusal::Unrecognized,
             "a SAC header of version 6 or 7, 632 bytes",
-            format!("{} bytes of something else", bytes.len()),
+            format!("{} bytes of other data", bytes.len()),
             "give a SAC file, binary",
         )
     })?;
@@ -78,7 +79,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             (),
             expected,
             found,
-            "the file is cut or damaged; get it again from its source",
+            "the file is truncated or damaged; get it again from its source",
         )
     };
     if integer(bytes, FILE_TYPE, big) != TIME_SERIES || integer(bytes, EVEN, big) != 1 {
@@ -93,7 +94,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
             "export the acceleration as an evenly spaced time series",
         ));
     }
-    // IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
+    // Values of IDEP: 6 displacement, 7 velocity, 8 acceleration, 5 unknown.
     let dependent = integer(bytes, DEPENDENT, big);
     if matches!(dependent, 6 | 7) && hints.recorded().is_none() {
         return Err(source.not_acceleration(
@@ -172,11 +173,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
     let mut record = Record::new(FORMAT.name, source.name, Stage::Raw);
     format!("{} {}", text(608, 8), text(440, 8)).trim().clone_into(&mut record.station);
-    // Word 4, a factor that programs state and do not apply.
+    // Word 4 is a scale factor that programs state but do not apply.
     if let Some(scale) = real(bytes, 3, big).filter(|scale| *scale != 1.0 && *scale != 0.0) {
         record.warn(
             None,
-            format!("the header states a scale of {scale}, which was not applied: is the unit or sensitivity given that of the numbers as stored?"),
+            format!("the header states a scale of {scale}, which was not applied: check that the given unit or sensitivity is for the numbers as stored"),
         );
     }
     let name = codes.channel.clone();
@@ -199,12 +200,13 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     };
     let mut channel = Channel::new(name, direction, time_step, values);
     channel.start = start;
-    // Five decimals of a degree exceed single precision.
+    // Five decimals of a degree exceed the resolution of single precision.
     let real = |index: usize| real(bytes, index, big).map(|value| (value * 1e5).round() / 1e5);
-    // Words 31 to 33: latitude, longitude, elevation; the "hole" is the location code.
+    // Words 31 to 33 are latitude, longitude and elevation; the "hole" is the location code.
     channel.site = Site { sensor: location, elevation: real(33), ..Site::default() }
         .at(real(31).zip(real(32)));
-    // Words 35, 36, 39 and 50: epicenter, magnitude, distance (km); the unit of the depth is ambiguous.
+    // Words 35, 36, 39 and 50 are the epicenter, magnitude and distance (km); the unit of the depth
+    // is ambiguous.
     record.earthquake = Earthquake {
         epicentral_distance: real(50),
         ..Earthquake::of_magnitude([("", real(39))]).at(real(35).zip(real(36)), None)
@@ -216,14 +218,15 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the step (s) in word 1 as the shortest decimal with the stored single precision: 0.02 for
-/// 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
+/// Returns the step (s) in word 1, as the shortest decimal with the stored single precision: 0.02
+/// for 0.0199999996, 1/1024 exactly, 0.0033333334 for 1/300.
 fn step(bytes: &[u8], big: bool) -> Option<f64> {
     let stored = f32::from_le_bytes(word(bytes, 0, big)?);
     stored.to_string().parse().ok()
 }
 
-/// Returns the start: words 70 to 75, the reference instant, and word 5, the time of the first sample after it.
+/// Returns the time of the first sample: the reference time in words 70 to 75 plus the offset in
+/// word 5.
 fn start(bytes: &[u8], big: bool) -> Option<Utc> {
     let part = |index: usize| i64::from(integer(bytes, index, big));
     let seconds = part(74) as f64 + 1e-3 * part(75) as f64;

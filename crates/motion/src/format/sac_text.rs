@@ -1,7 +1,8 @@
-//! SAC text ("alphanumeric"): the header of the binary file in lines, then the samples.
+//! Reader of SAC text files ("alphanumeric"): the header of the binary format in lines, then the
+//! samples.
 //!
-//! It is converted to the equivalent binary file and read as that.
-//! Spec: SAC users manual, "SAC data file format", alphanumeric files.
+//! The text is converted to the equivalent binary file, which is then read. Spec: SAC users manual,
+//! "SAC data file format", alphanumeric files.
 
 use super::source::{Columns, Source};
 use super::{Format, Hints, sac};
@@ -11,12 +12,12 @@ use crate::record::Record;
 pub(crate) const FORMAT: Format =
     Format { name: "sac-text", title: "SAC text (alphanumeric)", sniff, read };
 
-/// 14 lines of 5 reals, 8 lines of 5 integers, 8 lines of 24 characters.
+/// The header has 14 lines of 5 reals, 8 lines of 5 integers, and 8 lines of 24 characters.
 const REALS: usize = 70;
 const INTEGERS: usize = 40;
 const WORD_LINES: usize = 8;
 const HEADER_LINES: usize = REALS / 5 + INTEGERS / 5 + WORD_LINES;
-/// Integer 6 (word 76) is the version of the header, integer 9 the number of samples.
+/// Integer 6 (word 76) is the header version, integer 9 the number of samples.
 const VERSION: usize = 6;
 const POINTS: usize = 9;
 
@@ -36,13 +37,14 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         source.fixed(line, INTEGERS, Columns::new(5, 10), f64::from(i32::MAX))?;
     let points = super::whole(source, REALS / 5 + 1, "a number of points", integers[POINTS])?;
     let data = line + WORD_LINES;
-    // Five per line; some programs write the last ones one by one.
+    // There are five values per line; some programs write the last ones one per line.
     let values = source.all_tokens(data, source.lines.len(), f64::from(f32::MAX))?;
     if values.len() != points {
         let stated = format!("{points} values as the header states");
         let found = values.len().to_string();
         if values.len() >= 2 * points {
-            let remedy = "give a time series; spectra and pairs of time and value are not read";
+            let remedy =
+                "give a time series; spectra and pairs of time and value are not supported";
             return Err(source.not_acceleration((), stated, found, remedy));
         }
         if values.len() > points {

@@ -1,4 +1,4 @@
-//! Channels with SEED codes and metadata, which state the quantity that was recorded.
+//! Channels with SEED codes, and the quantity they recorded according to their metadata.
 
 use super::Hints;
 use super::source::{Source, quoted};
@@ -6,8 +6,8 @@ use crate::error::{ReadError, Refusal};
 use crate::instrument::{Instrument, SeedName, differentiated};
 use crate::record::{Quantity, Record};
 
-/// Returns the quantity that a channel recorded, by the caller, the metadata or the channel code; `None` for metadata
-/// with another quantity than motion.
+/// Returns the quantity recorded by a channel, from the caller, the metadata or the channel code;
+/// `None` if the metadata state a quantity other than motion.
 pub(super) fn quantity(
     hints: &Hints<'_>,
     seed: &SeedName,
@@ -21,11 +21,12 @@ pub(super) fn quantity(
     Some(hints.recorded().or(metadata).unwrap_or_else(by_code))
 }
 
-/// Converts counts or values of a channel to accelerations, with the mean of a raw accelerometer removed.
+/// Converts counts or values of a channel to accelerations, and removes the mean of a raw
+/// accelerometer.
 ///
-/// `scaled` holds SI values of the recorded quantity. The quantity comes from the caller, else from the metadata,
-/// else from the channel code; velocities and displacements are differentiated if the caller or the metadata
-/// state them, and refused if only the channel code does.
+/// `scaled` contains SI values of the recorded quantity. The quantity comes from the caller, else
+/// from the metadata, else from the channel code. Velocities and displacements are differentiated
+/// if the caller or the metadata state them, but refused if only the channel code does.
 pub(super) fn as_acceleration(
     source: &Source<'_>,
     record: &mut Record,
@@ -69,7 +70,7 @@ pub(super) fn as_acceleration(
         record.warn(
             None,
             format!(
-                "channel {label} is of a sensor of {quantity}, as its metadata say: accelerations are its \
+                "channel {label} is of a {quantity} sensor according to its metadata: accelerations are its \
                  derivatives; strong shaking may have driven such a sensor beyond its range"
             ),
         );
@@ -77,7 +78,7 @@ pub(super) fn as_acceleration(
     Ok((0..order).fold(scaled, |values, _| differentiated(&values, time_step)))
 }
 
-/// Refuses a channel whose metadata state an input unit other than of motion.
+/// Refuses a channel whose metadata state an input unit that is not a unit of motion.
 fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
     let found = match unit {
         "" => "metadata without an input unit".to_owned(),
@@ -85,7 +86,7 @@ fn other_unit(source: &Source<'_>, seed: &SeedName, unit: &str) -> ReadError {
     };
     source.not_acceleration(
         (),
-        format!("an accelerometer behind channel {}", seed.channel),
+        format!("an accelerometer as the source of channel {}", seed.channel),
         found,
         "give the channel of an accelerometer, or correct InputUnits in its StationXML",
     )

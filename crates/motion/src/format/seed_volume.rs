@@ -1,8 +1,9 @@
-//! Full SEED: control headers with the response of every channel, then data records.
+//! Reader of full SEED volumes: control headers with the response of every channel, then data
+//! records.
 //!
-//! The data records are read as miniSEED; sensitivities, units and directions come from the control
-//! headers, unless the caller overrides them.
-//! Spec: FDSN, SEED 2.4, chapters 4 to 8, blockettes 010, 034, 050, 052 and 058.
+//! The data records are read as miniSEED. Sensitivities, units and directions come from the control
+//! headers, unless the caller overrides them. Spec: FDSN, SEED 2.4, chapters 4 to 8, blockettes
+//! 010, 034, 050, 052 and 058.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +17,7 @@ use crate::units::MotionUnit;
 
 pub(crate) const FORMAT: Format = Format { name: "seed", title: "SEED 2.4 volumes", sniff, read };
 
-/// Shortest control record.
+/// Shortest control record (bytes).
 const SHORTEST: usize = 256;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -49,7 +50,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
         return Err(source.not_acceleration(
             (),
             "control headers and data records",
-            "a dataless SEED volume, control headers alone",
+            "a dataless SEED volume with control headers only",
             "give the miniSEED file with the sensitivity that this volume states, or the station's \
              StationXML",
         ));
@@ -74,10 +75,11 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     })
 }
 
-/// Returns the record length, `2^n` bytes, from blockette 010 or 005 of the first record.
+/// Returns the record length (bytes), a power of two, from blockette 010, 005 or 008 of the first
+/// record.
 fn record_length(bytes: &[u8]) -> Option<usize> {
     let head = latin1(bytes.get(8..SHORTEST)?);
-    // Type, length of the blockette, version, exponent.
+    // Fields: type, length of the blockette, version, exponent.
     let exponent: u32 = match head.get(..3)? {
         "010" | "005" | "008" => head.get(11..13)?.trim().parse().ok()?,
         _ => return None,
@@ -98,11 +100,11 @@ fn blockettes(text: &str, mut take: impl FnMut(&str, &str)) {
     }
 }
 
-/// The fields of a blockette one after another.
+/// The remaining fields of a blockette, read one after another.
 struct Fields<'a>(&'a str);
 
 impl<'a> Fields<'a> {
-    /// Reads a field of a fixed width.
+    /// Reads a field of fixed width.
     fn fixed(&mut self, width: usize) -> Option<&'a str> {
         let (field, rest) = (self.0.get(..width)?, self.0.get(width..)?);
         self.0 = rest;
@@ -121,7 +123,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Names of units by their codes, with the unit if it is one of motion.
+/// Unit codes with their names, and the unit if it is a unit of motion.
 type Units = BTreeMap<u32, (String, Option<MotionUnit>)>;
 
 /// Reads the metadata of every channel with a sensitivity from the control headers.
@@ -151,7 +153,8 @@ fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
                 && let Some(value) = fields.number(12).filter(|value| *value != 0.0)
                 && let Some((mut known, factor)) = open.take()
             {
-                // Counts per unit of the volume, and the SI value of that unit.
+                // The sensitivity is in counts per unit of the volume, and `factor` is the SI value
+                // of that unit.
                 known.sensitivity = value / factor;
                 found.push(known);
             }
@@ -161,14 +164,14 @@ fn instruments(abbreviations: &str, stations: &str) -> Vec<Instrument> {
     found
 }
 
-/// Returns network and station of blockette 050.
+/// Returns the network and station codes in blockette 050.
 fn names(content: &str) -> Option<(String, String)> {
     let mut fields = Fields(content);
     let station = fields.fixed(5)?.to_owned();
-    // Latitude, longitude, elevation, channels, comments.
+    // Skip latitude, longitude, elevation, channels, comments.
     fields.fixed(10 + 11 + 7 + 4 + 3)?;
     fields.open()?;
-    // Owner, orders of bytes and words; begin and end; update flag.
+    // Skip the owner, the byte and word orders, begin and end, and the update flag.
     fields.fixed(3 + 4 + 2)?;
     fields.open()?;
     fields.open()?;
@@ -176,7 +179,8 @@ fn names(content: &str) -> Option<(String, String)> {
     Some((fields.fixed(2).unwrap_or_default().to_owned(), station))
 }
 
-/// Reads a channel of blockette 052 without its sensitivity, and the SI value of the unit of its signal.
+/// Reads a channel from blockette 052, without its sensitivity; also returns the SI value of the
+/// signal's unit.
 fn channel(
     content: &str,
     (network, station): &(String, String),
@@ -185,16 +189,16 @@ fn channel(
     let mut fields = Fields(content);
     let location = fields.fixed(2)?.to_owned();
     let channel = fields.fixed(3)?.to_owned();
-    // Subchannel and instrument.
+    // Skip the subchannel and the instrument.
     fields.fixed(4 + 3)?;
     fields.open()?;
     let (name, unit) = fields.fixed(3)?.parse().ok().and_then(|code: u32| units.get(&code))?;
     fields.fixed(3)?;
     let place = [fields.number(10), fields.number(11), fields.number(7)];
-    // Local depth.
+    // Skip the local depth.
     fields.fixed(5)?;
     let (azimuth, dip) = (fields.number(5), fields.number(5));
-    // Format, length of records, rate, drift, comments; flags.
+    // Skip the format, record length, rate, drift, comments and flags.
     fields.fixed(4 + 2 + 10 + 10 + 4)?;
     fields.open()?;
     let epoch = (fields.open().and_then(instant), fields.open().and_then(instant));
@@ -219,7 +223,7 @@ fn channel(
     Some((known, unit.map_or(1.0, |unit| unit.factor)))
 }
 
-/// Parses `2003,175,00:00:00.0000`: year, day of the year, time.
+/// Parses a time such as `2003,175,00:00:00.0000`: year, day of the year, time of day.
 fn instant(text: &str) -> Option<crate::utc::Utc> {
     let mut parts = text.split([',', ':']).map(|part| part.trim().parse::<f64>().ok());
     let mut next = || parts.next().flatten();

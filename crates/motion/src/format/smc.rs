@@ -1,8 +1,9 @@
-//! USGS SMC: corrected records at equal steps and uncorrected ones as time and value pairs, cm/s².
+//! Reader of USGS SMC files in cm/s²: corrected records at equal steps, and uncorrected records as
+//! time and value pairs.
 //!
-//! 11 text lines, 6 lines 8I10, 10 lines 5E15.7, comments, data 8E10.4 without blanks between.
-//! Spec: USGS National Strong-Motion Program, "SMC-format data files" (smcfmt), and Converse and
-//! Brady 1992, USGS Open-File Report 92-296A.
+//! A file has 11 text lines, 6 lines 8I10, 10 lines 5E15.7, comments, and data 8E10.4 without
+//! blanks between values. Spec: USGS National Strong-Motion Program, "SMC-format data files"
+//! (smcfmt), and Converse and Brady 1992, USGS Open-File Report 92-296A.
 
 use super::even::{Timed, even_steps};
 use super::source::{Columns, GAL, LARGEST_ACCELERATION, Source, latin1, quoted};
@@ -52,8 +53,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     station.split_once('=').map_or("", |(_, name)| name).trim().clone_into(&mut record.station);
     let (integers, line) = source.fixed(TEXT_LINES, 8 * INTEGER_LINES, COLUMNS, f64::INFINITY)?;
     let (reals, line) = source.fixed(line, 5 * REAL_LINES, Columns::new(5, 15), f64::INFINITY)?;
-    // Reals 3 to 8 of the format: epicenter, depth, and magnitudes by moment, surface waves and ML; 17
-    // is the epicentral distance.
+    // Reals 3 to 8 of the format are the epicenter, the depth, and the moment, surface-wave and
+    // local magnitudes; real 17 is the epicentral distance.
     let stated = |index: usize| reals.get(index).copied().filter(|value| value.abs() < 1e37);
     record.earthquake = Earthquake {
         epicentral_distance: stated(16),
@@ -81,7 +82,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     if next < source.lines.len() {
         record.warn(
             next + 1,
-            format!("what follows the {count} values is left out, from this line to the last"),
+            format!("everything after the {count} values is ignored, from this line to the end"),
         );
     }
     let name = component(source);
@@ -100,7 +101,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     };
     let values: Vec<f64> = values.iter().map(|value| value * GAL).collect();
     let mut channel = Channel::new(name, direction, time_step, values);
-    // Without seconds and milliseconds these integers are the time of the event.
+    // If seconds and milliseconds are missing, these integers are the time of the event.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, and is checked then")]
     let whole = |index: usize| known(index).map(|value| value as i64);
     let clock = known(5).zip(known(6)).map(|(second, milli)| second + 1e-3 * milli);
@@ -111,7 +112,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     record.channels.push(channel);
     for line in 0..TEXT_LINES {
         if source.has(line, "building") || source.has(line, "floor") {
-            record.warn(line + 1, "the header speaks of a building; this may be no ground motion");
+            record
+                .warn(line + 1, "the header mentions a building; this may not be a ground motion");
         }
     }
     Ok(record)
@@ -121,7 +123,7 @@ fn missing(source: &Source<'_>, line: usize, what: &str) -> ReadError {
     source.header(line.min(source.lines.len().saturating_sub(1)), what, quoted(&source.text(line)))
 }
 
-/// Parses `component= 360` at column 42 of line 6.
+/// Parses the component, such as `component= 360` at column 42 of line 6.
 fn component(source: &Source<'_>) -> String {
     let text = source.text(5);
     let lower = text.to_ascii_lowercase();

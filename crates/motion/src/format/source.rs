@@ -1,4 +1,4 @@
-//! Lines and columns of a text file, and numbers read from them, with the position of each error.
+//! Access to the lines, columns and numbers of a text file, with the position of each error.
 
 use super::number::split_touching;
 pub(crate) use super::number::{
@@ -13,13 +13,13 @@ use crate::units::AccelerationUnit;
 /// Largest acceleration that a reader accepts (m/s²), about a thousand g.
 pub(crate) const LARGEST_ACCELERATION: f64 = 1e4;
 
-/// Marks around numbers of spreadsheets and programs.
+/// Characters that spreadsheets and programs write around numbers.
 const MARKS: [char; 10] = ['"', '\'', '(', ')', '[', ']', '{', '}', '%', '$'];
 
-/// SI value of the gal (m/s²), the cm/s² of most networks.
+/// SI value of the gal (m/s²); most networks use it under the name cm/s².
 pub(crate) const GAL: f64 = 0.01;
 
-/// A file split into lines; line indices count from 0 here, from 1 in messages.
+/// A file split into lines. Line numbers count from 0 here, but from 1 in messages.
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) bytes: &'a [u8],
@@ -37,11 +37,12 @@ impl<'a> Source<'a> {
         while let [rest @ .., b'\n' | b'\r'] = text {
             text = rest;
         }
-        // Count first: growing by doubling would need three times the memory for a file of short lines.
+        // Count the lines first: a growing vector would need three times the memory for a file of
+        // short lines.
         let count = text.split(|&byte| byte == separator).count();
         let mut lines: Vec<&[u8]> = Vec::with_capacity(count);
         lines.extend(text.split(|&byte| byte == separator).map(|mut line| {
-            // Some agencies pad their lines with NUL.
+            // Some agencies pad their lines with NUL characters.
             while let [rest @ .., b'\r' | 0] = line {
                 line = rest;
             }
@@ -53,51 +54,51 @@ impl<'a> Source<'a> {
         Self { name, bytes, lines }
     }
 
-    /// Returns the line as trimmed text (Latin-1), empty beyond the end.
+    /// Returns the trimmed text of a line (Latin-1); empty beyond the end of the file.
     pub(crate) fn text(&self, line: usize) -> String {
         latin1(self.raw(line)).trim().to_owned()
     }
 
-    /// Returns the untrimmed bytes of a line, empty beyond the end.
+    /// Returns the untrimmed bytes of a line; empty beyond the end of the file.
     pub(crate) fn raw(&self, line: usize) -> &'a [u8] {
         self.lines.get(line).copied().unwrap_or(&[])
     }
 
-    /// Returns the characters of a line from column `from` (0-based) on, at most `width`.
+    /// Returns at most `width` characters of a line, starting at column `from` (counted from 0).
     pub(crate) fn slice(&self, line: usize, from: usize, width: usize) -> &'a [u8] {
         let raw = self.raw(line);
         let start = from.min(raw.len());
         &raw[start..(from.saturating_add(width)).min(raw.len())]
     }
 
-    /// `true` if the line contains `needle`, in any case.
+    /// Returns `true` if the line contains `needle`, ignoring case.
     pub(crate) fn has(&self, line: usize, needle: &str) -> bool {
         self.find(line, needle).is_some()
     }
 
-    /// Returns the byte offset of `needle` in the line, in any case.
+    /// Returns the byte offset of `needle` in the line, ignoring case.
     pub(crate) fn find(&self, line: usize, needle: &str) -> Option<usize> {
         find_ignoring_case(self.raw(line), needle.as_bytes())
     }
 
-    /// Returns the first number that follows `key` on the line, skipping blanks, `=` and `:`.
+    /// Returns the first number after `key` on the line, skipping blanks, `=` and `:`.
     pub(crate) fn number_after(&self, line: usize, key: &str) -> Option<f64> {
         let start = self.find(line, key)? + key.len();
         leading_number(&self.raw(line)[start..])
     }
 
-    /// Returns the same number as [`Source::number_after`] with the resolution of the printed digits.
+    /// Returns the first number after `key`, with the resolution of its printed digits.
     pub(crate) fn printed_after(&self, line: usize, key: &str) -> Option<Printed> {
         let start = self.find(line, key)? + key.len();
         leading_printed(&self.raw(line)[start..])
     }
 
-    /// Returns the unit that follows one of `keys` on the line, in parentheses or not.
+    /// Returns the unit after one of `keys` on the line, with or without parentheses.
     pub(crate) fn unit_after(&self, line: usize, keys: &[&str]) -> Option<AccelerationUnit> {
         keys.iter().find_map(|key| self.word_after(line, key)?.1.parse().ok())
     }
 
-    /// Returns the word after `key` on the line, and the offset of the key's end.
+    /// Returns the word after `key` on the line, and the offset of the end of the key.
     pub(crate) fn word_after(&self, line: usize, key: &str) -> Option<(usize, String)> {
         let at = self.find(line, key)? + key.len();
         let text = latin1(&self.raw(line)[at..]);
@@ -105,7 +106,7 @@ impl<'a> Source<'a> {
         Some((at, word.trim_end_matches('.').to_owned()))
     }
 
-    /// Returns number and value of the first line before `end` for which `value` returns one.
+    /// Returns the first line before `end` for which `value` returns a value, with that value.
     pub(crate) fn field(
         &self,
         end: usize,
@@ -115,13 +116,13 @@ impl<'a> Source<'a> {
             .find_map(|line| Some((line, value(&self.text(line))?.trim().to_owned())))
     }
 
-    /// Returns a required field of the header.
+    /// Returns a required header field, or an error that it is missing.
     pub(crate) fn needed<T>(&self, field: Option<T>, key: &str) -> Result<T, ReadError> {
         field.ok_or_else(|| self.header((), format!("a value for \"{key}\""), "none"))
     }
 
-    /// Reads blocks to the end of the file, skipping blank lines between them; `read` takes the first line of a block
-    /// and returns the line after it.
+    /// Reads blocks up to the end of the file, skipping blank lines between them. `read` gets the
+    /// first line of a block and returns the line after the block.
     pub(crate) fn each_block(
         &self,
         mut read: impl FnMut(usize) -> Result<usize, ReadError>,
@@ -134,7 +135,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Checks that a block begins on a line with a mark; `expected` describes it.
+    /// Checks that a block begins with a mark on a line; `expected` describes the mark in errors.
     pub(crate) fn require_mark(
         &self,
         line: usize,
@@ -145,11 +146,11 @@ impl<'a> Source<'a> {
             return Ok(());
         }
         let remedy =
-            "lines are missing or in excess before this one; get the file again from its source";
+            "lines are missing or added before this one; get the file again from its source";
         Err(self.damaged(line, expected, quoted(&self.text(line)), remedy))
     }
 
-    /// Checks that a block has all lines of its header, and some after it.
+    /// Checks that all header lines of a block exist, with data after them.
     pub(crate) fn require_header(&self, first: usize, lines: usize) -> Result<(), ReadError> {
         let found = self.lines.len() - first;
         if found > lines {
@@ -158,8 +159,8 @@ impl<'a> Source<'a> {
         Err(self.cut(format!("{lines} header lines and data"), format!("{found} lines")))
     }
 
-    /// Returns the line after the end of a channel, "/&" or "end of data", which blank lines may precede; the mark is
-    /// optional if the next channel begins with `next`.
+    /// Returns the line after the end of a channel, which is marked "/&" or "end of data" after
+    /// optional blank lines. The mark may be missing if the next channel begins with `next`.
     pub(crate) fn end_of_channel(&self, line: usize, next: &str) -> Result<usize, ReadError> {
         let blank = |line: &usize| !self.raw(*line).trim_ascii().is_empty();
         let Some(line) = (line..self.lines.len()).find(blank) else { return Ok(self.lines.len()) };
@@ -173,12 +174,12 @@ impl<'a> Source<'a> {
             line,
             "the end of the channel, \"/&\"",
             quoted(&self.text(line)),
-            "the header states another number of points than the file holds; get the file again \
+            "the header states another number of points than the file contains; get the file again \
              from its source",
         ))
     }
 
-    /// Returns the error for a damaged file.
+    /// Returns an error about a damaged file.
     pub(crate) fn damaged(
         &self,
         place: impl Into<Place>,
@@ -189,7 +190,7 @@ impl<'a> Source<'a> {
         self.error(place, Refusal::Damaged, expected, found, remedy)
     }
 
-    /// Returns the error for a sound file with other contents than accelerations.
+    /// Returns an error about a valid file that contains no accelerations.
     pub(crate) fn not_acceleration(
         &self,
         place: impl Into<Place>,
@@ -200,7 +201,7 @@ impl<'a> Source<'a> {
         self.error(place, Refusal::NotAcceleration, expected, found, remedy)
     }
 
-    /// Returns the error for a damaged header.
+    /// Returns an error about a damaged header.
     pub(crate) fn header(
         &self,
         place: impl Into<Place>,
@@ -219,7 +220,7 @@ impl<'a> Source<'a> {
         remedy: impl Into<String>,
     ) -> ReadError {
         let place = place.into();
-        // A whole line is marked at its first non-blank character.
+        // An error about a whole line is placed at the first non-blank character.
         let begin = |line: usize| {
             self.raw(line).iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(0)
         };
@@ -235,7 +236,7 @@ impl<'a> Source<'a> {
         .into()
     }
 
-    /// Returns the error for a damaged field.
+    /// Returns an error about a field that is not a number.
     pub(crate) fn bad_number(&self, line: usize, column: usize, field: &[u8]) -> ReadError {
         let text = latin1(field.trim_ascii());
         let begins = self.raw(line)[..column.min(self.raw(line).len())].trim_ascii().is_empty();
@@ -243,19 +244,19 @@ impl<'a> Source<'a> {
         let (found, remedy) = if self.raw(line).trim_ascii().is_empty() {
             (
                 "a blank line among the rows".to_owned(),
-                "leave it out if no row is lost there; otherwise get the file again from its source",
+                "remove it if no row is lost there; otherwise get the file again from its source",
             )
         } else if text.is_empty() {
             ("blanks".to_owned(), "the file is damaged; get it again from its source")
         } else if text.contains("\u{e2}\u{88}\u{92}") || text.contains("\u{e2}\u{80}\u{93}") {
             (
                 format!("a dash for the minus sign in {}", quoted(&utf8(self.raw(line)))),
-                "write a hyphen for each minus sign, as programs do",
+                "write a hyphen for each minus sign",
             )
         } else if text.matches('.').count() > 1 && !text.contains(|c: char| c.is_alphabetic()) {
             (
                 format!("{}, a number with several points", quoted(&text)),
-                "leave out the points that mark thousands",
+                "remove the points that separate thousands",
             )
         } else if text.contains('*') {
             (
@@ -266,17 +267,14 @@ impl<'a> Source<'a> {
         } else if super::number::is_no_number(&text) {
             (
                 quoted(&text),
-                "the program that wrote the file had no number there; get the file again from its source",
+                "the program that wrote the file had no number here; get the file again from its source",
             )
         } else if parse_number(text.trim_matches(MARKS).as_bytes()).is_some() {
-            (
-                quoted(&text),
-                "write the number without marks around it, and a negative one with a hyphen",
-            )
+            (quoted(&text), "write only the number, with a hyphen if it is negative")
         } else if begins && words {
             (
                 format!("words among the rows, {}", quoted(&self.text(line))),
-                "leave this line out if it is a remark, a repeated header or a footer, and others like it; \
+                "remove this line, and others like it, if it is a remark, a repeated header or a footer; \
                  otherwise get the file again from its source",
             )
         } else {
@@ -288,14 +286,14 @@ impl<'a> Source<'a> {
         self.damaged((line, column), "a number", found, remedy)
     }
 
-    /// Returns the error for a truncated file, right after its last character.
+    /// Returns an error about a truncated file, placed after its last character.
     pub(crate) fn cut(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         let last = self.lines.len().saturating_sub(1);
         self.damaged(
             (last, self.end_of(last)),
             expected,
             found,
-            "the file is cut; get it again from its source",
+            "the file is truncated; get it again from its source",
         )
     }
 
@@ -304,10 +302,11 @@ impl<'a> Source<'a> {
         self.raw(line).trim_ascii_end().len()
     }
 
-    /// Reads `count` numbers from fixed columns starting on `line`; returns them and the next line.
+    /// Reads `count` numbers from fixed columns, starting on `line`. Returns the numbers and the
+    /// next line.
     ///
-    /// Fields are split by column; a line whose columns do not fit is split at blanks if that gives
-    /// the right number of fields.
+    /// Fields are split by column. A line that does not fit the columns is split at blanks, if that
+    /// gives the right number of fields.
     pub(crate) fn fixed(
         &self,
         line: usize,
@@ -319,8 +318,8 @@ impl<'a> Source<'a> {
             .map(|(values, next, _)| (values, next))
     }
 
-    /// Reads numbers as [`Source::fixed`] where the count precedes them; values after the last one, on its line and on
-    /// further lines of numbers, are left out with a warning.
+    /// Reads numbers like [`Source::fixed`], if the header states their count. Further numbers, on
+    /// the last line and on the lines after it, are ignored with a warning.
     pub(crate) fn counted(
         &self,
         record: &mut Record,
@@ -345,15 +344,16 @@ impl<'a> Source<'a> {
             record.warn(
                 next,
                 format!(
-                    "{more} numbers stand behind the {count} that the header states; they are left \
-                     out"
+                    "{more} numbers follow the {count} that the header states; they are \
+                     ignored"
                 ),
             );
         }
         Ok((values, next))
     }
 
-    /// Returns the values, the next line, and, if `lenient`, the number of excess values on the last line.
+    /// Returns the values, the next line, and the number of excess values on the last line, which
+    /// is 0 unless `lenient`.
     fn fixed_or_more(
         &self,
         line: usize,
@@ -414,16 +414,17 @@ impl<'a> Source<'a> {
         if filled > end {
             return Err(self.damaged(
                 (line, end),
-                format!("the end of {wanted} numbers"),
+                format!("the end of the line after {wanted} numbers"),
                 quoted(&latin1(raw[end..].trim_ascii())),
-                "the header states fewer numbers than the file holds or other columns; get the \
+                "the header states fewer numbers than the file contains, or other columns; get the \
                  file again from its source",
             ));
         }
         Ok(())
     }
 
-    /// Appends the numbers of one line separated by blanks, tabs, commas or semicolons, or touching.
+    /// Appends the numbers of a line, which are separated by blanks, tabs, commas or semicolons, or
+    /// touch each other.
     pub(crate) fn tokens(
         &self,
         line: usize,
@@ -455,7 +456,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Returns all numbers of lines `from..to`, split at blanks.
+    /// Returns all numbers of the lines `from..to`, split at blanks.
     pub(crate) fn all_tokens(
         &self,
         from: usize,
@@ -469,7 +470,7 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    /// Returns `value` unless it exceeds any possible acceleration.
+    /// Returns `value`, or an error if it exceeds any possible acceleration.
     pub(crate) fn within(
         &self,
         line: usize,
@@ -484,22 +485,22 @@ impl<'a> Source<'a> {
                 (line, column),
                 format!("a number up to {limit:.3e} in the file's unit"),
                 format!("{value:e}"),
-                "no ground moves like that; check the unit, or get the file again from its source",
+                "ground accelerations are smaller; check the unit, or get the file again from its source",
             ))
         }
     }
 
-    /// Returns the error for a row without `width` numbers.
+    /// Returns an error about a row with other than `width` numbers.
     pub(crate) fn ragged(&self, line: usize, width: usize, found: usize) -> ReadError {
         self.damaged(
             (line, self.end_of(line)),
             format!("{width} numbers"),
             format!("{found} numbers"),
-            "the file is cut or a line was lost; get it again from its source",
+            "the file is truncated or a line was lost; get it again from its source",
         )
     }
 
-    /// Refuses the first byte that is invalid in text.
+    /// Refuses the first byte that is not valid in text.
     pub(crate) fn require_text(&self) -> Result<(), ReadError> {
         for (line, raw) in self.lines.iter().enumerate() {
             if let Some(column) = raw.iter().position(|&b| b < 0x09 || (0x0E..0x20).contains(&b)) {

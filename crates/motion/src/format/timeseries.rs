@@ -1,8 +1,9 @@
-//! TSPAIR and SLIST: text of FDSN web services, of irisws-timeseries, and of `ObsPy`.
+//! Reader of TSPAIR and SLIST text, as written by FDSN web services, irisws-timeseries and `ObsPy`.
 //!
-//! Every block begins with one line: `TIMESERIES NET_STA_LOC_CHA_Q, n samples, r sps, start, TSPAIR or
-//! SLIST, type, unit`; lines of time and value, or values alone, follow.
-//! Spec: `EarthScope`, timeseries web service, output formats `ascii`, `ascii1` and `ascii2`.
+//! Every block begins with the line
+//! `TIMESERIES NET_STA_LOC_CHA_Q, n samples, r sps, start, TSPAIR or SLIST, type, unit`. Lines of
+//! time and value, or values alone, follow. Spec: `EarthScope`, timeseries web service, output
+//! formats `ascii`, `ascii1` and `ascii2`.
 
 use super::counts::{self, Samples, Unit};
 use super::source::{Source, parse_number, quoted};
@@ -16,7 +17,7 @@ pub(crate) const FORMAT: Format =
     Format { name: "timeseries", title: "TSPAIR and SLIST text (FDSN)", sniff, read };
 
 const MARK: &str = "TIMESERIES ";
-/// Larger numbers are errors, in counts and in units.
+/// Largest valid number, in counts or in units.
 const LIMIT: f64 = 1e12;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -24,7 +25,7 @@ fn sniff(source: &Source<'_>) -> bool {
         && (source.has(0, "TSPAIR") || source.has(0, "SLIST"))
 }
 
-/// The line above a block.
+/// Content of the first line of a block.
 struct Head {
     line: usize,
     codes: SeedName,
@@ -107,7 +108,7 @@ fn head(source: &Source<'_>, line: usize) -> Result<Head, ReadError> {
         "SLIST" => false,
         other => return Err(wrong("TSPAIR or SLIST as layout", other)),
     };
-    // Without a unit, the values are counts, which need a sensitivity.
+    // Without a unit, the values are counts and need a sensitivity.
     let word = rest.first().copied().unwrap_or_default();
     let unit = Unit::of(word).ok_or_else(|| {
         source.not_acceleration(
@@ -123,7 +124,8 @@ fn head(source: &Source<'_>, line: usize) -> Result<Head, ReadError> {
     Ok(Head { line, codes, count, rate, start, pairs, unit })
 }
 
-/// Returns the values of a block, as many as its head states, each at its time.
+/// Returns the values of a block. Their number and their times must agree with the first line of
+/// the block.
 fn values(source: &Source<'_>, head: &Head, end: usize) -> Result<Vec<f64>, ReadError> {
     let mut values = Vec::with_capacity(head.count.min(source.bytes.len()));
     for line in head.line + 1..end {
@@ -159,9 +161,9 @@ fn values(source: &Source<'_>, head: &Head, end: usize) -> Result<Vec<f64>, Read
     Ok(values)
 }
 
-const AGAIN: &str = "the text is cut or damaged; get it again from its source";
+const AGAIN: &str = "the text is truncated or damaged; get it again from its source";
 
-/// Checks that a block begins where the one before ended.
+/// Checks that a block begins where the previous block ended.
 fn continued(
     source: &Source<'_>,
     first: &Head,
@@ -178,7 +180,7 @@ fn continued(
             next.line,
             format!("channel {} without a gap", first.codes.channel),
             format!("{off:.4} s between two blocks"),
-            "give the part before or behind the gap",
+            "give the part before or after the gap",
         ));
     }
     Ok(())

@@ -1,7 +1,9 @@
-//! UNAM and CICESE, Mexico: the "archivo estándar de aceleración" (ASA 2.0), columns in gal.
+//! Reader of UNAM and CICESE files, Mexico: the "archivo estándar de aceleración" (ASA 2.0),
+//! columns in gal.
 //!
-//! Keys are Spanish and have several spellings; `ORIENTACION C1-C6` states the order of the columns.
-//! Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version 2.0.
+//! Keys are Spanish and have several spellings; `ORIENTACION C1-C6` states the order of the
+//! columns. Spec: Sociedad Mexicana de Ingeniería Sísmica, formato estándar de aceleración, version
+//! 2.0.
 
 use super::source::{
     Columns, GAL, LARGEST_ACCELERATION, Source, leading_number, leading_printed, quoted,
@@ -20,7 +22,7 @@ pub(crate) const FORMAT: Format =
 const MOST_HEADER_LINES: usize = 200;
 
 fn sniff(source: &Source<'_>) -> bool {
-    // Accented capitals, if any, depend on the encoding.
+    // Accented capitals may be missing or depend on the encoding.
     (0..20).any(|line| source.has(line, "ARCHIVO EST") && source.has(line, "NDAR DE ACELERACI"))
 }
 
@@ -38,7 +40,7 @@ fn field(source: &Source<'_>, key: &str) -> Option<(usize, String)> {
     found.filter(|(_, value)| !value.is_empty())
 }
 
-/// Parses `/a/b/c`: one part or more.
+/// Parses a list of one or more parts, such as `/a/b/c`.
 fn list(text: &str) -> Vec<String> {
     text.trim_start_matches('/').split('/').map(|part| part.trim().to_owned()).collect()
 }
@@ -90,7 +92,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         }
     }
     let found = values.first().map_or(0, Vec::len);
-    // Here one or two excess values are left out too.
+    // In this format, one or two excess values are also ignored.
     if found > count {
         for column in &mut values {
             column.truncate(count);
@@ -98,7 +100,7 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
         record.warn(
             count_line + 1,
             format!(
-                "the header states {count} samples, the file holds {found}; the rest is left out"
+                "the header states {count} samples, the file contains {found}; the rest is ignored"
             ),
         );
     } else {
@@ -124,8 +126,8 @@ fn read(source: &Source<'_>, _: &Hints<'_>) -> Result<Record, ReadError> {
     Ok(record)
 }
 
-/// Returns the first sample's hour on the day of the event, or on the day after if that hour would precede the event
-/// by half a day.
+/// Returns the time of the first sample. It is on the day of the event, or on the next day if it
+/// would otherwise precede the event by more than half a day.
 fn start(source: &Source<'_>) -> Option<Utc> {
     let (_, day) = field(source, "FECHA DEL SISMO")?;
     let at = |hour: String| Utc::in_header(&format!("{day} {hour}"), DateOrder::DayFirst);
@@ -135,7 +137,8 @@ fn start(source: &Source<'_>) -> Option<Utc> {
     Some(if event.since(first) > 0.5 * day { first.later(day) } else { first })
 }
 
-/// Returns the earthquake; of several magnitudes `/Mb=5.2/Ms=5.8` by moment, else by surface waves, else the first.
+/// Returns the earthquake. Of several magnitudes, such as `/Mb=5.2/Ms=5.8`, the moment magnitude is
+/// used, else the surface-wave magnitude, else the first.
 fn earthquake(source: &Source<'_>) -> Earthquake {
     let stated = field(source, "MAGNITUD").map(|(_, text)| list(&text)).unwrap_or_default();
     let all: Vec<(&str, Option<f64>)> = stated
@@ -149,7 +152,7 @@ fn earthquake(source: &Source<'_>) -> Earthquake {
     Earthquake::of_magnitude(ordered).at(degrees(source, "COORDENADAS DEL EPICENTRO"), depth)
 }
 
-/// Parses `19.33024 LAT. N` and on the next line `99.181076 LONG. W`.
+/// Parses a position such as `19.33024 LAT. N`, with `99.181076 LONG. W` on the next line.
 fn degrees(source: &Source<'_>, key: &str) -> Option<(f64, f64)> {
     let signed = |text: &str| {
         let value = leading_number(text.trim_start_matches(':').as_bytes())?;
@@ -165,7 +168,7 @@ fn site(source: &Source<'_>) -> Site {
     Site { elevation, ..Site::default() }.at(position)
 }
 
-/// Returns the line after the second ruler below `DATOS DE ACELERACION`.
+/// Returns the line after the second ruled line below `DATOS DE ACELERACION`.
 fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
     let title = (0..MOST_HEADER_LINES.min(source.lines.len()))
         .rev()
@@ -181,7 +184,7 @@ fn data_line(source: &Source<'_>) -> Result<usize, ReadError> {
                 (),
                 "\"DATOS DE ACELERACION\" with two rulers before the data",
                 "none",
-                "the file is cut; get it again from its source",
+                "the file is truncated; get it again from its source",
             )
         })
 }

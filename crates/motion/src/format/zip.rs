@@ -1,16 +1,17 @@
-//! The files inside a zip archive, stored or deflated.
+//! Access to the files inside a zip archive, stored or deflated.
 //!
-//! Spec: PKWARE, APPNOTE 6.3, sections 4.3.7, 4.3.12 and 4.3.16; without encryption, parts and zip64.
+//! Spec: PKWARE, APPNOTE 6.3, sections 4.3.7, 4.3.12 and 4.3.16; encryption, multi-part archives
+//! and zip64 are not supported.
 
 use std::io::Read as _;
 
-/// Maximum number of files in an archive.
+/// Largest number of files in an archive.
 const MOST: usize = 50_000;
 
 /// A file in an archive.
 pub(crate) struct Entry<'a> {
     pub(crate) name: String,
-    /// Its bytes in the archive.
+    /// Packed bytes of the file.
     packed: &'a [u8],
     method: u16,
     sum: u32,
@@ -39,7 +40,8 @@ pub(crate) fn entries(bytes: &[u8]) -> Result<Vec<Entry<'_>>, String> {
     Ok(found)
 }
 
-/// Returns the file that the directory describes at an offset, and the offset of the next entry.
+/// Returns the file described by the directory entry at an offset, and the offset of the next
+/// entry.
 fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
     let head = bytes.get(at..)?;
     if !head.starts_with(b"PK\x01\x02") {
@@ -55,14 +57,15 @@ fn entry(bytes: &[u8], at: usize) -> Option<(Entry<'_>, usize)> {
     }
     let begin = 30 + usize::from(two(local, 26)?) + usize::from(two(local, 28)?);
     let packed = local.get(begin..)?.get(..size(head, 20)?)?;
-    // Mark encrypted files by a method that does not exist.
+    // Encrypted files are marked by a method that does not exist.
     let method = if two(head, 8)? & 1 == 1 { u16::MAX } else { two(head, 10)? };
     let sum = four(head, 16)?;
     Some((Entry { name, packed, method, sum }, next))
 }
 
 impl Entry<'_> {
-    /// Returns the unpacked file, if it has at most `limit` bytes; else a description of the error.
+    /// Returns the unpacked file, which may have at most `limit` bytes, or a description of the
+    /// error.
     pub(crate) fn unpack(&self, limit: u64) -> Result<Vec<u8>, String> {
         let mut bytes = Vec::new();
         let read = match self.method {
@@ -85,9 +88,9 @@ impl Entry<'_> {
     }
 }
 
-/// `true` if the first file of a zip archive is a NumPy array.
+/// Returns `true` if the first file of a zip archive is a NumPy array.
 pub(crate) fn is_numpy(bytes: &[u8]) -> bool {
-    // Its name is 30 bytes after the beginning of the archive.
+    // The name of the first file is 30 bytes after the beginning of the archive.
     let name = bytes.get(30..bytes.len().min(200)).unwrap_or(&[]);
     bytes.starts_with(b"PK\x03\x04") && name.windows(4).any(|four| four == b".npy")
 }

@@ -1,4 +1,4 @@
-//! Boore's stochastic method: windowed noise shaped to the Fourier spectrum of a point source.
+//! Boore's stochastic method: windowed noise, shaped to the Fourier spectrum of a point source.
 
 use crate::error::MotionError;
 use crate::fourier::{Complex, forward, inverse};
@@ -8,23 +8,23 @@ use crate::process::Processing;
 use crate::random::Random;
 use crate::synthesis::{motion, step_count};
 
-/// Site amplification of Fourier amplitudes.
+/// Site amplification of the Fourier amplitudes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SiteAmplification {
-    /// 1 at every frequency.
+    /// No amplification.
     None,
-    /// Points `(frequency (Hz), amplification)` in ascending order, linear between in the logarithm
-    /// of frequency; constant outside.
+    /// Points `(frequency (Hz), amplification)` in ascending order; linear between them in the
+    /// logarithm of frequency, constant outside.
     Table(Vec<(f64, f64)>),
 }
 
-/// Propagation path of waves from source to site.
+/// Propagation path of the waves from source to site.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    /// Distance from source to site (km); spreading is `1/R` up to 70 km and constant to 130 km,
-    /// then `(130/R)^0.5/70` (Atkinson and Boore 1995).
+    /// Distance from source to site (km). Geometric spreading is `1/R` up to 70 km, constant up to
+    /// 130 km, then `(130/R)^0.5/70` (Atkinson and Boore 1995).
     pub distance: f64,
-    /// Quality factor at 1 Hz; `Q = q · f^exponent`, and never less than a tenth of `q`.
+    /// Quality factor at 1 Hz; `Q = q · f^exponent`, but at least a tenth of `q`.
     pub quality: f64,
     /// Exponent of the quality factor.
     pub quality_exponent: f64,
@@ -34,7 +34,7 @@ pub struct Path {
     pub amplification: SiteAmplification,
 }
 
-/// A Brune point source and its path (Boore 2003, PAGEOPH 160:635-676).
+/// A Brune point source with its path (Boore 2003, PAGEOPH 160:635-676).
 ///
 /// ```text
 /// Y(f) = C M0 (2πf)² /(1 + (f/f0)²) · G(R) exp(-π f R/(Q β)) · A(f) exp(-π κ f)
@@ -50,17 +50,18 @@ pub struct BooreSource {
     pub velocity: f64,
     /// Density at the source (g/cm³).
     pub density: f64,
-    /// Path and site.
+    /// Path from source to site.
     pub path: Path,
 }
 
-/// Shape of the time window: peak at a fifth of the duration, a twentieth of the peak at its end.
+/// Position of the peak of the time window, as a fraction of the duration; below, its value at the
+/// end relative to the peak.
 const WINDOW_PEAK: f64 = 0.2;
 const WINDOW_END: f64 = 0.05;
 
 impl BooreSource {
-    /// Returns a source of western North America with a moment magnitude at a distance (km): 70 bar, 3.5 km/s,
-    /// 2.8 g/cm³, `Q = 180 f^0.45`, κ = 0.04 s.
+    /// Returns a source typical of western North America: 70 bar, 3.5 km/s, 2.8 g/cm³,
+    /// `Q = 180 f^0.45`, κ = 0.04 s. `magnitude` is the moment magnitude and `distance` is in km.
     pub fn western(magnitude: f64, distance: f64) -> Self {
         Self {
             magnitude,
@@ -77,7 +78,7 @@ impl BooreSource {
         }
     }
 
-    /// Returns the seismic moment (dyne cm), Hanks and Kanamori (1979).
+    /// Returns the seismic moment (dyne cm) by Hanks and Kanamori (1979).
     pub fn moment(&self) -> f64 {
         math::powf(10.0, 1.5 * self.magnitude + 16.05)
     }
@@ -87,7 +88,8 @@ impl BooreSource {
         4.9e6 * self.velocity * math::powf(self.stress / self.moment(), 1.0 / 3.0)
     }
 
-    /// Returns the duration of the strong part (s): source `1/f0` and path `0.05 R`.
+    /// Returns the duration of the strong part (s): `1/f0` for the source plus `0.05 R` for the
+    /// path.
     pub fn strong_duration(&self) -> f64 {
         1.0 / self.corner_frequency() + 0.05 * self.path.distance
     }
@@ -100,8 +102,8 @@ impl BooreSource {
         let path = &self.path;
         let f0 = self.corner_frequency();
         let w = 2.0 * PI * f;
-        // Radiation 0.55, free surface 2, partition 0.7071; 1 km reference; km and g/cm³ to cgs
-        // give 1e-20, and cm to m the last 1e-2.
+        // Radiation pattern 0.55, free surface 2, partition 0.7071, reference distance 1 km. The
+        // conversion from km and g/cm³ to cgs gives 1e-20, and that from cm to m the last 1e-2.
         let beta = self.velocity;
         let c = 0.55 * 2.0 * std::f64::consts::FRAC_1_SQRT_2 * 1e-20
             / (4.0 * PI * self.density * beta * beta * beta);
@@ -149,14 +151,15 @@ impl BooreSource {
         )
     }
 
-    /// Returns unprocessed accelerations (m/s²); the noise is normalized so that the mean square of its Fourier
-    /// amplitudes is the target's at every frequency over many seeds.
+    /// Returns unprocessed accelerations (m/s²). The noise is normalized so that, over many seeds,
+    /// the mean square of its Fourier amplitudes equals that of the target at every frequency.
     ///
     /// # Errors
     /// If a parameter is out of range.
     pub fn acceleration(&self, time_step: f64, seed: u64) -> Result<Vec<f64>, MotionError> {
         self.check()?;
-        // The window decreases to a twentieth at the duration; twice that includes its tail.
+        // The window falls to a twentieth of its peak at the duration; twice the duration includes
+        // its tail.
         let window_length = 2.0 * self.strong_duration();
         let steps = step_count(2.0 * window_length, time_step)?;
         let length = (steps + 1).next_power_of_two();
@@ -173,7 +176,7 @@ impl BooreSource {
             })
             .collect();
         forward(&mut spectrum);
-        // Windowed unit noise has mean-square Fourier amplitude Σw²: a constant, independent of the draw.
+        // The mean-square Fourier amplitude of windowed unit noise is Σw², independent of the seed.
         let norm = 1.0 / energy.sqrt();
         let df = 1.0 / (length as f64 * time_step);
         for (k, value) in spectrum.iter_mut().enumerate() {
@@ -184,11 +187,11 @@ impl BooreSource {
         Ok(spectrum.iter().take(steps + 1).map(|x| x.re).collect())
     }
 
-    /// Returns a motion, high-passed at a fifth of the corner frequency (at least 0.05 Hz) and closed at its
-    /// ends.
+    /// Returns a motion with closed ends, high-passed at a fifth of the corner frequency (at least
+    /// 0.05 Hz).
     ///
     /// # Errors
-    /// As [`BooreSource::acceleration`].
+    /// The same as for [`BooreSource::acceleration`].
     pub fn motion(&self, time_step: f64, seed: u64) -> Result<GroundMotion, MotionError> {
         let a = self.acceleration(time_step, seed)?;
         let corner = (0.2 * self.corner_frequency()).max(0.05);
@@ -198,7 +201,7 @@ impl BooreSource {
     }
 }
 
-/// Returns Saragoni and Hart's window `a x^b exp(-c x)` with peak 1 at `WINDOW_PEAK`.
+/// Returns the window of Saragoni and Hart, `a x^b exp(-c x)`, with its peak of 1 at `WINDOW_PEAK`.
 fn window(x: f64) -> f64 {
     let peak = WINDOW_PEAK;
     let b = -peak * math::ln(WINDOW_END) / (1.0 + peak * (math::ln(peak) - 1.0));

@@ -1,5 +1,5 @@
-//! Filtered white noise with an envelope: the spectrum of Kanai and Tajimi, high-passed by Clough
-//! and Penzien.
+//! Filtered white noise with an envelope: the spectrum of Kanai and Tajimi with the high-pass
+//! filter of Clough and Penzien.
 
 use crate::error::MotionError;
 use crate::fourier::{Complex, inverse};
@@ -9,10 +9,10 @@ use crate::process::Processing;
 use crate::random::Random;
 use crate::synthesis::{motion, step_count};
 
-/// Amplitude of the noise over time.
+/// Amplitude of the noise as a function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Envelope {
-    /// 1 throughout: a stationary motion.
+    /// Constant 1, for a stationary motion.
     Flat,
     /// `(t/t₁)²` up to `t₁`, 1 up to `t₂`, then `exp(-c (t - t₂))`
     /// (Jennings, Housner and Tsai 1968).
@@ -75,15 +75,15 @@ impl Envelope {
     }
 }
 
-/// A stochastic acceleration of two-sided spectral density
+/// Stochastic acceleration with the two-sided spectral density
 ///
 /// ```text
 /// S(w) = S0 · (wg⁴ + 4 zg² wg² w²)/((wg² - w²)² + 4 zg² wg² w²)
 ///           · w⁴/((wf² - w²)² + 4 zf² wf² w²)
 /// ```
 ///
-/// computed as a sum of cosines of random phase and multiplied by an envelope.
-/// The second factor vanishes at w = 0, so the velocity is bounded, unlike Kanai and Tajimi's.
+/// computed as a sum of cosines with random phases and multiplied by an envelope. The second factor
+/// vanishes at w = 0, so that the velocity is bounded, unlike in the spectrum of Kanai and Tajimi.
 ///
 /// ```
 /// use barrelstack_motion::{CloughPenzien, Envelope};
@@ -95,30 +95,30 @@ impl Envelope {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CloughPenzien {
-    /// Root mean square of the stationary acceleration (m/s²), which sets `S0`.
+    /// Root mean square of the stationary acceleration (m/s²); determines `S0`.
     pub rms: f64,
     /// Ground frequency `wg` (rad/s).
     pub ground_frequency: f64,
-    /// Ground damping `zg`.
+    /// Ground damping ratio `zg`.
     pub ground_damping: f64,
     /// High-pass frequency `wf` (rad/s).
     pub filter_frequency: f64,
-    /// High-pass damping `zf`.
+    /// High-pass damping ratio `zf`.
     pub filter_damping: f64,
 }
 
 impl CloughPenzien {
-    /// Returns firm soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns the model of firm soil by Der Kiureghian and Neuenhofer (1992).
     pub fn firm(rms: f64) -> Self {
         Self::new(rms, 15.0, 0.6, 1.5, 0.6)
     }
 
-    /// Returns medium soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns the model of medium soil by Der Kiureghian and Neuenhofer (1992).
     pub fn medium(rms: f64) -> Self {
         Self::new(rms, 10.0, 0.4, 1.0, 0.6)
     }
 
-    /// Returns soft soil of Der Kiureghian and Neuenhofer (1992).
+    /// Returns the model of soft soil by Der Kiureghian and Neuenhofer (1992).
     pub fn soft(rms: f64) -> Self {
         Self::new(rms, 5.0, 0.2, 0.5, 0.6)
     }
@@ -133,7 +133,7 @@ impl CloughPenzien {
         }
     }
 
-    /// Returns the spectral density over `S0` at `w` (rad/s).
+    /// Returns the spectral density relative to `S0` at `w` (rad/s).
     fn shape(&self, w: f64) -> f64 {
         let term = |w0: f64, z: f64| {
             let (a, b) = (w0 * w0 - w * w, 2.0 * z * w0 * w);
@@ -144,13 +144,13 @@ impl CloughPenzien {
         above / ground * ((w * w) * (w * w)) / filter
     }
 
-    /// Returns the two-sided spectral density of the stationary acceleration (m²/s³) at `w` (rad/s), for a step that
-    /// resolves frequencies up to π over the step.
+    /// Returns the two-sided spectral density of the stationary acceleration (m²/s³) at `w`
+    /// (rad/s). The time step limits the resolved frequencies to π divided by the step.
     pub fn density(&self, w: f64, time_step: f64) -> f64 {
         self.rms * self.rms / self.unit_variance(time_step) * self.shape(w)
     }
 
-    /// Returns the variance for `S0 = 1` over the frequencies that the step resolves.
+    /// Returns the variance for `S0 = 1` over the frequencies resolved by the time step.
     fn unit_variance(&self, time_step: f64) -> f64 {
         let top = PI / time_step;
         let n = 20_000;
@@ -166,7 +166,7 @@ impl CloughPenzien {
         MotionError::require_positive("filter damping", self.filter_damping)
     }
 
-    /// Returns unprocessed accelerations (m/s²), with open ends.
+    /// Returns unprocessed accelerations (m/s²); velocity and displacement do not end at zero.
     ///
     /// # Errors
     /// If a parameter is out of range.
@@ -185,7 +185,7 @@ impl CloughPenzien {
         let scale = self.rms * self.rms / self.unit_variance(time_step);
         let mut random = Random::new(seed);
         let mut spectrum = vec![Complex::default(); length];
-        // a = Σ √(4 S dw) cos(w_k t + φ_k): half of each cosine at k, half at -k.
+        // a = Σ √(4 S dw) cos(w_k t + φ_k); half of each cosine is at k, half at -k.
         for k in 1..length / 2 {
             let amplitude = (4.0 * scale * self.shape(k as f64 * dw) * dw).sqrt();
             let (s, c) = math::sin_cos(TAU * random.uniform());
@@ -197,10 +197,11 @@ impl CloughPenzien {
         Ok((0..=steps).map(|k| envelope.at(k as f64 * time_step) * spectrum[k].re).collect())
     }
 
-    /// Returns a motion of a given length; its ends are closed so that it comes to rest where it began.
+    /// Returns a motion of the given duration (s) with closed ends, so that the ground returns to
+    /// rest at its initial position.
     ///
     /// # Errors
-    /// As [`CloughPenzien::acceleration`].
+    /// The same as for [`CloughPenzien::acceleration`].
     pub fn motion(
         &self,
         envelope: &Envelope,

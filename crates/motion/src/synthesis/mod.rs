@@ -1,4 +1,4 @@
-//! Synthetic motions from formulas and random numbers, each from a stated seed.
+//! Synthetic ground motions from formulas and from random numbers with a stated seed.
 
 mod boore;
 mod clough_penzien;
@@ -17,7 +17,7 @@ use crate::sampled::Sampled;
 /// Largest number of samples of a synthetic motion.
 const MOST_SAMPLES: f64 = 2e7;
 
-/// Returns the number of steps of a synthetic motion.
+/// Returns the number of time steps of a synthetic motion.
 fn step_count(duration: f64, time_step: f64) -> Result<usize, MotionError> {
     MotionError::require_positive("duration (s)", duration)?;
     MotionError::require_positive("time step (s)", time_step)?;
@@ -29,7 +29,7 @@ fn step_count(duration: f64, time_step: f64) -> Result<usize, MotionError> {
     Ok(steps as usize)
 }
 
-/// Processes simulated accelerations to a motion, with their provenance.
+/// Processes simulated accelerations to a ground motion with its provenance.
 fn motion(
     name: &str,
     time_step: f64,

@@ -1,4 +1,4 @@
-//! A near-fault motion: a velocity pulse and a high-frequency residual.
+//! Near-fault motions: a velocity pulse plus a high-frequency residual.
 
 use crate::error::MotionError;
 use crate::ground_motion::GroundMotion;
@@ -8,22 +8,22 @@ use crate::pulse::Pulse;
 use crate::sampled::Sampled;
 use crate::synthesis::BooreSource;
 
-/// A pulse of Mavroeidis and Papageorgiou on top of a stochastic motion without its long periods,
-/// after the steps of Mavroeidis and Papageorgiou (2003), with the pulse as a closed form.
+/// A velocity pulse added to a stochastic motion without long periods, following Mavroeidis and
+/// Papageorgiou (2003); the pulse is a closed form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearFault {
-    /// The pulse.
+    /// The velocity pulse.
     pub pulse: Pulse,
     /// Start of the pulse (s), not negative.
     pub start: f64,
-    /// The source of the residual motion.
+    /// Source of the residual motion.
     pub rest: BooreSource,
-    /// The residual is high-passed at this multiple of the pulse's frequency; 1 or slightly more.
+    /// High-pass corner of the residual, as a multiple of the pulse frequency; 1 or slightly more.
     pub crossover: f64,
 }
 
 impl NearFault {
-    /// Returns the motion with a residual of step `time_step` (s) from `seed`.
+    /// Returns the motion. `time_step` (s) and `seed` apply to the residual.
     ///
     /// # Errors
     /// If a parameter is out of range.

@@ -1,4 +1,4 @@
-//! PEER AT2: one component in g, five numbers per line.
+//! Writes PEER AT2 files: one component in g, five numbers per line.
 //!
 //! Spec: header lines of the NGA and NGA-West2 flat files, as in the reader.
 
@@ -9,20 +9,19 @@ use crate::error::MotionError;
 use crate::math::STANDARD_GRAVITY;
 use crate::record::{Channel, Record};
 
-/// Placeholder for an event that the record does not name.
+/// Placeholder for a missing event name.
 pub(crate) const NO_EVENT: &str = "EVENT NOT STATED";
-/// Placeholder for a station that the record does not name.
+/// Placeholder for a missing station name.
 pub(crate) const NO_STATION: &str = "STATION NOT STATED";
 
-/// Longest component name that readers distinguish from a part of the event.
+/// Longest component name that readers distinguish from a part of the event name.
 const LONGEST_NAME: usize = 12;
 
 /// Writes a record of one channel as PEER AT2, in g with eight significant digits.
 ///
-/// The four header lines are the provenance; event, station, component; quantity and unit; count and
-/// step (s) at full precision.
-/// Readers of the format interpret commas, parentheses and some words; these are replaced in texts from other
-/// sources.
+/// The four header lines are the provenance; the event, station and component; the quantity and
+/// unit; and the count and the step (s) at full precision. Commas, parentheses and some words that
+/// readers of the format would interpret are replaced.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -35,13 +34,13 @@ const LONGEST_NAME: usize = 12;
 /// ```
 ///
 /// # Errors
-/// If there is not exactly one channel.
+/// If the record does not have exactly one channel.
 pub fn at2(record: &Record) -> Result<String, MotionError> {
     let [channel] = record.channels.as_slice() else {
         let names = super::names(&record.channels).join(", ");
         return Err(MotionError::Parameter {
             what: "components for AT2".to_owned(),
-            expected: "one, because the format holds one".to_owned(),
+            expected: "one, because AT2 holds a single component".to_owned(),
             found: format!("{} ({names})", record.channels.len()),
         });
     };
@@ -75,7 +74,7 @@ pub fn at2(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// Replaces characters and words that readers would interpret as those of the header.
+/// Replaces characters and words that readers would mistake for parts of the header.
 fn harmless(text: &str) -> String {
     const OWN: [&str; 5] = ["SPECTR", "UNITS", "VELOCITY", "DISPLACEMENT", "ACCEL"];
     let plain = super::line(text).replace(',', ";").replace(['(', ')'], "");
@@ -83,7 +82,7 @@ fn harmless(text: &str) -> String {
     broken.chars().map(|c| if c.is_ascii() { c } else { '?' }).collect()
 }
 
-/// Returns the component's name if it still states its direction, else its azimuth or `UP`.
+/// Returns the channel name if it still states the direction, else the azimuth or `UP`.
 fn component(channel: &Channel) -> String {
     let name = harmless(&channel.name);
     let fits = !name.is_empty() && name.len() <= LONGEST_NAME;
@@ -98,7 +97,7 @@ fn component(channel: &Channel) -> String {
     }
 }
 
-/// Formats a number as C's `%15.7E`; zero if too small for an exponent of two digits.
+/// Formats a number like `%15.7E` in C; numbers too small for a two-digit exponent become zero.
 fn number(value: f64) -> String {
     let value = if value.abs() < 1e-98 { 0.0 } else { value };
     let text = format!("{value:.7e}");

@@ -1,21 +1,22 @@
-//! Columns of time and acceleration, separated by commas.
+//! Writes CSV files: columns of time and acceleration, separated by commas.
 
 use std::fmt::Write as _;
 
 use crate::error::MotionError;
 use crate::record::Record;
 
-/// Comment with the velocity at the first sample of each channel, if one is not zero.
+/// Start of the comment with the velocity at the first sample of each channel, written if any of
+/// them is not zero.
 pub(crate) const INITIAL_VELOCITY: &str = "# initial velocity (m/s):";
 
-/// First line of the files written here; it states quantity and unit.
+/// First line of CSV files written by this crate; states quantity and unit.
 pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
 
-/// Writes a record as CSV: comment lines that start with `#`, then `time (s),NAME (m/s2),…`, then one row per
-/// sample.
+/// Writes a record as CSV.
 ///
-/// Accelerations are the shortest decimals that read back to the same double; times are rounded to
-/// a nanosecond.
+/// The text has comment lines that start with `#`, the header `time (s),NAME (m/s2),…`, and one row
+/// per sample. Accelerations have the fewest digits that read back to the same double; times are
+/// rounded to a nanosecond.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -27,10 +28,10 @@ pub(crate) const FIRST_LINE: &str = "# acceleration (m/s2)";
 /// ```
 ///
 /// # Errors
-/// If there is no channel or the steps differ.
+/// If the record has no channel or the time steps differ.
 pub fn csv(record: &Record) -> Result<String, MotionError> {
     let (step, rows) = super::common(record)?;
-    // Readers that recognize this line ignore steps, units and quantities in later words.
+    // Readers that recognize this line ignore steps, units and quantities in the comments below.
     let mut text = format!("{FIRST_LINE}\n");
     for (key, value) in [("event", &record.event), ("station", &record.station)] {
         if !value.is_empty() {
@@ -63,7 +64,7 @@ pub fn csv(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// Returns a text on one line, without the words by which other formats are recognized.
+/// Returns a text on one line, without words by which other formats are recognized.
 fn plain(text: &str) -> String {
     let line = super::broken(&super::line(text), &super::FOREIGN);
     let cells = line
@@ -72,13 +73,14 @@ fn plain(text: &str) -> String {
     cells.collect::<Vec<_>>().join(",")
 }
 
-/// `true` if a spreadsheet would compute a cell; after an apostrophe it is text.
+/// Returns `true` if a spreadsheet would evaluate a cell as a formula; an apostrophe before the
+/// cell prevents this.
 fn is_formula(cell: &str) -> bool {
     let cell = cell.trim_start();
     cell.starts_with(['=', '+', '-', '@']) && cell.len() > 1 && cell.parse::<f64>().is_err()
 }
 
-/// Formats a time (s) with nine decimals without trailing zeros.
+/// Formats a time (s) with up to nine decimals, without trailing zeros.
 fn nanoseconds(time: f64) -> String {
     let digits = format!("{time:.9}");
     digits.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,9 +1,9 @@
-//! Writers of motion files: PEER AT2, CSV, NumPy archives and the crate's own text format.
+//! Writers of ground-motion files: PEER AT2, CSV, NumPy archives and this crate's own text format.
 //!
-//! Every writer takes a [`Record`]; its notes are the provenance and go into the header.
-//! Channels are written side by side, cut to the shortest.
-//! AT2 has no field for a velocity at the first sample ([`crate::Channel::initial_velocity`]): it is written into
-//! the title, and the file reads back starting from rest. All other formats keep it.
+//! Every writer takes a [`Record`]. The notes of the record are the provenance and are written into
+//! the header. Channels are written side by side, cut to the shortest. AT2 has no field for the
+//! velocity at the first sample ([`crate::Channel::initial_velocity`]); it is written into the
+//! title, and the file reads back starting from rest. All other formats keep it.
 
 mod at2;
 mod csv;
@@ -23,10 +23,11 @@ use crate::error::MotionError;
 use crate::join::require_step;
 use crate::record::{Channel, Record};
 
-/// Maximum number of provenance lines in a header; readers look for numbers in the first lines of a file only.
+/// Largest number of provenance lines in a header, because readers look for numbers only in the
+/// first lines of a file.
 const MOST_NOTES: usize = 40;
 
-/// Returns the step (s) of all channels and the number of samples of the shortest.
+/// Returns the common time step (s) of all channels and the number of samples of the shortest.
 fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     let Some(first) = record.channels.first() else {
         return Err(MotionError::parameter("channels to write", "at least 1", 0));
@@ -38,7 +39,7 @@ fn common(record: &Record) -> Result<(f64, usize), MotionError> {
     Ok((first.time_step, rows))
 }
 
-/// Returns the velocities (m/s) at the first samples, one per channel, if one is not zero.
+/// Returns the velocities (m/s) at the first samples, one per channel; `None` if all are zero.
 fn initial_velocities(record: &Record) -> Option<String> {
     let some = record.channels.iter().any(|channel| channel.initial_velocity != 0.0);
     let all = record.channels.iter().map(|c| format!("{:e}", c.initial_velocity));
@@ -54,7 +55,8 @@ fn line(text: &str) -> String {
 /// Words by which files of other formats are recognized.
 const FOREIGN: [&str; 4] = ["NPTS", "RAW PGA", "ARCHIVO EST", "GNS SCIENCE"];
 
-/// Inserts a hyphen after the second letter of each of `words`: still legible, but no longer recognized.
+/// Inserts a hyphen into each of `words`, after the second letter, so that the words remain legible
+/// but are no longer recognized as keywords.
 fn broken(text: &str, words: &[&str]) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -76,12 +78,13 @@ fn broken(text: &str, words: &[&str]) -> String {
     out
 }
 
-/// Returns the provenance, one line each; a very long one ends with the rest on one line.
+/// Returns the provenance, one step per line. If there are too many steps, the last line contains
+/// the rest.
 fn provenance(record: &Record) -> Vec<String> {
     let mut notes: Vec<String> = record
         .notes
         .iter()
-        // Lines read from a header of this crate already have the prefix.
+        // Notes that were read from a header of this crate already have the prefix.
         .map(|note| line(note.strip_prefix("processing: ").unwrap_or(note)))
         .collect();
     if notes.len() > MOST_NOTES {
@@ -91,7 +94,7 @@ fn provenance(record: &Record) -> Vec<String> {
     notes
 }
 
-/// Returns unique names without separators.
+/// Returns unique channel names without separators.
 fn names(channels: &[Channel]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (k, channel) in channels.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! NumPy's archive of arrays.
+//! Writes NumPy archives of arrays.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -7,13 +7,15 @@ use crate::error::MotionError;
 use crate::record::Record;
 use crate::sampled::integrate;
 
-/// Writes a record as a NumPy archive: `time` (s) and for every channel `NAME_acceleration` (m/s²),
-/// `NAME_velocity` (m/s) and `NAME_displacement` (m); characters other than letters and digits in names
-/// become underscores.
+/// Writes a record as a NumPy archive.
 ///
-/// The header of this crate's text format is stored in arrays of strings beside them, such as `station`, `unit`,
-/// `channels` and `processing` (one per step), so that [`crate::read`] restores the record bit for bit; `azimuth` is
-/// in degrees clockwise from north, not a number where unknown.
+/// The arrays are `time` (s) and, for every channel, `NAME_acceleration` (m/s²), `NAME_velocity`
+/// (m/s) and `NAME_displacement` (m). Characters other than letters and digits in names become
+/// underscores.
+///
+/// Arrays of strings contain the header of this crate's text format, such as `station`, `unit`,
+/// `channels` and `processing` (one string per step), so that [`crate::read`] restores the record
+/// bit for bit. `azimuth` is in degrees clockwise from north, or NaN if unknown.
 ///
 /// ```
 /// use barrelstack_motion::{bundled, write};
@@ -23,7 +25,7 @@ use crate::sampled::integrate;
 /// ```
 ///
 /// # Errors
-/// If there is no channel or the steps differ.
+/// If the record has no channel or the time steps differ.
 pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
     let (step, rows) = super::common(record)?;
     let time: Vec<f64> = (0..rows).map(|row| row as f64 * step).collect();
@@ -45,22 +47,22 @@ pub fn npz(record: &Record) -> Result<Vec<u8>, MotionError> {
         arrays.push((key.to_owned(), npy_words(&values.collect::<Vec<_>>())));
     }
     zipped(&arrays).map_err(|error| {
-        let what = format!("the arrays make no archive: {error}");
-        MotionError::mismatch(what, "give the channels names of their own")
+        let what = format!("cannot write the arrays as an archive: {error}");
+        MotionError::mismatch(what, "give the channels different names")
     })
 }
 
-/// Returns the part of an array's name that identifies its channel.
+/// Returns the part of an array name that identifies the channel.
 pub(crate) fn array_name(channel: &str) -> String {
     channel.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
-/// Writes NumPy's archive of named arrays: an uncompressed zip of one `.npy` for each.
+/// Returns a NumPy archive of named arrays: an uncompressed zip with one `.npy` file per array.
 ///
 /// Equal arrays give equal bytes.
 ///
 /// # Errors
-/// If a name is repeated or an array exceeds the size of the format.
+/// If a name is repeated or an array is too large for the format.
 pub fn archive(arrays: &[(String, &[f64])]) -> io::Result<Vec<u8>> {
     zipped(&arrays.iter().map(|(name, values)| (name.clone(), npy(values))).collect::<Vec<_>>())
 }
@@ -70,13 +72,15 @@ fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     let (mut archive, mut directory) = (Vec::new(), Vec::new());
     for (at, (name, bytes)) in arrays.iter().enumerate() {
         if arrays[..at].iter().any(|(earlier, _)| earlier == name) {
-            return refuse(format!("two of them are called {name}"));
+            return refuse(format!("two arrays are named {name}"));
         }
         let file = format!("{name}.npy");
         let (Ok(start), Ok(size), Ok(length)) =
             (u32::try_from(archive.len()), u32::try_from(bytes.len()), u16::try_from(file.len()))
         else {
-            return refuse(format!("{name} ends beyond 4 GB, or its name beyond 64 kB"));
+            return refuse(format!(
+                "array {name} ends beyond 4 GB, or its name is longer than 64 kB"
+            ));
         };
         let entry = entry(crc32fast::hash(bytes), size, length);
         archive.extend(b"PK\x03\x04");
@@ -86,7 +90,7 @@ fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
         directory.extend(b"PK\x01\x02");
         directory.extend(VERSION.to_le_bytes());
         directory.extend(entry);
-        // No comment, the first disk, no attributes.
+        // No comment, first disk, no attributes.
         directory.extend([0; 10]);
         directory.extend(start.to_le_bytes());
         directory.extend(file.as_bytes());
@@ -94,11 +98,11 @@ fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     let (Ok(count), Ok(start), Ok(size)) =
         (u16::try_from(arrays.len()), u32::try_from(archive.len()), u32::try_from(directory.len()))
     else {
-        return refuse(format!("{} of them are too many or too large", arrays.len()));
+        return refuse(format!("{} arrays are too many or too large", arrays.len()));
     };
     archive.extend(directory);
     archive.extend(b"PK\x05\x06");
-    // One disk, which is this one.
+    // The archive has a single disk.
     archive.extend([0; 4]);
     archive.extend([count; 2].map(u16::to_le_bytes).concat());
     archive.extend(size.to_le_bytes());
@@ -107,16 +111,18 @@ fn zipped(arrays: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     Ok(archive)
 }
 
-/// Version of the zip format that a reader needs for stored files (PKWARE, APPNOTE 4.4.3: 1.0).
+/// Version of the zip format required to read stored files (1.0; PKWARE, APPNOTE 4.4.3).
 const VERSION: u16 = 10;
 
-/// Returns the fields that the header of a stored file and the directory share (PKWARE, APPNOTE 4.3.7 and 4.3.12).
+/// Returns the fields common to the header of a stored file and its directory entry (PKWARE,
+/// APPNOTE 4.3.7 and 4.3.12).
 fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
-    /// The first day of the format's calendar, 1 January 1980, so that equal runs give equal bytes.
+    /// Fixed date, the first day of the format's calendar (1 January 1980), so that equal runs give
+    /// equal bytes.
     const DATE: u16 = 0x21;
     let mut entry = [0; 26];
     entry[..2].copy_from_slice(&VERSION.to_le_bytes());
-    // No flags, no compression, midnight.
+    // No flags, no compression, time midnight.
     entry[8..10].copy_from_slice(&DATE.to_le_bytes());
     entry[10..14].copy_from_slice(&sum.to_le_bytes());
     entry[14..18].copy_from_slice(&size.to_le_bytes());
@@ -125,14 +131,14 @@ fn entry(sum: u32, size: u32, name_length: u16) -> [u8; 26] {
     entry
 }
 
-/// Encodes an array of numbers.
+/// Encodes an array of numbers in NumPy's array format.
 fn npy(values: &[f64]) -> Vec<u8> {
     let mut bytes = npy_head("<f8", values.len());
     bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
     bytes
 }
 
-/// Encodes an array of strings, all as long as the longest, in UCS-4 as in NumPy.
+/// Encodes an array of strings in UCS-4 as NumPy does; all are padded to the longest.
 fn npy_words(words: &[&str]) -> Vec<u8> {
     let longest = words.iter().map(|word| word.chars().count()).max().unwrap_or(0).max(1);
     let mut bytes = npy_head(&format!("<U{longest}"), words.len());
@@ -143,11 +149,12 @@ fn npy_words(words: &[&str]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the header of NumPy's array format, version 1.0: magic and padded description; the items follow.
+/// Returns the header of NumPy's array format, version 1.0, with a padded description; the items
+/// follow the header.
 fn npy_head(kind: &str, count: usize) -> Vec<u8> {
     let mut description =
         format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({count},), }}");
-    // Magic, version, length, description and line feed together fill a multiple of 64 bytes.
+    // The header must fill a multiple of 64 bytes.
     while (10 + description.len() + 1) % 64 != 0 {
         description.push(' ');
     }

@@ -1,4 +1,4 @@
-//! The crate's own text format at full precision: it reads back with the same bits.
+//! Writes this crate's own text format at full precision, so that it reads back with the same bits.
 //!
 //! ```text
 //! # barrelstack motion 1
@@ -12,15 +12,24 @@
 //! 1.2345e-3 -2.3456e-4 0e0
 //! ```
 //!
-//! One column per channel, numbers as the shortest decimals that read back to the same
+//! There is one column per channel. Numbers have the fewest digits that read back to the same
 //! double.
-//! `# recorded:` states start (UTC), place and sensor, once or for each channel: `start
-//! 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12, vs30 330, sensor surface,
-//! station Napa`; unknown values are left out.
-//! `# initial_velocity:` (m/s, one per channel) is written if one is not zero.
-//! `az=` is the azimuth (degrees clockwise from north); `vertical` means positive upward;
-//! `horizontal` a horizontal of unknown azimuth; a name alone an unknown direction.
-//! `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are comments.
+//!
+//! `# recorded:` states the start (UTC), location and sensor, in one line for all channels or one
+//! line for each (wrapped here):
+//!
+//! ```text
+//! # recorded: start 2014-08-24T10:20:33.000Z, latitude 38.27, longitude -122.28, elevation 12,
+//!             vs30 330, sensor surface, station Napa
+//! ```
+//!
+//! Unknown values are omitted. `# initial_velocity:` (m/s, one per channel) is written if any of
+//! them is not zero.
+//!
+//! In `# channels:`, `az=` is the azimuth (degrees clockwise from north); `vertical` means positive
+//! upward; `horizontal` is a horizontal direction of unknown azimuth; a name alone has an unknown
+//! direction. `# source:`, `# attribution:` and `# licence:` are kept; other `#` lines are
+//! comments.
 
 use std::fmt::Write as _;
 
@@ -28,11 +37,11 @@ use crate::direction::Orientation;
 use crate::error::MotionError;
 use crate::record::{Channel, Record};
 
-/// The first line of the format.
+/// First line of the format.
 pub(crate) const TITLE: &str = "# barrelstack motion 1";
 
-/// Writes a record in the crate's own text format; [`crate::read`] restores the accelerations and the initial
-/// velocities bit for bit.
+/// Writes a record in this crate's own text format. [`crate::read`] restores the accelerations and
+/// the initial velocities bit for bit.
 ///
 /// ```
 /// use barrelstack_motion::{ReadOptions, bundled, read, write};
@@ -44,7 +53,7 @@ pub(crate) const TITLE: &str = "# barrelstack motion 1";
 /// ```
 ///
 /// # Errors
-/// If there is no channel or the steps differ.
+/// If the record has no channel or the time steps differ.
 pub fn text(record: &Record) -> Result<String, MotionError> {
     let (step, rows) = super::common(record)?;
     let mut text = format!("{TITLE}\n");
@@ -63,7 +72,7 @@ pub fn text(record: &Record) -> Result<String, MotionError> {
     Ok(text)
 }
 
-/// Returns keys and values of the header, in order.
+/// Returns the keys and values of the header, in order.
 pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> =
         vec![("station", record.station.clone()), ("event", record.event.clone())];
@@ -88,8 +97,8 @@ pub(super) fn head(record: &Record, step: f64) -> Vec<(&'static str, String)> {
     lines.into_iter().map(|(key, value)| (key, super::line(&value))).collect()
 }
 
-/// Returns start and place of the channels: one line if they share them, else one per channel; empty if nothing is
-/// known.
+/// Returns the start and the location of the channels: one line if all channels share them, else
+/// one line per channel; empty if nothing is known.
 fn recorded(record: &Record) -> Vec<String> {
     let words = |channel: &Channel| {
         let site = &channel.site;
@@ -117,7 +126,7 @@ fn recorded(record: &Record) -> Vec<String> {
     all
 }
 
-/// Splits a note that a header of this format stored under a key of its own.
+/// Splits off the key of a note that a header of this format stores under its own key.
 fn own_key(note: &str) -> Option<(&'static str, &str)> {
     ["source", "attribution", "licence"]
         .into_iter()

@@ -1,4 +1,4 @@
-//! Files of one megabyte made from a small one: grown consistently where possible, and absurd.
+//! Files of one megabyte made from a small one: enlarged consistently if possible, or absurd.
 
 /// Size of the files (bytes).
 pub(crate) const SIZE: usize = 1_000_000;
@@ -24,7 +24,7 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     ] {
         files.push(repeated(sample, filling));
         files.push(repeated(head, filling));
-        // In front, so that the header becomes absurd.
+        // Insert in front, so that the header becomes absurd.
         let mut front = filling.repeat((SIZE - sample.len().min(SIZE / 2)) / filling.len());
         front.extend(sample);
         files.push(front);
@@ -34,7 +34,7 @@ pub(crate) fn files(sample: &[u8]) -> Vec<Vec<u8>> {
     files
 }
 
-/// Returns a sample grown to a large file, by each method of counting in its format.
+/// Returns a sample enlarged to a large file, for each kind of count in its format.
 pub(crate) fn sound(sample: &[u8]) -> Vec<Vec<u8>> {
     let rows = [Counts::Values, Counts::Rows].into_iter().filter_map(|c| grown(sample, c));
     rows.chain(grown_words(sample)).collect()
@@ -104,8 +104,8 @@ fn fields(line: &[u8]) -> usize {
     line.split(|b| b.is_ascii_whitespace() || *b == b',').filter(|f| !f.is_empty()).count()
 }
 
-/// Increases the counts in a header line, integers from 101 to 103 as in all samples, by the number of added
-/// values.
+/// Increases the counts in a header line by the number of added values. In all samples, counts are
+/// integers from 101 to 103.
 fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
     let text: String = line.iter().map(|&b| char::from(b)).collect();
     let mut out = String::new();
@@ -117,7 +117,7 @@ fn with_counts(line: &[u8], more: usize) -> Vec<u8> {
         match word.parse::<usize>() {
             Ok(count @ 101..=103) if whole => {
                 let wide = (count + more).to_string();
-                // In its columns, if blanks precede it.
+                // Keep the columns, if blanks precede the count.
                 let blanks = rest[..at].len() - rest[..at].trim_end_matches(' ').len();
                 let eaten = (wide.len() - word.len()).min(blanks.saturating_sub(1));
                 out.push_str(&rest[..at - eaten]);
@@ -136,7 +136,7 @@ fn grown_words(sample: &[u8]) -> Option<Vec<u8>> {
     grown_sac(sample).or_else(|| grown_miniseed(sample))
 }
 
-/// Increases the header words of the count.
+/// Increases the header words that state the count.
 fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
     const HEADER: usize = 632;
     const COUNT: usize = 79 * 4;
@@ -155,9 +155,9 @@ fn grown_sac(sample: &[u8]) -> Option<Vec<u8>> {
     Some(file)
 }
 
-/// Makes the records follow one another in time, as those of one channel.
+/// Shifts the times of the data records so that they follow one another, as in one channel.
 fn grown_miniseed(sample: &[u8]) -> Option<Vec<u8>> {
-    /// Ticks of the header's clock (1/s).
+    /// Ticks per second of the clock in the header (1/s).
     const TICKS: u32 = 10_000;
     let looks_like_one = sample.len() >= 64
         && sample[..6].iter().all(u8::is_ascii_digit)

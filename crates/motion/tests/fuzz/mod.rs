@@ -1,4 +1,4 @@
-//! Seeded, structure-aware damage to files, and properties of every result.
+//! Seeded, structure-aware damage to files, and properties that every result must have.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use barrelstack_motion::{
     Record, read, station_xml,
 };
 
-/// Numbers that break readers: edges of types, of formats and of plausibility.
+/// Numbers that break readers: limits of types, of formats and of plausibility.
 const NUMBERS: [&str; 22] = [
     "0",
     "-0",
@@ -57,7 +57,7 @@ const WORDS: [&[u8]; 20] = [
     b"\xd1",
 ];
 
-/// 32-bit words that binary headers may hold.
+/// 32-bit words that may occur in binary headers.
 const BINARY: [u32; 10] = [
     0,
     1,
@@ -75,7 +75,7 @@ const BINARY: [u32; 10] = [
 pub(crate) struct Sample {
     /// Path relative to the folder of samples.
     pub(crate) name: String,
-    /// Its bytes.
+    /// Content of the file.
     pub(crate) bytes: Vec<u8>,
 }
 
@@ -87,7 +87,7 @@ fn pick<'a, T>(random: &mut Random, from: &'a [T]) -> &'a T {
     &from[below(random, from.len())]
 }
 
-/// Returns all samples of the folder beside the tests, sorted by name.
+/// Returns all samples in `tests/data`, sorted by name.
 pub(crate) fn samples() -> Vec<Sample> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
     let mut files: Vec<PathBuf> = Vec::new();
@@ -125,7 +125,7 @@ impl Reader {
         FORMATS.iter().map(Self::Format).chain(others).collect()
     }
 
-    /// Returns the name of its folder of samples.
+    /// Returns the name of the folder that holds the samples of the reader.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Format(format) => format.name,
@@ -135,7 +135,8 @@ impl Reader {
         }
     }
 
-    /// Reads a file; panics if the result violates a property. Returns `true` if it was accepted.
+    /// Reads a file and panics if the result violates a property. Returns `true` if the file was
+    /// accepted.
     pub(crate) fn take(self, bytes: &[u8], given: &ReadOptions) -> bool {
         let text = || String::from_utf8_lossy(bytes);
         match self {
@@ -166,7 +167,7 @@ pub(crate) fn samples_of(reader: Reader, samples: &[Sample]) -> Vec<&Sample> {
     samples.iter().filter(|sample| sample.name.starts_with(&folder)).collect()
 }
 
-/// Returns options of a caller: none, one, or all.
+/// Returns the options of a caller: none, one of them, or all.
 pub(crate) fn options(random: &mut Random) -> ReadOptions {
     let choice = random.bits();
     let units =
@@ -179,7 +180,7 @@ pub(crate) fn options(random: &mut Random) -> ReadOptions {
     }
 }
 
-/// Applies one to five changes to a file; `others` supply lines.
+/// Applies one to five changes to a file; `others` supply foreign lines.
 pub(crate) fn mutate(bytes: &[u8], others: &[Sample], random: &mut Random) -> Vec<u8> {
     let mut out = bytes.to_vec();
     for _ in 0..=below(random, 5) {
@@ -258,7 +259,7 @@ fn span(length: usize, most: usize, random: &mut Random) -> std::ops::Range<usiz
     at..(at + below(random, most)).min(length)
 }
 
-/// Replaces a number by another one, in its columns or shifting the rest.
+/// Replaces a number by another number, keeping its column width or shifting the rest.
 fn change_number(out: &mut Vec<u8>, random: &mut Random) {
     let start = below(random, out.len());
     let is_part = |b: u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'+');
@@ -315,7 +316,7 @@ fn change_lines(out: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Panics unless the result is usable, or the refusal states reason and remedy.
+/// Panics unless the result is usable or the error states a reason and a remedy.
 pub(crate) fn must_hold(result: &Result<Record, ReadError>) {
     match result {
         Ok(record) => {

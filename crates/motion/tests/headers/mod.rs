@@ -1,4 +1,4 @@
-//! Tables of synthetic motions under headers of every style, and damage to such headers.
+//! Tables of synthetic motions with headers of every style, and damage to these headers.
 
 use barrelstack_motion::{Random, ReadOptions, read};
 
@@ -10,7 +10,7 @@ fn pick<'a, T>(random: &mut Random, from: &'a [T]) -> &'a T {
     &from[below(random, from.len())]
 }
 
-/// Style of a unit beside a name.
+/// Style of a unit next to a name.
 #[derive(Clone, Copy)]
 enum Style {
     Parentheses,
@@ -32,7 +32,7 @@ pub(crate) struct Table {
     peak_line: Option<String>,
 }
 
-/// Result for a table.
+/// Result of reading a table.
 pub(crate) enum Verdict {
     Right,
     Refused,
@@ -215,7 +215,7 @@ impl Table {
         format!("{}{}", self.header, self.rows)
     }
 
-    /// Compares the record read from a text with that of the table.
+    /// Compares the record read from a text with the record of the table.
     pub(crate) fn verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;
@@ -240,8 +240,8 @@ impl Table {
         Verdict::Right
     }
 
-    /// Checks that the peak of a record read from a damaged text is that of the table within 1 %, or that a warning
-    /// contradicts the stated one.
+    /// Checks that the peak of a record read from a damaged text agrees with that of the table
+    /// within 1 %, or that a warning contradicts the stated peak.
     pub(crate) fn peak_verdict(&self, text: &str) -> Verdict {
         let Ok(record) = read(text.as_bytes(), "table.txt", &ReadOptions::default()) else {
             return Verdict::Refused;

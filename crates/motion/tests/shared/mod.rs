@@ -1,9 +1,9 @@
-//! The records that may not be bundled, in a folder `shared` beside the checkout.
+//! Access to records that may not be bundled, in a folder `shared` next to the checkout.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Returns the path of a file or folder among them; if it is missing, reports the test as skipped.
+/// Returns the path of a file or folder in `shared`; if it is missing, reports the test as skipped.
 pub(crate) fn shared(path: &str) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/ground-motions");
     let full = root.join(path);

@@ -29,7 +29,7 @@ def contents(path: str | os.PathLike[str]) -> bytes:
     name = os.fspath(path)
     mode = os.stat(name).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or name.startswith(OPENED)):
-        message = "it is a named pipe or a device, not a file; write what it carries into a file and name that"
+        message = "it is a named pipe or a device, not a file; write its content to a file and name that file"
         raise OSError(errno.EINVAL, message, name)
     with open(name, "rb") as file:
         return file.read()

@@ -1,4 +1,4 @@
-//! Classification of pulse-like motions by two published methods.
+//! Classifies pulse-like ground motions by two published methods.
 
 mod wavelet;
 
@@ -8,35 +8,36 @@ use crate::sampled::Sampled;
 
 use wavelet::{Pair, Wavelet};
 
-/// Shortest and longest period (s) of a pulse.
+/// Shortest and longest period of a pulse (s).
 const PERIODS: (f64, f64) = (0.25, 15.0);
-/// Scales between them, evenly spaced.
+/// Number of intervals between the scales of these periods.
 const SCALES: usize = 50;
-/// Number of wavelets in a pulse.
+/// Number of wavelets that form a pulse.
 const WAVELETS: usize = 10;
-/// Largest distance (in scales) of a pulse's wavelets from the first, and the part of
-/// the record around a pulse that later searches exclude.
+/// Largest distance of a pulse's wavelets from the first, in units of its scale. Later searches
+/// exclude the same part of the record around a pulse.
 const REACH: f64 = 0.4;
-/// Number of candidate pulses of a pair of components.
+/// Number of candidate pulses examined in a pair of components.
 const PULSES: usize = 5;
-/// Step (s) to which velocities are decimated: a twenty-fifth of the shortest period.
+/// Step (s) to which velocities are decimated, a twenty-fifth of the shortest period.
 const STEP: f64 = 0.01;
 
-/// A velocity pulse extracted as a sum of wavelets, with its classification.
+/// A velocity pulse, extracted as a sum of wavelets, with its classification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassifiedPulse {
     /// `true` if the motion is pulse-like.
     pub pulse_like: bool,
-    /// The pulse indicator: above 0.85 of 1 (Baker 2007), or above 0 (Shahi and Baker 2014).
+    /// Pulse indicator. A motion may be pulse-like if it is above 0.85 (Baker 2007) or above 0
+    /// (Shahi and Baker 2014).
     pub indicator: f64,
     /// Period of the pulse (s).
     pub period: f64,
-    /// `true` if the pulse comes too late to be a directivity pulse.
+    /// `true` if the pulse arrives too late to be a directivity pulse.
     pub late: bool,
-    /// Direction of the component that contains it (degrees from the first toward the second, 0 to
-    /// below 180); 0 for a single component.
+    /// Direction of the component that contains the pulse (degrees from the first component toward
+    /// the second, 0 to below 180); 0 for a single component.
     pub angle: f64,
-    /// Peak velocity of that component (m/s).
+    /// Peak velocity of the component that contains the pulse (m/s).
     pub pgv: f64,
 }
 
@@ -46,28 +47,32 @@ pub struct ClassifiedPulse {
 /// PI = 1/(1 + exp(−23.3 + 14.6 PGV ratio + 20.5 energy ratio))
 /// ```
 ///
-/// The ratios are those of the motion without its pulse to the motion.
-/// It is pulse-like if PI exceeds 0.85, PGV reaches 30 cm/s, and the pulse reaches a tenth of its energy
-/// before the motion reaches a fifth.
+/// The ratios compare the motion without the pulse to the whole motion.
+///
+/// The motion is pulse-like if PI exceeds 0.85, PGV is at least 30 cm/s, and the pulse reaches 10 %
+/// of its energy before the motion reaches 20 % of its energy.
 ///
 /// # Errors
-/// If the motion is shorter than the shortest pulse or does not move.
+/// If the motion is shorter than the shortest pulse, or its velocity is zero.
 pub fn classify_component(motion: &Sampled) -> Result<ClassifiedPulse, MotionError> {
     let thin = Thinned::of(motion, None)?;
     let [map, ..] = Map::of(&thin);
     single(&thin.first, thin.time_step, &map)
 }
 
-/// Classifies two horizontals one by one as [`classify_component`], and together in the directions of their five
-/// strongest wavelets by Shahi and Baker (2014, BSSA 104:2456-2466), with PGV in cm/s:
+/// Classifies two horizontal components, separately and jointly.
+///
+/// Each component is classified as by [`classify_component`]. The joint classification examines the
+/// directions of the five strongest wavelets (Shahi and Baker 2014, BSSA 104:2456-2466), with PGV
+/// in cm/s:
 ///
 /// ```text
 /// PC = 0.63 PGV ratio + 0.777 energy ratio
 /// PI = 9.384 (0.76 − PC − 0.0616 PGV)(PC + 6.914·10⁻⁴ PGV − 1.072) − 6.179
 /// ```
 ///
-/// A pulse counts if PI is positive and it reaches a twentieth of its energy before the motion reaches 17 %.
-/// Returns the first pulse that counts, else the first.
+/// A pulse counts if PI is positive and the pulse reaches 5 % of its energy before the motion
+/// reaches 17 % of its energy. Returns the first pulse that counts, or else the strongest pulse.
 ///
 /// # Errors
 /// If the steps differ, or as [`classify_component`].
@@ -134,9 +139,9 @@ fn double(thin: &Thinned, mut map: Map) -> Result<ClassifiedPulse, MotionError> 
     best.ok_or_else(still)
 }
 
-/// Reduces a direction (degrees) to 0 to below 180.
+/// Reduces an angle (degrees) to the range from 0 to below 180.
 fn half_turn(degrees: f64) -> f64 {
-    // The remainder of a tiny negative number is rounded to 180.
+    // The remainder of a tiny negative angle is rounded to 180.
     let angle = degrees.rem_euclid(180.0);
     if angle < 180.0 { angle } else { 0.0 }
 }
@@ -145,7 +150,7 @@ fn still() -> MotionError {
     MotionError::parameter("motion", "a velocity other than zero", "zero")
 }
 
-/// Velocities (m/s) decimated as far as pulses allow.
+/// Velocities (m/s) of both components, decimated as far as the shortest pulse allows.
 struct Thinned {
     time_step: f64,
     first: Vec<f64>,
@@ -179,10 +184,10 @@ impl Thinned {
     }
 }
 
-/// A position in time and scale with the coefficients of both components.
+/// A wavelet's position in time and scale, with its coefficients in both components.
 #[derive(Clone, Copy)]
 struct Found {
-    /// Neighboring scales, between which the scale of the pulse is refined (s).
+    /// Neighboring scales (s) between which the scale of the pulse is refined.
     scales: (f64, f64),
     scale: f64,
     at: usize,
@@ -190,21 +195,21 @@ struct Found {
 }
 
 impl Found {
-    /// Returns the squared norm of the coefficients.
+    /// Returns the squared norm of the two coefficients.
     fn strength(self) -> f64 {
         let (x, y) = self.coefficients;
         x * x + y * y
     }
 }
 
-/// The strongest wavelet of every time.
+/// The strongest wavelet at every time.
 struct Map {
     best: Vec<Option<Found>>,
     time_step: f64,
 }
 
 impl Map {
-    /// Computes the maps of the first component, of the second, and of both together.
+    /// Computes the map of the first component, of the second, and of both together.
     fn of(thin: &Thinned) -> [Self; 3] {
         let (least, largest) = (wavelet::scale(PERIODS.0), wavelet::scale(PERIODS.1));
         let step = (largest - least) / SCALES as f64;
@@ -234,7 +239,7 @@ impl Map {
         found.reduce(|best, next| if next.strength() > best.strength() { next } else { best })
     }
 
-    /// Excludes the times around a pulse.
+    /// Excludes the part of the record around a pulse from later searches.
     fn take_out(&mut self, found: Found) {
         let reach = reach(found.scale, self.time_step);
         let last = (found.at + reach).min(self.best.len() - 1);
@@ -242,21 +247,22 @@ impl Map {
     }
 }
 
-/// Returns the number of samples that a pulse of a scale (s) extends to each side.
+/// Returns the number of samples by which a pulse of the given scale (s) extends to each side.
 fn reach(scale: f64, time_step: f64) -> usize {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
     let samples = (REACH * scale / time_step).ceil() as usize;
     samples
 }
 
-/// A pulse extracted from a velocity.
+/// A pulse extracted from a velocity history.
 struct Extracted {
     scale: f64,
     velocity: Vec<f64>,
 }
 
 impl Extracted {
-    /// Extracts ten wavelets of one scale, each the strongest in the remainder near the first.
+    /// Extracts ten wavelets of one scale. Each is the strongest wavelet of the remaining motion
+    /// near the previous one.
     fn of(velocity: &[f64], time_step: f64, found: Found) -> Self {
         let (low, high) = found.scales;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -276,7 +282,7 @@ impl Extracted {
         let overlap = wavelet.overlap();
         let reach = reach(scale, time_step);
         let mut pulse = vec![0.0; velocity.len()];
-        // Later wavelets are searched around the one before, as in the authors' program.
+        // Each wavelet is searched around the previous one, as in the authors' program.
         let mut at = found.at;
         for _ in 0..WAVELETS {
             let near = at.saturating_sub(reach)..=(at + reach).min(velocity.len() - 1);
@@ -292,7 +298,8 @@ impl Extracted {
         Self { scale, velocity: pulse }
     }
 
-    /// Returns peak velocity and energy of the remainder, over those of the whole.
+    /// Returns the peak velocity and the energy of the motion without the pulse, each relative to
+    /// the whole motion.
     fn ratios(&self, whole: &[f64]) -> (f64, f64) {
         let left: Vec<f64> = whole.iter().zip(&self.velocity).map(|(a, b)| a - b).collect();
         let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
@@ -300,7 +307,7 @@ impl Extracted {
     }
 }
 
-/// Returns the sample at which the sum of squares exceeds a fraction of the total.
+/// Returns the first sample at which the cumulative sum of squares exceeds a fraction of the total.
 fn time_of(values: &[f64], share: f64) -> usize {
     let total: f64 = values.iter().map(|v| v * v).sum();
     let mut sum = 0.0;
@@ -313,7 +320,7 @@ fn time_of(values: &[f64], share: f64) -> usize {
         .unwrap_or(0)
 }
 
-/// Returns the fraction of the sum of squares before a sample.
+/// Returns the sum of squares before a sample as a fraction of the total.
 fn energy_until(values: &[f64], sample: usize) -> f64 {
     let energy = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
     energy(&values[..sample]) / energy(values)

@@ -1,35 +1,36 @@
-//! The Daubechies wavelet of fourth order, and its coefficients in a velocity.
+//! The Daubechies wavelet of fourth order, and its coefficients in a velocity history.
 
 use std::sync::OnceLock;
 
 use crate::fourier::{Complex, correlate, forward, inverse};
 
-/// Length of the wavelet's support in its own units.
+/// Length of the wavelet's support, in the wavelet's own units.
 const SUPPORT: usize = 7;
-/// Number of halvings in its table.
+/// Number of times the grid of the wavelet's table is halved.
 const LEVELS: u32 = 8;
-/// Frequency of the wavelet in its own units: a pulse of scale `s` has the period `s/0.7143`.
+/// Center frequency of the wavelet in its own units: a pulse of scale `s` has the period
+/// `s/0.7143`.
 const CENTER_FREQUENCY: f64 = 5.0 / 7.0;
 
-/// The wavelet of the classifications, at one scale.
+/// The wavelet at one scale, sampled in time.
 #[derive(Clone, Debug)]
 pub(super) struct Wavelet {
-    /// Values of unit norm at the samples, centered.
+    /// Values at the samples, centered, with unit norm.
     values: Vec<f64>,
 }
 
-/// Returns the period (s) of the pulse of a scale (s).
+/// Returns the period (s) of a pulse with the given scale (s).
 pub(super) fn period(scale: f64) -> f64 {
     scale / CENTER_FREQUENCY
 }
 
-/// Returns the scale (s) of a pulse of a period (s).
+/// Returns the scale (s) of a pulse with the given period (s).
 pub(super) fn scale(period: f64) -> f64 {
     period * CENTER_FREQUENCY
 }
 
 impl Wavelet {
-    /// Creates the wavelet of a scale (s), sampled at a step (s).
+    /// Creates the wavelet of the given scale (s), sampled at `time_step` (s).
     pub(super) fn new(scale: f64, time_step: f64) -> Self {
         let per_sample = time_step / scale;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive")]
@@ -49,7 +50,7 @@ impl Wavelet {
         self.values.len() / 2
     }
 
-    /// Returns the coefficient of the wavelet centered on a sample of a series.
+    /// Returns the coefficient in a series of the wavelet centered on sample `at`.
     pub(super) fn coefficient(&self, series: &[f64], at: usize) -> f64 {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -57,7 +58,7 @@ impl Wavelet {
         self.values[first..].iter().zip(&series[start..]).map(|(w, v)| w * v).sum()
     }
 
-    /// Returns the transform, of a given length, of the wavelet centered on sample 0.
+    /// Returns the Fourier transform, of the given length, of the wavelet centered on sample 0.
     fn spectrum(&self, length: usize) -> Vec<Complex> {
         let half = self.half();
         let mut placed = vec![Complex::default(); length];
@@ -68,7 +69,7 @@ impl Wavelet {
         placed
     }
 
-    /// Adds the wavelet centered on a sample.
+    /// Adds the wavelet, multiplied by `factor` and centered on sample `at`, to a series.
     pub(super) fn add_to(&self, series: &mut [f64], at: usize, factor: f64) {
         let half = self.half();
         let first = half.saturating_sub(at);
@@ -78,8 +79,8 @@ impl Wavelet {
         }
     }
 
-    /// Returns the autocorrelation of the wavelet at `0`, `1`, … samples, by which removing a wavelet changes
-    /// neighboring coefficients.
+    /// Returns the autocorrelation of the wavelet at lags of 0, 1, … samples. Removing a wavelet
+    /// changes the coefficients of its neighbors by these amounts.
     pub(super) fn overlap(&self) -> Vec<f64> {
         let n = self.values.len();
         let length = (2 * n).next_power_of_two();
@@ -92,14 +93,14 @@ impl Wavelet {
     }
 }
 
-/// Two velocities prepared for many wavelets.
+/// The Fourier transform of two velocity histories, for many wavelets.
 pub(super) struct Pair {
     spectrum: Vec<Complex>,
     samples: usize,
 }
 
 impl Pair {
-    /// Computes the pair's transform, padded for wavelets up to the largest.
+    /// Computes the transform of both histories, padded for wavelets up to `largest`.
     pub(super) fn new(first: &[f64], second: &[f64], largest: &Wavelet) -> Self {
         let length = (first.len() + largest.half()).next_power_of_two();
         let mut spectrum: Vec<Complex> =
@@ -112,13 +113,13 @@ impl Pair {
     /// Returns the coefficients of both series for the wavelet centered on each sample.
     pub(super) fn coefficients(&self, wavelet: &Wavelet) -> Vec<(f64, f64)> {
         let kernel = wavelet.spectrum(self.spectrum.len());
-        // A real wavelet keeps the two series separate: in the real and in the imaginary part.
+        // The two series are the real and the imaginary part; a real wavelet keeps them separate.
         let both = correlate(&self.spectrum, &kernel);
         both[..self.samples].iter().map(|value| (value.re, value.im)).collect()
     }
 }
 
-/// Returns the mother wavelet at `x` from 0 to 7, linear between the points of its table.
+/// Returns the mother wavelet at `x` from 0 to 7, interpolated linearly in its table.
 fn mother(x: f64) -> f64 {
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
     let table = TABLE.get_or_init(table);
@@ -131,8 +132,8 @@ fn mother(x: f64) -> f64 {
     table[k] + (table[k + 1] - table[k]) * (place - k as f64)
 }
 
-/// Filter of the scaling function, from the closed conditions of Daubechies (1988): orthogonal shifts
-/// and four vanishing moments, minimum phase.
+/// Filter of the scaling function, from the conditions of Daubechies (1988): orthogonal shifts,
+/// four vanishing moments, minimum phase.
 const FILTER: [f64; 8] = [
     0.230_377_813_308_896_5,
     0.714_846_570_552_915_6,
@@ -144,10 +145,10 @@ const FILTER: [f64; 8] = [
     -0.010_597_401_785_069_032,
 ];
 
-/// Computes the wavelet at multiples of a power of one half, from the two-scale relation.
+/// Computes the wavelet at a grid of halved integers, from the two-scale relation.
 fn table() -> Vec<f64> {
     let root = std::f64::consts::SQRT_2;
-    // At integers the scaling function is the eigenvector of the relation for eigenvalue 1.
+    // At the integers, the scaling function is an eigenvector of the relation with eigenvalue 1.
     let mut scaling = vec![1.0 / SUPPORT as f64; SUPPORT + 1];
     let relation = |values: &[f64], filter: &dyn Fn(usize) -> f64, at: usize, per: usize| -> f64 {
         // `at` counts the points of the finer result, `per` points per unit of `values`.
@@ -160,7 +161,7 @@ fn table() -> Vec<f64> {
         let sum: f64 = next.iter().sum();
         scaling = next.iter().map(|v| v / sum).collect();
     }
-    // Each halving gives the values between the known ones.
+    // Each halving computes the values between the known ones.
     for level in 0..LEVELS {
         let per = 1_usize << level;
         scaling = (0..=SUPPORT * 2 * per).map(|j| relation(&scaling, &low, j, per)).collect();

@@ -1,16 +1,16 @@
-//! The formulas and tables of the codes.
+//! Formulas and tables of the design codes.
 
 use super::{ChileanZone, NCh2745Soil, SiteClass};
 use crate::math::{self, PI, STANDARD_GRAVITY};
 
-/// Interpolates linearly between two points in the logarithms of both coordinates.
+/// Interpolates between two points, linearly in the logarithms of both coordinates.
 pub(super) fn log_log(x: f64, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> f64 {
     y0 * math::powf(y1 / y0, math::ln(x / x0) / math::ln(x1 / x0))
 }
 
-/// ASCE 7-16, section 11.4.6 (g).
+/// Returns the design spectrum of ASCE 7-16, section 11.4.6 (g).
 pub(super) fn asce7(sds: f64, sd1: f64, long_period: f64, damping: f64, t: f64) -> f64 {
-    // Table 17.5-1, linear between.
+    // Table 17.5-1, interpolated linearly.
     let damped = math::interpolate(
         &[0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5],
         &[0.8, 1.0, 1.2, 1.5, 1.7, 1.9, 2.0],
@@ -30,7 +30,8 @@ pub(super) fn asce7(sds: f64, sd1: f64, long_period: f64, damping: f64, t: f64) 
     }
 }
 
-/// EN 1998-1:2004, section 3.2.2.2, over the ground acceleration on rock.
+/// Returns the elastic spectrum of EN 1998-1:2004, section 3.2.2.2, relative to the ground
+/// acceleration on rock.
 pub(super) fn eurocode8(site: SiteClass, small_magnitude: bool, damping: f64, t: f64) -> f64 {
     // Soil factor and corner periods, tables 3.2 and 3.3.
     let (s, tb, tc, td) = match (small_magnitude, site) {
@@ -58,7 +59,7 @@ pub(super) fn eurocode8(site: SiteClass, small_magnitude: bool, damping: f64, t:
     }
 }
 
-/// Decree 61 of 2011, articles 11 to 13 (g).
+/// Returns the elastic spectrum of decree 61 of 2011, articles 11 to 13 (g).
 pub(super) fn nch433(zone: ChileanZone, site: SiteClass, t: f64) -> f64 {
     let a0 = match zone {
         ChileanZone::One => 0.2,
@@ -76,15 +77,15 @@ pub(super) fn nch433(zone: ChileanZone, site: SiteClass, t: f64) -> f64 {
     s * a0 * (1.0 + 4.5 * math::powf(x, p)) / (1.0 + x * x * x)
 }
 
-/// `NCh2745.Of2003`, figure 1 and its table, over `B_D` (m/s²).
+/// Returns the base spectrum of `NCh2745.Of2003`, figure 1 and its table, divided by `B_D` (m/s²).
 pub(super) fn nch2745(zone: ChileanZone, soil: NCh2745Soil, damping: f64, t: f64) -> f64 {
     let factor = match zone {
         ChileanZone::One => 0.75,
         ChileanZone::Two => 1.0,
         ChileanZone::Three => 1.25,
     };
-    // Ground acceleration (g), corner periods Tb, Tc, Td (s) and plateaus of acceleration, velocity
-    // and displacement in cm.
+    // Ground acceleration (g), corner periods Tb, Tc and Td (s), and the plateaus of acceleration,
+    // velocity and displacement, in cm and s.
     let (ground, tb, tc, td, acceleration, velocity, displacement) = match soil {
         NCh2745Soil::I => (0.40, 0.11, 0.29, 2.51, 1085.0, 50.0, 20.0),
         NCh2745Soil::II => (0.41, 0.2, 0.54, 2.0, 1100.0, 94.0, 30.0),
@@ -112,7 +113,7 @@ pub(super) fn nch2745(zone: ChileanZone, soil: NCh2745Soil, damping: f64, t: f64
     0.01 * factor * base / damped
 }
 
-/// NZS 1170.5:2004, section 3.1.1 (g).
+/// Returns the spectrum of NZS 1170.5:2004, section 3.1.1 (g).
 pub(super) fn nzs1170(
     hazard: f64,
     return_period: f64,
@@ -120,7 +121,8 @@ pub(super) fn nzs1170(
     fault_distance: Option<f64>,
     t: f64,
 ) -> f64 {
-    // Section 3.1.6: none for annual probabilities of 1/250 and above, that is R up to 0.75.
+    // Section 3.1.6: no near-fault factor for annual probabilities of 1/250 and above, which means
+    // R up to 0.75.
     let near_fault = match fault_distance {
         Some(distance) if return_period > 0.75 => nzs_near_fault(distance, t),
         _ => 1.0,
@@ -128,10 +130,11 @@ pub(super) fn nzs1170(
     nzs_shape(site, t) * (hazard * return_period).min(0.7) * near_fault
 }
 
-/// Spectral shape factor `Ch(T)` of table 3.1 (modal and time-history values at short periods).
+/// Returns the spectral shape factor `Ch(T)` of table 3.1, with the short-period values for modal
+/// and time-history analysis.
 fn nzs_shape(site: SiteClass, t: f64) -> f64 {
-    // Value at T = 0 and its rise up to 0.1 s, plateau and its end (s), then a (b/T)^0.75, and c/T and
-    // d/T² from 1.5 s and 3 s on.
+    // Value at T = 0 and its slope up to 0.1 s; plateau and its end (s); then a (b/T)^0.75; from
+    // 1.5 s on c/T; from 3 s on d/T².
     let (start, slope, plateau, end, (a, b), c, d) = match site {
         SiteClass::A | SiteClass::B => (1.0, 1.35, 2.35, 0.3, (1.6, 0.5), 1.05, 3.15),
         SiteClass::C => (1.33, 1.6, 2.93, 0.3, (2.0, 0.5), 1.32, 3.96),
@@ -151,7 +154,7 @@ fn nzs_shape(site: SiteClass, t: f64) -> f64 {
     }
 }
 
-/// Near-fault factor `N(T, D)` of section 3.1.6.
+/// Returns the near-fault factor `N(T, D)` of section 3.1.6.
 fn nzs_near_fault(distance: f64, t: f64) -> f64 {
     let largest = math::interpolate(&[1.5, 2.0, 3.0, 4.0, 5.0], &[1.0, 1.12, 1.36, 1.6, 1.72], t);
     if distance <= 2.0 {
@@ -163,7 +166,8 @@ fn nzs_near_fault(distance: f64, t: f64) -> f64 {
     }
 }
 
-/// ICC-ES AC156 with ASCE 7-16, section 6.5.1 (g): linear in the logarithms of both coordinates.
+/// Returns the required response spectrum of ICC-ES AC156 with ASCE 7-16, section 6.5.1 (g), linear
+/// in the logarithms of both coordinates.
 pub(super) fn ac156(sds: f64, height_ratio: f64, t: f64) -> f64 {
     let amplification = 1.0 + 2.0 * height_ratio;
     let flexible = (sds * amplification).min(1.6 * sds);

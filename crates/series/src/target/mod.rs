@@ -1,4 +1,4 @@
-//! Code and table spectra: pseudo-acceleration as a function of period.
+//! Target spectra from design codes and tables: pseudo-acceleration as a function of period.
 
 mod codes;
 mod text;
@@ -7,7 +7,7 @@ use crate::error::MotionError;
 use crate::math::STANDARD_GRAVITY;
 use codes::log_log;
 
-/// Soil or site classes `A` to `E`, each code with its own meaning.
+/// Site classes `A` to `E`; their exact meaning depends on the code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteClass {
     /// Strong rock.
@@ -18,7 +18,7 @@ pub enum SiteClass {
     C,
     /// Soft or deep soil.
     D,
-    /// Very soft soil; in Eurocode 8 a thin soft layer over rock.
+    /// Very soft soil; in Eurocode 8, a thin soft layer over rock.
     E,
 }
 
@@ -33,7 +33,7 @@ pub enum ChileanZone {
     Three,
 }
 
-/// Soils of `NCh2745`.
+/// Soil types of `NCh2745`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NCh2745Soil {
     /// Rock.
@@ -44,53 +44,55 @@ pub enum NCh2745Soil {
     III,
 }
 
-/// A target spectrum (m/s²).
+/// A target spectrum of pseudo-acceleration (m/s²).
 ///
-/// Codes with a correction for damping have a damping parameter; the others are for 5 %.
+/// Codes with a damping correction have a damping parameter; the others are defined for 5 %
+/// damping.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TargetSpectrum {
-    /// ASCE/SEI 7-16, section 11.4.6: design spectrum of two ordinates and the long-period
-    /// transition; other dampings by the factor `B_M` of table 17.5-1, except on the peak ground acceleration.
+    /// ASCE/SEI 7-16, section 11.4.6: design spectrum from two ordinates and the long-period
+    /// transition. Other damping ratios use the factor `B_M` of table 17.5-1, except for the peak
+    /// ground acceleration.
     Asce7 {
-        /// `S_DS` (g).
+        /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,
-        /// `S_D1` (g).
+        /// Spectral acceleration at 1 s, `S_D1` (g).
         sd1: f64,
-        /// `T_L` (s).
+        /// Long-period transition `T_L` (s).
         long_period: f64,
         /// Damping ratio, 0.02 to 0.5.
         damping: f64,
     },
     /// EN 1998-1:2004, section 3.2.2.2: horizontal elastic spectrum, tables 3.2 and 3.3.
     Eurocode8 {
-        /// Ground acceleration on rock `a_g` (g), importance included.
+        /// Ground acceleration on rock `a_g` (g), including the importance factor.
         ground_acceleration: f64,
         /// Ground type.
         site: SiteClass,
-        /// Type 2 (small magnitudes) instead of type 1.
+        /// `true` for the type 2 spectrum (small magnitudes), `false` for type 1.
         small_magnitude: bool,
-        /// Damping ratio, 0.05 for `η = 1`; above 0.28 the code's lower bound of `η` applies.
+        /// Damping ratio; `η = 1` at 0.05. Above 0.28, the code's lower bound of `η` applies.
         damping: f64,
     },
     /// `NCh433` with decree 61 of 2011: elastic spectrum `S A0 α(T)`, importance 1, 5 % damping.
     NCh433 {
-        /// Seismic zone, which gives `A0` = 0.20, 0.30 or 0.40 g.
+        /// Seismic zone, which sets `A0` to 0.20, 0.30 or 0.40 g.
         zone: ChileanZone,
         /// Soil class of decree 61.
         site: SiteClass,
     },
-    /// `NCh2745.Of2003` (base isolation): base spectrum of acceleration, velocity and displacement
-    /// branches, divided by the damping factor `B_D`.
+    /// `NCh2745.Of2003` (base isolation): base spectrum with acceleration, velocity and
+    /// displacement branches, divided by the damping factor `B_D`.
     NCh2745 {
-        /// Seismic zone, factor 3/4, 1 or 5/4.
+        /// Seismic zone, which sets the factor 3/4, 1 or 5/4.
         zone: ChileanZone,
-        /// Soil.
+        /// Soil type.
         soil: NCh2745Soil,
         /// Damping ratio; `B_D` is constant below 0.02 and above 0.5.
         damping: f64,
     },
-    /// NZS 1170.5:2004, section 3.1: `C(T) = Ch(T) Z R N(T, D)` with `Z R` up to 0.7, `Ch` for
-    /// modal and time-history analysis, 5 % damping.
+    /// NZS 1170.5:2004, section 3.1: `C(T) = Ch(T) Z R N(T, D)` for 5 % damping, with `Z R` limited
+    /// to 0.7 and `Ch` for modal and time-history analysis.
     Nzs1170 {
         /// Hazard factor `Z`.
         hazard: f64,
@@ -98,29 +100,30 @@ pub enum TargetSpectrum {
         return_period: f64,
         /// Site subsoil class.
         site: SiteClass,
-        /// Distance to the nearest major fault (km); `None` for no near-fault factor, which is 1 for
-        /// `R` up to 0.75 in any case.
+        /// Distance to the nearest major fault (km); `None` for no near-fault factor. The factor is
+        /// 1 in any case for `R` up to 0.75.
         fault_distance: Option<f64>,
     },
-    /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests,
-    /// 5 % damping, defined from 0.1 Hz, where it is a tenth of its plateau, to 33.3 Hz.
+    /// ICC-ES AC156 with ASCE 7-16: horizontal required response spectrum for shake-table tests, 5
+    /// % damping. Defined from 0.1 Hz, where it is a tenth of the plateau, to 33.3 Hz.
     Ac156 {
-        /// `S_DS` (g).
+        /// Short-period spectral acceleration `S_DS` (g).
         sds: f64,
-        /// Height of attachment over roof height, 0 to 1.
+        /// Height of attachment divided by roof height, 0 to 1.
         height_ratio: f64,
     },
-    /// Points in ascending order of period, linear between in the logarithms of both; constant outside.
+    /// Points in ascending order of period; linear between them in the logarithms of both
+    /// coordinates, constant outside.
     Table {
-        /// Period (s) and acceleration (m/s²).
+        /// Period (s) and pseudo-acceleration (m/s²) of each point.
         points: Vec<(f64, f64)>,
-        /// Damping ratio of the accelerations.
+        /// Damping ratio to which the accelerations apply.
         damping: f64,
     },
 }
 
 impl std::fmt::Display for TargetSpectrum {
-    /// Writes the code, its parameters and their units.
+    /// Writes the code and its parameters with their units.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Asce7 { sds, sd1, long_period, .. } => {
@@ -153,10 +156,10 @@ impl std::fmt::Display for TargetSpectrum {
 }
 
 impl TargetSpectrum {
-    /// Checks the parameters.
+    /// Checks that all parameters are in range.
     ///
     /// # Errors
-    /// Names the first one out of range.
+    /// Names the first parameter that is out of range.
     pub fn check(&self) -> Result<(), MotionError> {
         let positive = MotionError::require_positive;
         match self {

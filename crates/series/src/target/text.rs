@@ -1,17 +1,17 @@
-//! Target spectra of codes as text: the code and its parameters, such as `ec8:ag=0.3,site=B`.
+//! Parses target spectra from text: a code and its parameters, such as `ec8:ag=0.3,site=B`.
 
 use std::str::FromStr;
 
 use super::{ChileanZone, NCh2745Soil, SiteClass, TargetSpectrum};
 use crate::error::MotionError;
 
-/// Parameters of a code, each of which is read once.
+/// Parameters of a code; each is removed once it is read.
 struct Parameters<'a> {
     code: &'a str,
     pairs: Vec<(&'a str, &'a str)>,
 }
 
-/// The codes and their parameters.
+/// Names of the codes, with their parameters.
 const KNOWN: [(&str, &str); 6] = [
     ("asce7", "sds (g), sd1 (g), tl (s), damping"),
     ("ec8", "ag (g), site (A to E), type (1 or 2), damping"),
@@ -40,7 +40,8 @@ impl<'a> Parameters<'a> {
         MotionError::parameter(format!("{}: {key}", self.code), expected, format!("\"{found}\""))
     }
 
-    /// Creates an error about a missing or surplus parameter, with those of the code.
+    /// Creates an error about a missing or unknown parameter, which lists the parameters of the
+    /// code.
     fn unlike(&self, key: &str, found: &str) -> MotionError {
         let all = KNOWN.iter().find(|(code, _)| *code == self.code).map_or("", |(_, all)| all);
         MotionError::parameter(format!("{}: {key}", self.code), all, found)
@@ -86,18 +87,18 @@ impl<'a> Parameters<'a> {
         self.choice("zone", "1, 2 or 3", &[("1", One), ("2", Two), ("3", Three)])
     }
 
-    /// Reads the damping ratio, 5 % if none is given.
+    /// Reads the damping ratio; 0.05 if none is given.
     fn damping(&mut self) -> Result<f64, MotionError> {
         Ok(self.number("damping")?.unwrap_or(0.05))
     }
 
-    /// Checks that no parameter is left over.
+    /// Checks that no parameter is left unread.
     fn end(self) -> Result<(), MotionError> {
         match self.pairs.first() {
             None => Ok(()),
             Some(("damping", found)) => Err(self.wrong(
                 "damping",
-                "none, since the code is for 5 % of damping and has no correction (a table may be for another)",
+                "none, since the code applies to 5 % damping only (use a table for another ratio)",
                 found,
             )),
             Some((key, found)) => Err(self.unlike(&format!("no parameter {key}"), found)),
@@ -105,8 +106,10 @@ impl<'a> Parameters<'a> {
     }
 }
 
-/// Parses a code with its parameters between commas, accelerations in g, such as `asce7:sds=1.0,sd1=0.6`,
-/// `ec8:ag=0.3,site=B`, `nch433:zone=2,soil=D`, `nch2745:zone=2,soil=II`, `nzs1170:z=0.3,site=C` or `ac156:sds=1`.
+/// Parses a code with its parameters separated by commas; accelerations are in g.
+///
+/// Examples are `asce7:sds=1.0,sd1=0.6`, `ec8:ag=0.3,site=B`, `nch433:zone=2,soil=D`,
+/// `nch2745:zone=2,soil=II`, `nzs1170:z=0.3,site=C` and `ac156:sds=1`.
 ///
 /// ```
 /// use barrelstack_series::target::TargetSpectrum;

@@ -1,4 +1,5 @@
-//! Factors of all values in the words of a header, which are refused: that they were applied is not certain.
+//! Detects scale factors in header texts. They are refused, because it is unknown whether they have
+//! been applied.
 
 use super::facts::{folded, says_acceleration, value_behind};
 use super::words::UNIT_WORDS;
@@ -6,7 +7,7 @@ use crate::error::ReadError;
 use crate::format::source::{Source, leading_text, quoted};
 use crate::units::MotionUnit;
 
-/// Names of a number by which the values are to be multiplied.
+/// Names of a factor by which the values are to be multiplied.
 const FACTOR_KEYS: &[&str] = &[
     "scale factor",
     "scale_factor",
@@ -21,11 +22,12 @@ const FACTOR_KEYS: &[&str] = &[
     "gain",
 ];
 
-/// Those that count at the begin of a line alone: within one they may belong to an instrument.
+/// Names that are accepted only at the beginning of a line; elsewhere they may refer to an
+/// instrument.
 const AT_THE_BEGIN: [&str; 2] = ["scale", "gain"];
 
-/// Refuses a factor of the values above them: `1.0e+03 *`, as MATLAB shows matrices, `scale factor: 0.01`, or a unit with
-/// a number, `unit = 0.01 m/s2`.
+/// Refuses a factor stated above the values, such as `1.0e+03 *` (as MATLAB prints matrices),
+/// `scale factor: 0.01`, or a unit with a number, such as `unit = 0.01 m/s2`.
 pub(super) fn refuse(
     source: &Source<'_>,
     lines: impl Iterator<Item = usize>,
@@ -50,15 +52,15 @@ pub(super) fn refuse(
                 line,
                 "values and units without a factor",
                 format!("{}, a factor of all values below", quoted(&source.text(line))),
-                "multiply the values by it if they are not yet, and leave the factor out",
+                "multiply the values by the factor, unless already done, and remove it",
             ));
         }
     }
     Ok(())
 }
 
-/// `true` for a line on acceleration or its unit that states a factor: `acc*100 (g)`, `acceleration x 1000`, `Acc.
-/// (1e-3 g)`, `in g, multiplied by 1000`.
+/// Returns `true` if a line about accelerations or their unit contains a factor, such as
+/// `acc*100 (g)`, `acceleration x 1000`, `Acc. (1e-3 g)` or `in g, multiplied by 1000`.
 fn is_multiplied(lower: &str) -> bool {
     let speaks = says_acceleration(lower) || UNIT_WORDS.iter().any(|word| lower.contains(word));
     let marks = ["*", " x ", " \u{d7} ", "multiplied by ", "scaled by ", "divided by ", " times "];
@@ -66,7 +68,7 @@ fn is_multiplied(lower: &str) -> bool {
     speaks && (in_parentheses() || marks.into_iter().any(|mark| has_factor(lower, mark)))
 }
 
-/// `true` if a number other than 1 follows a mark that does not follow a number itself.
+/// Returns `true` if `mark` is followed by a number other than 1 but not preceded by a number.
 pub(super) fn has_factor(text: &str, mark: &str) -> bool {
     text.match_indices(mark).any(|(at, _)| {
         let of_a_number = text[..at].trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '*');
@@ -75,7 +77,8 @@ pub(super) fn has_factor(text: &str, mark: &str) -> bool {
     })
 }
 
-/// `true` for a unit beside a number other than 1 or a share: `0.01 m/s2`, `10^-3 g`, `% g`, `g x 100`, `m/s2*0.01`.
+/// Returns `true` if a unit is combined with a factor other than 1, such as `0.01 m/s2`, `10^-3 g`,
+/// `% g`, `g x 100` or `m/s2*0.01`.
 pub(super) fn is_unit_with_factor(text: &str) -> bool {
     let lower = text.to_lowercase();
     let text = lower.trim_start_matches(['s', ' ', '\t', ':', '=', ',', ';', '(', '[']);
@@ -93,7 +96,7 @@ pub(super) fn is_unit_with_factor(text: &str) -> bool {
         })
 }
 
-/// `true` for a number other than 1, or a share of one.
+/// Returns `true` if a text is a number other than 1, or a fraction such as `%`.
 fn is_factor(text: &str) -> bool {
     let text = text.strip_suffix(" of").unwrap_or(text);
     let number = |text: &str| text.parse::<f64>().ok();

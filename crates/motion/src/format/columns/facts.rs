@@ -1,4 +1,4 @@
-//! Data stated in the words of a header: step, count, duration, unit, peak, component.
+//! Finds facts stated in header lines: step, count, duration, unit, peak, component.
 
 use super::factors;
 use super::times::LARGEST_BARE_STEP;
@@ -13,51 +13,52 @@ use crate::format::source::{Source, latin1, leading_printed, leading_text, quote
 use crate::record::Quantity;
 use crate::units::MotionUnit;
 
-/// A value that a header states, and its line (0-based).
+/// A value stated in a header, with its line (counted from 0).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stated<T> {
     pub(super) line: usize,
     pub(super) value: T,
 }
 
-/// A stated peak acceleration.
+/// A peak acceleration stated in a header.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Peak {
     pub(super) value: f64,
     pub(super) resolution: f64,
-    /// SI value of its unit; `None` for the unit of the samples.
+    /// SI value of the unit; `None` if the peak is in the unit of the samples.
     pub(super) factor: Option<f64>,
 }
 
-/// Data stated in the header lines above a table.
+/// Facts stated in the header lines above a table.
 #[derive(Debug, Default)]
 pub(super) struct Facts {
     /// Time between samples (s).
     pub(super) step: Option<Stated<f64>>,
-    /// Frequency (Hz) under other words, which may be the rate of the samples.
+    /// A stated frequency (Hz) that may be the sampling rate, although it is not named so.
     pub(super) possible_rate: Option<Stated<f64>>,
     /// Number of samples.
     pub(super) count: Option<Stated<usize>>,
-    /// Length of the record (s) and one unit of its last printed digit.
+    /// Length of the record (s), and one unit of its last printed digit.
     pub(super) duration: Option<Stated<[f64; 2]>>,
     /// Unit of the samples.
     pub(super) unit: Option<Stated<MotionUnit>>,
-    /// Word in the place of the unit that is not a unit of motion.
+    /// Word given as the unit that is not a unit of motion.
     pub(super) unknown_unit: Option<Stated<String>>,
     pub(super) peak: Option<Stated<Peak>>,
-    /// Name of the only component, if it states a direction.
+    /// Name of the only component, if the name states a direction.
     pub(super) component: Option<String>,
 }
 
-/// Largest step (s) and smallest rate (Hz) of statements that do not name the quantity.
+/// Largest step (s) and smallest rate (Hz) accepted from statements without the name of the
+/// quantity.
 const LARGEST_UNNAMED_STEP: f64 = 0.1;
 const SMALLEST_UNNAMED_RATE: f64 = 20.0;
 
 impl Facts {
-    /// Reads header lines, except those with names of columns.
+    /// Finds facts in header lines, except in lines of column names.
     ///
     /// # Errors
-    /// If two lines contradict each other about the step, or a line is a factor.
+    /// If two lines state different steps, or a line states a factor.
     pub(super) fn read(
         source: &Source<'_>,
         lines: impl Iterator<Item = usize> + Clone,
@@ -80,7 +81,7 @@ impl Facts {
                                 first.line + 1
                             ),
                             format!("{step} s"),
-                            "leave the true step alone in the header",
+                            "keep only the correct step in the header",
                         ));
                     }
                     Some(_) => {}
@@ -110,14 +111,15 @@ impl Facts {
         Ok(facts)
     }
 
-    /// Returns the step (s) from count and duration, for advice.
+    /// Returns the step (s) that follows from count and duration, for the remedy of an error.
     pub(super) fn step_by_duration(&self) -> Option<f64> {
         let (count, [duration, _]) = (self.count?.value, self.duration?.value);
         (count > 1).then(|| duration / count as f64)
     }
 }
 
-/// Returns the text after a key that is a word of its own, not preceded by `OTHER_MEANING`.
+/// Returns the text after a key that is a separate word and is not preceded by a word of
+/// `OTHER_MEANING`.
 fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     text.match_indices(key).find_map(|(at, _)| {
         let (before, rest) = (&text[..at], &text[at + key.len()..]);
@@ -130,7 +132,7 @@ fn behind<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     })
 }
 
-/// The value of a key: a unit in parentheses, a number, and the text after it.
+/// Text after a key: a unit in parentheses, a number, and the rest.
 pub(super) struct Value<'a> {
     in_parentheses: Option<&'a str>,
     pub(super) printed: crate::format::Printed,
@@ -162,8 +164,9 @@ pub(super) fn value_behind<'a>(text: &'a str, key: &str) -> Option<Value<'a>> {
     Some(Value { in_parentheses, printed, behind: word })
 }
 
-/// Returns a number that begins a text with its comma resolved, and the length of what was resolved: `0,005` has a
-/// decimal comma and `3,200` one for thousands.
+/// Splits a number off the start of a text and resolves its comma: `0,005` has a decimal comma,
+/// `3,200` a thousands separator. Also returns the length of the resolved text, if there was a
+/// comma.
 fn number_with_comma(text: &str) -> (String, Option<usize>) {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != ',').unwrap_or(text.len());
     let token = text[..end].trim_end_matches(',');
@@ -180,14 +183,14 @@ fn number_with_comma(text: &str) -> (String, Option<usize>) {
     }
 }
 
-/// Returns a header line in lower case, in UTF-8 or else Latin-1, without the marks of letters: `Pas d'échantillonnage`
-/// gives `pas d'echantillonnage`.
+/// Converts a header line (UTF-8, else Latin-1) to lower case without accents:
+/// `Pas d'échantillonnage` gives `pas d'echantillonnage`.
 pub(in crate::format) fn folded(raw: &[u8]) -> String {
     let text = std::str::from_utf8(raw).map_or_else(|_| latin1(raw), str::to_owned);
     text.trim().to_lowercase().chars().filter_map(plain_letter).collect()
 }
 
-/// Returns a lower-case letter without its mark; `None` for a mark that stands alone.
+/// Returns a lower-case letter without its accent; `None` for a combining accent.
 fn plain_letter(c: char) -> Option<char> {
     Some(match c {
         '\u{e0}'..='\u{e5}' => 'a',
@@ -205,7 +208,7 @@ fn plain_letter(c: char) -> Option<char> {
     })
 }
 
-/// Returns the length in seconds of a unit of time.
+/// Returns the length of a unit of time (s).
 pub(super) fn time_factor(text: &str) -> Option<f64> {
     Some(match text.trim().to_lowercase().trim_end_matches(['.', ',']) {
         "s" | "sec" | "secs" | "second" | "seconds" | "seg" | "sn" | "sek" => 1.0,
@@ -227,7 +230,7 @@ fn step(text: &str) -> Option<f64> {
             Some((divisor, _)) => value.printed.value / divisor,
             None => value.printed.value,
         };
-        // "DT=5" without a unit is no step in seconds.
+        // "DT=5" without a unit does not state a step in seconds.
         let bare = unit.is_none() && number > LARGEST_BARE_STEP;
         positive(number * unit.unwrap_or(1.0)).filter(|_| !bare)
     });
@@ -255,12 +258,13 @@ fn step(text: &str) -> Option<f64> {
     by_step.or_else(by_rate)
 }
 
-/// Returns the count and the step (s) of one line that states both.
+/// Returns the count and the step (s), if one line states both.
 pub(in crate::format) fn count_and_step(text: &str) -> Option<(f64, f64)> {
     Some((count(text)? as f64, step(text)?))
 }
 
-/// Returns the step (s) of a line that states it without its name: `Sampling: 200 Hz`, `interval 5 ms`, `200 Hz` alone.
+/// Returns the step (s) from a line that does not name it, such as `Sampling: 200 Hz`,
+/// `interval 5 ms`, or `200 Hz` alone.
 fn unnamed_step(text: &str) -> Option<f64> {
     let size = |value: f64| (value > 0.0 && value <= LARGEST_UNNAMED_STEP).then_some(value);
     let rate = |value: f64| (value >= SMALLEST_UNNAMED_RATE).then_some(1.0 / value);
@@ -272,9 +276,10 @@ fn unnamed_step(text: &str) -> Option<f64> {
         match (time_factor(unit), unit) {
             (Some(factor), _) => size(number * factor),
             (None, "hz" | "sps") => rate(number),
-            // At the beginning of a line a rate is that of the samples, before something else that of a line or a drum.
+            // At the beginning of a line, a rate is the sampling rate; after other words it may be
+            // a data rate or the speed of a drum.
             (None, "") if *key == "rate" && plain.starts_with(key) => rate(number),
-            // A bare number may be something else; "delta" is a distance in degrees as well.
+            // A bare number may have another meaning; "delta" is also a distance in degrees.
             (None, "") if BARE.contains(key) => rate(number)
                 .filter(|_| *key != "delta")
                 .or_else(|| size(number))
@@ -296,7 +301,8 @@ fn unnamed_step(text: &str) -> Option<f64> {
     by_key.or_else(alone).or_else(beside)
 }
 
-/// Returns a frequency (Hz) of the size of a sampling rate in a line that names no other frequency, in any language.
+/// Returns a frequency (Hz) that could be the sampling rate from a line that names no other
+/// frequency, in any language.
 fn possible_rate(text: &str) -> Option<f64> {
     if OTHER_FREQUENCIES.iter().any(|word| text.contains(word)) {
         return None;
@@ -307,7 +313,7 @@ fn possible_rate(text: &str) -> Option<f64> {
     ((hertz(name) || hertz(rest)) && rate >= SMALLEST_UNNAMED_RATE).then_some(rate)
 }
 
-/// Returns the number right before a word.
+/// Returns the number directly before a word.
 fn number_before(text: &str, word: &str) -> Option<f64> {
     text.match_indices(word).find_map(|(at, _)| {
         if text[at + word.len()..].starts_with(|c: char| c.is_ascii_alphanumeric()) {
@@ -318,13 +324,14 @@ fn number_before(text: &str, word: &str) -> Option<f64> {
     })
 }
 
-/// Minimum of a number before "points" to be a count of samples; smaller ones may be those of a filter.
+/// Smallest number before "points" that is taken as a count of samples; smaller numbers may
+/// describe a filter.
 const FEWEST_POINTS: f64 = 50.0;
 
 fn count(text: &str) -> Option<usize> {
     let behind = COUNT_KEYS.iter().find_map(|key| {
         let value = value_behind(text, key)?;
-        // "3200 samples, 200 sps" has a rate after the word.
+        // In "3200 samples, 200 sps", a rate follows the word.
         let rate = ["sps", "hz", "samples/s"].iter().any(|unit| value.behind.starts_with(unit));
         (!rate && value.printed.value.fract() == 0.0).then_some(value.printed.value)
     });
@@ -374,7 +381,7 @@ fn peak(text: &str) -> Option<Peak> {
     })
 }
 
-/// `true` if a text mentions acceleration.
+/// Returns `true` if a lower-case text mentions acceleration.
 pub(in crate::format) fn says_acceleration(lower: &str) -> bool {
     words(lower).any(|word| ACCELERATIONS.iter().any(|start| word.starts_with(start)))
 }
@@ -383,14 +390,15 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty())
 }
 
-/// Parses the unit in a line that states it: after "unit", or in parentheses, after "in", a colon or a comma in
-/// a line that mentions acceleration.
+/// Parses the unit in a line that states it: after "unit"; or, in a line that mentions
+/// acceleration, in parentheses or after "in", a colon or a comma.
 pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
-    // In prose a length is not the unit of a record: "in" is a preposition, and "m" is ambiguous.
+    // In prose, a length is not accepted as the unit: "in" is also a preposition, and "m" is
+    // ambiguous.
     let rate = |text: &str| {
         MotionUnit::parse(text.trim()).filter(|unit| unit.quantity != Quantity::Displacement)
     };
-    // The unit of a peak is not that of the samples.
+    // The unit of a peak is not necessarily the unit of the samples.
     if PEAK_KEYS.iter().any(|key| value_behind(lower, key).is_some()) {
         return None;
     }
@@ -425,7 +433,8 @@ pub(in crate::format) fn unit(lower: &str) -> Option<MotionUnit> {
     groups.chain(after_in).chain(last).find_map(rate)
 }
 
-/// `true` if a number or a share stands beside the unit among words: `0.001 g`, `% g`, `thousandths of g`, `g x 100`.
+/// Returns `true` if a number or a fraction stands next to the unit, as in `0.001 g`, `% g`,
+/// `thousandths of g` or `g x 100`.
 fn is_scaled(words: &[&str], unit: usize) -> bool {
     let before = words[..unit].iter().rev().find(|word| **word != "of").unwrap_or(&"");
     let shares = ["%", "percent", "tenth", "hundredth", "thousandth", "milli", "micro"];
@@ -437,7 +446,7 @@ fn is_scaled(words: &[&str], unit: usize) -> bool {
             && behind.starts_with(['x', '*'])
 }
 
-/// Returns the word after "unit" at the beginning of a line, if it is not a unit of motion.
+/// Returns the word after "unit" at the beginning of a line, unless it is a unit of motion.
 fn unknown_unit(lower: &str) -> Option<String> {
     let plain = lower.trim_start_matches(['#', '%', '!', '/', '"', ' ']);
     let rest = ["units", "unit", "acceleration units", "acceleration unit", "accel units"]
@@ -461,7 +470,7 @@ fn component(text: &str) -> Option<String> {
     })
 }
 
-/// Refuses a header that describes the numbers as other quantities than accelerations.
+/// Refuses a header that describes the numbers as quantities other than accelerations.
 pub(super) fn refuse_other_quantities(
     source: &Source<'_>,
     lines: impl Iterator<Item = usize> + Clone,
@@ -473,7 +482,7 @@ pub(super) fn refuse_other_quantities(
     for line in lines.clone() {
         let lower = folded(source.raw(line));
         if is_spectrum(&lower) {
-            let remedy = "give the file of the time history that this spectrum belongs to";
+            let remedy = "give the file with the time history of this spectrum";
             return refuse(line, "an acceleration history, not a spectrum", remedy);
         }
         acceleration |= says_acceleration(&lower);

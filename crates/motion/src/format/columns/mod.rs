@@ -1,8 +1,9 @@
-//! Plain columns and CSV: values alone, time and values, or a count and a step on the first line.
+//! Reader of plain columns and CSV: values alone, time and values, or a count and a step on the
+//! first line.
 //!
-//! Neither unit nor step is ever guessed: both come from the header, a time column, or the caller. A header line names
-//! columns only if the names are quantities, and the stated step, count and duration must agree with the
-//! numbers.
+//! Unit and step are never guessed: they come from the header, from a time column, or from the
+//! caller. A header line is taken as column names only if the names are quantities. The stated
+//! step, count and duration must agree with the numbers.
 
 mod factors;
 pub(in crate::format) mod facts;
@@ -29,7 +30,7 @@ use shape::Commas;
 pub(crate) const FORMAT: Format =
     Format { name: "columns", title: "plain columns and CSV", sniff, read };
 
-/// Tolerance of a stated duration relative to that of the samples.
+/// Relative tolerance between a stated duration and the duration of the samples.
 const DURATION_TOLERANCE: f64 = 0.02;
 
 fn sniff(source: &Source<'_>) -> bool {
@@ -65,7 +66,7 @@ fn read(source: &Source<'_>, hints: &Hints<'_>) -> Result<Record, ReadError> {
     }
 }
 
-/// Refuses a table whose first column is a period, a frequency or an ordinate of a spectrum.
+/// Refuses a table whose first column contains periods, frequencies or spectral ordinates.
 fn refuse_spectrum(
     source: &Source<'_>,
     line: usize,
@@ -78,7 +79,7 @@ fn refuse_spectrum(
         line,
         "an acceleration history, not a spectrum",
         quoted(&source.text(line)),
-        "give the file of the time history that this spectrum belongs to",
+        "give the file with the time history of this spectrum",
     ))
 }
 
@@ -94,7 +95,7 @@ fn read_table(
     let table = table(source, first, end)?;
     rows::require_rows(source, first, &table)?;
     let (width, rows) = (table.len(), table[0].len());
-    // Comments in files of this crate are free text on their history.
+    // In files written by this crate, comments are free text about the history.
     let own = header > 0 && source.text(0) == FIRST_LINE;
     let mut named = names::find(source, header, width)?;
     if let Some((_, names)) = named.as_mut().filter(|_| own) {
@@ -145,8 +146,8 @@ fn read_table(
             return Err(source.damaged(
                 first + row,
                 format!("a time after {} s", time[row - 1]),
-                format!("{} s once more", time[row]),
-                "two rows have one time; get the file again from its source, or leave one out",
+                format!("{} s again", time[row]),
+                "two rows have the same time; get the file again from its source, or remove one of the rows",
             ));
         }
         let (names, table) = accelerations(source, line, &mut record, names, table)?;
@@ -170,7 +171,8 @@ fn read_table(
     let several = columns.len() > 1;
     for (k, (column, unit)) in columns.into_iter().zip(units).enumerate() {
         let label = names.get(k).map(|name| name.label.clone());
-        // A single column is often called "acceleration"; the header or the file's name is more specific.
+        // A single column is often named "acceleration"; the header or the file name is more
+        // specific.
         let says = |name: &String| several || Direction::parse(name) != Direction::default();
         let name = label.filter(says).or_else(|| facts.component.clone().filter(|_| !several));
         let fallback = || if several { format!("column {}", k + 1) } else { stem.clone() };
@@ -197,7 +199,7 @@ fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     }
 }
 
-/// Removes the first column, with its name, if it counts the rows.
+/// Removes the first column and its name if the column numbers the rows.
 fn without_index(
     record: &mut Record,
     names: Option<Vec<Name>>,
@@ -215,7 +217,7 @@ fn without_index(
         return (names, table);
     }
     record
-        .warn(names_line.unwrap_or(first) + 1, "the first column counts the rows and was left out");
+        .warn(names_line.unwrap_or(first) + 1, "the first column numbers the rows and was ignored");
     table.remove(0);
     (without_first(names), table)
 }
@@ -227,8 +229,8 @@ fn without_first(names: Option<Vec<Name>>) -> Option<Vec<Name>> {
     })
 }
 
-/// Returns the columns of accelerations, with their names; named columns of velocities, displacements and others are
-/// left out with a warning.
+/// Returns the acceleration columns with their names. Columns named as velocity, displacement or
+/// another quantity are left out with a warning.
 fn accelerations(
     source: &Source<'_>,
     line: usize,
@@ -244,8 +246,8 @@ fn accelerations(
         if let Some([of, integral]) = shape::integral(&columns) {
             return Err(source.not_acceleration(
                 line,
-                "columns of acceleration alone, or names above the columns",
-                format!("unnamed columns of which one is the integral of another ({} of {})", integral + 1, of + 1),
+                "columns of acceleration only, or names above the columns",
+                format!("unnamed columns, one of them the integral of another ({} of {})", integral + 1, of + 1),
                 "name the columns in a line above them, such as \"time (s), acceleration (g), velocity (cm/s)\"",
             ));
         }
@@ -253,15 +255,15 @@ fn accelerations(
         if names.is_none() && table.len() > 1 && table.iter().any(times) {
             return Err(source.damaged(
                 line,
-                "one time to a row",
+                "one time per row",
                 "a further unnamed column whose values rise evenly, as times do",
-                "write one pair of time and acceleration to a row, or name the columns in a line above them",
+                "write one pair of time and acceleration per row, or name the columns in a line above them",
             ));
         }
         if names.is_none() && shape::is_one_sided(&table) {
             return Err(source.not_acceleration(
                 line,
-                "accelerations to both sides",
+                "positive and negative accelerations",
                 "no value below 0, as in a spectrum",
                 "give the acceleration history; if it is one, name its columns in a line above them, such as \
                  \"time (s), acceleration (g)\"",
@@ -273,10 +275,7 @@ fn accelerations(
         let mut table = table;
         if let Some(at) = lengths.iter().position(|length| *length) {
             table.remove(at);
-            record.warn(
-                line + 1,
-                "a column holds the length of the vector of the others and was left out",
-            );
+            record.warn(line + 1, "a column is the vector length of the others and was ignored");
         }
         return Ok((Vec::new(), table));
     };
@@ -292,7 +291,7 @@ fn accelerations(
     };
     let all: Vec<String> = names.iter().map(Name::shown).collect();
     let several = names.iter().filter(|name| taken(name)).count() > 1;
-    // The length of a vector beside its components, as phones write it.
+    // The vector length next to the components, as written by phones.
     let length = |name: &Name, values: &[f64]| {
         several && name.says_length() && values.iter().all(|value| *value >= 0.0)
     };
@@ -311,13 +310,14 @@ fn accelerations(
     }
     if !left.is_empty() {
         let left: Vec<String> = left.iter().map(|(name, _)| name.shown()).collect();
-        let text = format!("left out, as no components of acceleration: {}", left.join(", "));
+        let text = format!("columns that are not accelerations were ignored: {}", left.join(", "));
         record.warn(line + 1, text);
     }
     Ok(kept.into_iter().unzip())
 }
 
-/// Refuses marks of missing values among accelerations; `first` is the line of the first row, where rows are lines.
+/// Refuses placeholders for missing values among accelerations. `first` is the line of the first
+/// row, if each row is a line.
 fn require_no_mark(
     source: &Source<'_>,
     table: &[Vec<f64>],
@@ -327,9 +327,9 @@ fn require_no_mark(
     found.map_or(Ok(()), |(row, column)| {
         Err(source.damaged(
             first.map_or(crate::format::Place::from(()), |first| (first + row).into()),
-            "accelerations alone",
+            "accelerations only",
             format!(
-                "{} as sample {}, by its digits and the gap to all other values the mark of a missing value",
+                "{} as sample {}, which looks like a placeholder for a missing value",
                 column[row],
                 row + 1
             ),
@@ -338,7 +338,7 @@ fn require_no_mark(
     })
 }
 
-/// Returns the step (s) of columns without times.
+/// Returns the step (s) of columns without a time column.
 fn step(
     source: &Source<'_>,
     first: usize,
@@ -361,7 +361,7 @@ fn step(
     stated.or_else(|| hints.time_step()).ok_or_else(|| {
         let remedy = match facts.step_by_duration() {
             Some(step) => format!(
-                "state the time step (s), by the count and the duration of its header about {step:.4} s"
+                "state the time step (s), which is about {step:.4} s by the count and the duration in the header"
             ),
             None => "state the time step (s)".to_owned(),
         };
@@ -375,12 +375,12 @@ fn step(
     })
 }
 
-/// Refuses a stated step that the time column contradicts.
+/// Refuses a stated step that contradicts the time column.
 fn require_step(source: &Source<'_>, facts: &Facts, step: f64) -> Result<(), ReadError> {
     match facts.step {
         Some(stated) if (stated.value / step - 1.0).abs() > 1e-2 => Err(source.damaged(
             stated.line,
-            format!("a step of {step} s, as the time column has it"),
+            format!("a step of {step} s, as in the time column"),
             format!("{} s, as stated here", stated.value),
             "correct the header or the times",
         )),
@@ -388,7 +388,7 @@ fn require_step(source: &Source<'_>, facts: &Facts, step: f64) -> Result<(), Rea
     }
 }
 
-/// Refuses samples whose duration differs from the stated one, with both lengths.
+/// Refuses samples whose duration differs from the stated duration; the error states both.
 fn require_duration(
     source: &Source<'_>,
     facts: &Facts,
@@ -405,10 +405,10 @@ fn require_duration(
     let given = facts.step.is_none() && hints.time_step() == Some(time_step);
     let (refusal, remedy) = if given {
         let step = stated / samples as f64;
-        (Refusal::Options, format!("give the step by which they do, about {step:.4} s"))
+        (Refusal::Options, format!("give the step that leads to this duration, about {step:.4} s"))
     } else {
         let remedy = if length < stated {
-            "the file is cut or its header belongs to another; get it again from its source"
+            "the file is truncated or its header belongs to another file; get it again from its source"
         } else {
             "the step or the duration of the header is wrong; get the file again from its source"
         };
@@ -423,7 +423,7 @@ fn require_duration(
     ))
 }
 
-/// Cuts columns to a stated count, which must match the number of samples.
+/// Cuts columns to the stated count, which must match the number of samples.
 fn counted(
     source: &Source<'_>,
     record: &mut Record,
@@ -443,7 +443,7 @@ fn counted(
         ));
     }
     let used = crate::format::check_count(source, record, line, stated, found)?;
-    // Interpolated columns have another length than the counted rows.
+    // Interpolated columns have a different length than the counted rows.
     if columns[0].len() == found {
         for column in &mut columns {
             column.truncate(used);
@@ -452,7 +452,8 @@ fn counted(
     Ok(columns)
 }
 
-/// Returns the velocities (m/s) at the first samples, as stated in files of this crate; empty for all others.
+/// Returns the velocities (m/s) at the first samples, as stated in files written by this crate;
+/// empty for other files.
 fn initial_velocities(
     source: &Source<'_>,
     first: usize,
@@ -466,7 +467,8 @@ fn initial_velocities(
     Ok(Vec::new())
 }
 
-/// Returns the SI factor of the unit of each column: as stated with its name, in the header, or by the caller.
+/// Returns the SI factor of each column: from the unit next to its name, in the header, or from the
+/// caller.
 fn units(
     source: &Source<'_>,
     first: usize,
@@ -487,8 +489,8 @@ fn units(
         source.not_acceleration(
             names_line,
             "a unit of acceleration",
-            format!("{}, a unit of what the instrument records", quoted(word)),
-            "multiply the values by the sensitivity of the sensor, and write the unit that they then have",
+            format!("{}, the unit of the instrument's output", quoted(word)),
+            "convert the values by the sensitivity of the sensor, and write the resulting unit",
         )
     };
     let missing = |found: String| {
@@ -508,7 +510,7 @@ fn units(
                     names_line,
                     "values and units without a factor",
                     format!("{}, a name with a factor", quoted(&name.label)),
-                    "multiply the values by it if they are not yet, and write the name alone",
+                    "multiply the values by the factor, unless already done, and write the name without it",
                 ));
             }
             if let Some(name) = name
@@ -522,7 +524,7 @@ fn units(
                 return Err(instrument(word));
             }
             let in_header = facts.unit.filter(|_| unknown.is_none());
-            // Units after the names of some columns do not apply to the others.
+            // Units after the names of some columns do not apply to the other columns.
             let some = names.iter().any(|name| name.motion_unit().is_some());
             if let Some(stated) = in_header.filter(|_| !some) {
                 return acceleration(stated.value, stated.line, source.text(stated.line));
@@ -533,7 +535,7 @@ fn units(
                     names_line,
                     "values and units without a factor",
                     format!("{}, a unit with a factor", quoted(word)),
-                    "multiply the values by it, and write the unit alone",
+                    "multiply the values by the factor, and write the unit without it",
                 ));
             }
             if let Some(unit) = hints.unit() {
@@ -543,7 +545,7 @@ fn units(
                 return Err(missing(format!("the unit {}", quoted(&word))));
             }
             let peak = columns.iter().map(|column| math::peak(column)).fold(0.0, f64::max);
-            Err(missing(format!("numbers up to {peak:.4} without one")))
+            Err(missing(format!("numbers up to {peak:.4} without a unit")))
         })
         .collect()
 }

@@ -1,4 +1,4 @@
-//! Names of columns: a header line has them only if they are quantities.
+//! Finds column names: a header line is used only if its words are names of quantities.
 
 use std::cmp::Ordering;
 
@@ -10,39 +10,39 @@ use crate::format::source::{Source, quoted};
 use crate::record::Quantity;
 use crate::units::MotionUnit;
 
-/// Content of a column, according to its name and unit.
+/// Content of a column, derived from its name and unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Holds {
     Time,
     /// Row numbers.
     Index,
     Motion(Quantity),
-    /// A direction alone, such as `EW`.
+    /// A name that is only a direction, such as `EW`.
     Component,
-    /// Period, frequency or a spectral ordinate.
+    /// A period, a frequency or a spectral ordinate.
     Spectrum,
     /// A named quantity other than motion, such as a force.
     Other,
     Unknown,
 }
 
-/// The name of a column.
+/// Name of a column, with its unit.
 #[derive(Clone, Debug)]
 pub(super) struct Name {
-    /// Text without the unit.
+    /// Name without the unit.
     pub(super) label: String,
-    /// Unit as written, if one is.
+    /// Unit as written, if there is one.
     pub(super) unit: Option<String>,
     pub(super) holds: Holds,
 }
 
 impl Name {
-    /// Returns the unit, if it is one of motion.
+    /// Returns the unit if it is a unit of motion.
     pub(super) fn motion_unit(&self) -> Option<MotionUnit> {
         self.unit.as_deref().and_then(MotionUnit::parse)
     }
 
-    /// `true` if the name is that of the length of a vector.
+    /// Returns `true` if the name means the length of a vector.
     pub(super) fn says_length(&self) -> bool {
         let lower = self.label.to_lowercase();
         let mut words = lower.split(|c: char| !c.is_alphanumeric());
@@ -51,7 +51,7 @@ impl Name {
         })
     }
 
-    /// Formats name and unit for messages.
+    /// Formats the name and the unit for messages.
     pub(super) fn shown(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} ({unit})", self.label),
@@ -60,10 +60,11 @@ impl Name {
     }
 }
 
-/// Finds the line of names right above a table of `width` columns; returns its 0-based number and the names.
+/// Finds the line of column names directly above a table of `width` columns. Returns its number
+/// (counted from 0) and the names.
 ///
 /// # Errors
-/// If that line is a row of units of which some are no units.
+/// If the line is a row of units and some of the units are unknown.
 pub(super) fn find(
     source: &Source<'_>,
     first: usize,
@@ -99,12 +100,12 @@ pub(super) fn find(
     Ok(Some((line, by_company(names))))
 }
 
-/// Returns the column of times, if it is not the first.
+/// Returns the index of the time column, if it is not the first column.
 pub(super) fn time_behind(names: &[Name]) -> Option<usize> {
     names.iter().position(|name| name.holds == Holds::Time).filter(|at| *at > 0)
 }
 
-/// `true` if a line is empty or a drawn rule.
+/// Returns `true` if a line is empty or a ruled line.
 fn is_rule(text: &str) -> bool {
     text.chars().all(|c| " -=+|_#*\t,;".contains(c))
 }
@@ -113,7 +114,8 @@ fn plain(text: &str) -> &str {
     text.trim_start_matches(['#', '%', '!', '/', ' ', '|']).trim_end_matches(['|', ' ', ',', ';'])
 }
 
-/// Splits a line by each possible separator; the flag is `true` for separators that do not occur in prose.
+/// Splits a line at each possible separator. The flag is `true` for separators that do not occur in
+/// prose.
 fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
     let tidy = |part: &str| part.trim().trim_matches(['"', '\'']).trim().to_owned();
     let by = |mark: char| text.split(mark).map(tidy).collect::<Vec<_>>();
@@ -133,22 +135,25 @@ fn splits(text: &str) -> Vec<(bool, Vec<String>)> {
 
 const BRACKETS: [char; 7] = ['(', ')', '[', ']', '{', '}', ' '];
 
-/// Parses a row of units alone, below the names.
+/// Parses a row that contains only units, below the names.
 fn units_row(text: &str, width: usize) -> Option<Vec<String>> {
     let bare = |part: &str| part.trim_matches(BRACKETS).to_owned();
     splits(plain(text)).into_iter().find_map(|(_, parts)| {
         let units: Vec<String> = parts.iter().map(|part| bare(part)).collect();
         let each = units.iter().all(|unit| is_any_unit(unit));
         let any = units.iter().any(|unit| is_unit(unit));
-        // A row of names may be "N E" or "S"; no units except "g" and "m" resemble a direction.
+        // A row of names may be "N E" or "S"; except for "g" and "m", no unit looks like a
+        // direction.
         let direction = units.iter().all(|unit| Direction::parse(unit) != Direction::default());
         (units.len() == width && each && any && !direction).then_some(units)
     })
 }
 
-/// Returns the first part of a line that is no unit, where the other parts say that the line is a row of units.
+/// Returns the first part of a line that is not a unit, if the other parts show that the line is a
+/// row of units.
 ///
-/// More than half of them do, and half of them unless the rest are names, as in `time, g`.
+/// More than half of the parts must be units. Exactly half is sufficient unless the others are
+/// names, as in `time, g`.
 fn damaged_unit(text: &str, width: usize) -> Option<String> {
     splits(plain(text)).into_iter().find_map(|(separated, parts)| {
         if parts.len() != width || parts.iter().any(String::is_empty) {
@@ -168,7 +173,7 @@ fn damaged_unit(text: &str, width: usize) -> Option<String> {
     })
 }
 
-/// Units of other quantities in rows of units, in lower case; letters that are directions as well are left out.
+/// Units of other quantities, in lower case; letters that are also directions are omitted.
 const OTHER_UNITS: &[&str] = &[
     "kn",
     "mn",
@@ -201,7 +206,8 @@ const OTHER_UNITS: &[&str] = &[
     "%",
 ];
 
-/// `true` for a unit of motion, time or another quantity, or a mark for none.
+/// Returns `true` for a unit of motion, time or another quantity, and for a placeholder for no
+/// unit.
 fn is_any_unit(text: &str) -> bool {
     is_unit(text)
         || ["-", "#"].contains(&text)
@@ -227,7 +233,7 @@ fn names(text: &str, width: usize) -> Option<Vec<Name>> {
     })
 }
 
-/// Merges units that stand alone (`Time, s, Acceleration, g`) with the name before.
+/// Merges separate units (`Time, s, Acceleration, g`) with the name before them.
 fn merged(parts: Vec<String>) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
     for part in parts {
@@ -243,19 +249,20 @@ fn merged(parts: Vec<String>) -> Vec<String> {
     out
 }
 
-/// `true` if names belong to a table: all of them are quantities; with time first, or a separator that does not occur
-/// in prose, one column may have any name.
+/// Returns `true` if the names belong to a table, which requires that all are quantities. One
+/// column may have any name if time is the first column or the separator does not occur in prose.
 fn says_quantities(names: &[Name], separated: bool) -> bool {
     let says = |name: &Name| name.holds != Holds::Unknown;
     let leads = matches!(names[0].holds, Holds::Time | Holds::Index | Holds::Spectrum);
-    // Time comes first; elsewhere only among quantities alone, as a sentence may mention it.
+    // Time is normally the first column. Elsewhere, all names must be quantities, because a
+    // sentence may mention time.
     let times = names.iter().filter(|name| name.holds == Holds::Time).count();
     let time_after_index = names[0].holds == Holds::Index
         && names.get(1).is_some_and(|name| name.holds == Holds::Time);
     if names.iter().all(says) && (times == 0 || separated && times == 1) {
         return true;
     }
-    // A further column of times, in another unit, stands beside the first.
+    // A second time column, in another unit, may follow the first.
     if names[0].holds == Holds::Time && times > 1 && (separated || names.iter().all(says)) {
         return true;
     }
@@ -268,17 +275,18 @@ fn says_quantities(names: &[Name], separated: bool) -> bool {
     names.len() > 1 && separated && leads
 }
 
-/// Parses a name with its unit: `Acceleration (g)`, `Accel [cm/s2]`, `acc, g`, `acc_g`, `Acceleration in g`.
+/// Parses a name and its unit, such as `Acceleration (g)`, `Accel [cm/s2]`, `acc, g`, `acc_g` or
+/// `Acceleration in g`.
 fn name(text: &str) -> Name {
     let mut label = text.trim();
     let mut unit = None;
-    // "a_g" is the acceleration of the ground, as "v_g" is its velocity.
+    // "a_g" is the acceleration of the ground, and "v_g" its velocity.
     let ground = matches!(label.to_lowercase().as_bytes(), [_, b'_', b'g']);
     if let Some((before, inner)) = label.split_once(['(', '[', '{'])
         && let Some((inner, after)) = inner.rsplit_once([')', ']', '}'])
         && !before.trim().is_empty()
     {
-        // The parentheses of "Acc (EW)" do not hold a unit.
+        // The parentheses in "Acc (EW)" do not contain a unit.
         let inner = inner.trim();
         if Direction::parse(inner) == Direction::default() || is_unit(inner) {
             unit = Some(inner.to_owned());
@@ -306,7 +314,7 @@ fn name(text: &str) -> Name {
 const ROTATIONS: &[&str] = &["rad", "rad/s", "rad/s2", "deg", "deg/s"];
 
 fn holds(label: &str, unit: Option<&str>) -> Holds {
-    // Labels come from Latin-1, one character to a byte.
+    // Labels were decoded as Latin-1, one character per byte.
     let bytes: Option<Vec<u8>> = label.chars().map(|c| u8::try_from(u32::from(c)).ok()).collect();
     let lower = bytes.map_or_else(|| label.to_lowercase(), |bytes| folded(&bytes));
     let plain_unit = unit.map(|unit| unit.to_lowercase().replace([' ', '^', '*'], ""));
@@ -378,14 +386,14 @@ fn holds(label: &str, unit: Option<&str>) -> Holds {
     }
     match (unit_of_motion, unit) {
         (Some(quantity), _) => Holds::Motion(quantity),
-        // A stated unit that is not one of motion belongs to another quantity.
+        // A stated unit that is not a unit of motion belongs to another quantity.
         (None, Some(unit)) if time_factor(unit).is_none() => Holds::Other,
         _ => Holds::Unknown,
     }
 }
 
-/// `v`, `d` and `u` beside an acceleration are velocity and displacement; alone they are a direction or
-/// unknown.
+/// Interprets single letters: `v`, `d` and `u` next to an acceleration are velocity and
+/// displacement; otherwise they are a direction or unknown.
 fn by_company(mut names: Vec<Name>) -> Vec<Name> {
     let acceleration = names.iter().any(|name| name.holds == Holds::Motion(Quantity::Acceleration));
     let horizontal = names.iter().any(|name| {

@@ -1,4 +1,4 @@
-//! Rows of numbers: their range, their width, and comments among them.
+//! Reads rows of numbers, and checks their width and the lines between them.
 
 use super::facts::Facts;
 use super::names::Name;
@@ -7,15 +7,15 @@ use crate::error::{ReadError, Refusal};
 use crate::format::source::{Source, quoted};
 use crate::record::Record;
 
-/// Number of header lines searched.
+/// Largest number of header lines that are searched.
 const MOST_HEADER_LINES: usize = 60;
-/// Larger numbers are errors whatever the unit.
+/// Largest valid number in any unit; larger numbers are errors.
 const LIMIT: f64 = 1e12;
-/// Largest time: times since 1970 are larger than any acceleration, in nanoseconds as well.
+/// Largest time. Times since 1970 exceed any acceleration, and may be in nanoseconds.
 const LARGEST_TIME: f64 = 1e19;
-/// Maximum number of columns taken as components; more are one series in long lines.
+/// Largest number of columns that are taken as components; wider rows are one series in long lines.
 const MOST_COLUMNS: usize = 200;
-/// Minimum number of values in a file of one line.
+/// Smallest number of values in a file with a single line.
 const FEWEST_ON_ONE_LINE: usize = 50;
 
 pub(super) fn is_row(source: &Source<'_>, line: usize) -> bool {
@@ -23,14 +23,15 @@ pub(super) fn is_row(source: &Source<'_>, line: usize) -> bool {
     source.tokens(line, f64::INFINITY, &mut values).is_ok() && !values.is_empty()
 }
 
-/// Returns the first line of numbers only that is followed by another, or by nothing.
+/// Returns the first line of numbers that is followed by another line of numbers or by the end of
+/// the file.
 pub(super) fn first_row(source: &Source<'_>) -> Option<usize> {
     let end = source.lines.len();
     (0..end.min(MOST_HEADER_LINES))
         .find(|&line| is_row(source, line) && (line + 1 == end || is_row(source, line + 1)))
 }
 
-/// Returns the line after the last row.
+/// Returns the line after the last row of numbers.
 pub(super) fn end(source: &Source<'_>, first: usize) -> usize {
     let mut end = source.lines.len();
     while end > first && is_comment(source, end - 1) {
@@ -39,7 +40,7 @@ pub(super) fn end(source: &Source<'_>, first: usize) -> usize {
     end
 }
 
-/// Refuses a file of one row, unless it is a long one.
+/// Refuses a file with a single row, unless the row is long.
 pub(super) fn require_rows(
     source: &Source<'_>,
     first: usize,
@@ -49,17 +50,17 @@ pub(super) fn require_rows(
     if rows > 1 || width >= FEWEST_ON_ONE_LINE {
         return Ok(());
     }
-    // The row above may be one of the table, but for a number that is none.
+    // The row above may belong to the table but contain an invalid number.
     require_no_lost_row(source, first, None, width)?;
     Err(source.damaged(
         first,
         "at least 2 rows of numbers",
         "a single row",
-        "this is no history; give the file that holds all its rows",
+        "this is not a time history; give the file with all rows",
     ))
 }
 
-/// Refuses a line above the table that would be a row of it except for an invalid number.
+/// Refuses a line directly above the table that is a row of the table with an invalid number.
 pub(super) fn require_no_lost_row(
     source: &Source<'_>,
     first: usize,
@@ -86,7 +87,8 @@ fn is_comment(source: &Source<'_>, line: usize) -> bool {
     text.is_empty() || text.starts_with(['#', '%', '!', '/'])
 }
 
-/// Parses a first line `11800 0.005`, or `0.005 11800`, above rows of another shape; returns line, count and step (s).
+/// Parses a first line such as `11800 0.005` or `0.005 11800` above rows of another width. Returns
+/// the line, the count and the step (s).
 pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize, usize, f64)> {
     let (mut row, mut next) = (Vec::new(), Vec::new());
     source.tokens(first, f64::INFINITY, &mut row).ok()?;
@@ -108,8 +110,8 @@ pub(super) fn count_and_step(source: &Source<'_>, first: usize) -> Option<(usize
     (next.len() != 2 || next[0] < count).then_some((first, count as usize, step))
 }
 
-/// Reads all rows as columns, or as one column of very long rows; refuses rows of several values without a common
-/// width, with their line, except for a short last one.
+/// Reads all rows as columns, or very long rows as one series. Rows of several values must have a
+/// common width, except for a shorter last row; the error names the first bad line.
 pub(super) fn table(
     source: &Source<'_>,
     first: usize,
@@ -145,7 +147,8 @@ pub(super) fn table(
     Ok(columns)
 }
 
-/// Reads the numbers of a row up to [`LIMIT`], the first of several up to [`LARGEST_TIME`].
+/// Reads the numbers of a row. The first of several may be a time up to [`LARGEST_TIME`]; all
+/// others are limited to [`LIMIT`].
 fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), ReadError> {
     let result = source.tokens(line, LIMIT, row);
     if result.is_err() {
@@ -158,7 +161,8 @@ fn tokens(source: &Source<'_>, line: usize, row: &mut Vec<f64>) -> Result<(), Re
     Ok(())
 }
 
-/// Returns the error for a row of another width: the first line may be the exception, or a cell may be empty.
+/// Returns the error for a row of another width. The remedy depends on whether the first line
+/// differs or a cell is empty.
 fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: usize) -> ReadError {
     let text = source.text(line);
     let at_end = found < width && text.ends_with([',', ';']);
@@ -167,16 +171,16 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
             line,
             format!("{width} numbers"),
             format!("an empty cell in {}", quoted(&text)),
-            "fill the cell or leave its row out",
+            "fill in the cell or remove the row",
         );
     }
     if line == first + 1 {
         return source.error(
             first,
             Refusal::Unrecognized,
-            "rows of one width, or a count and a step above them",
+            "rows of the same width, or a count and a step above them",
             format!("{width} numbers in the first row and {found} in the next"),
-            "the first row is no part of the table and says what no reader knows; leave it out and state \
+            "the first row does not belong to the table and has an unknown meaning; remove it and state \
              step and unit",
         );
     }
@@ -185,15 +189,16 @@ fn ragged(source: &Source<'_>, first: usize, line: usize, width: usize, found: u
             line,
             format!("{width} numbers"),
             format!("{found} numbers in {}", quoted(&text)),
-            "a number may have a comma for thousands or decimals, or the row is of another table; \
+            "a number may contain a comma for thousands or decimals, or the row belongs to another table; \
              correct it",
         );
     }
     source.ragged(line, width, found)
 }
 
-/// Interprets several values per line without times: as channels if the header names the columns, as one series row
-/// by row if the stated count or the numbers themselves indicate it, with a warning.
+/// Interprets several values per line without times. They are channels if the header names the
+/// columns; they are one series, read row by row with a warning, if the stated count or the numbers
+/// indicate it.
 pub(super) fn without_time(
     source: &Source<'_>,
     first: usize,
@@ -217,8 +222,8 @@ pub(super) fn without_time(
         return Err(source.error(
             first,
             Refusal::Unrecognized,
-            "names above the columns, or one value to a line",
-            format!("{width} columns without names that are no single series row by row"),
+            "names above the columns, or one value per line",
+            format!("{width} columns without names that do not form a single series row by row"),
             "name the columns in a line above them, such as \"EW NS UD\", or give a file of one component",
         ));
     }
@@ -231,7 +236,7 @@ pub(super) fn without_time(
     Ok(vec![series])
 }
 
-/// Removes the count in the first row of a single column, if it is the number of rows below it.
+/// Removes the first value of a single column if it is the number of values below it.
 fn without_count(
     source: &Source<'_>,
     first: usize,
@@ -241,15 +246,14 @@ fn without_count(
     let count = column[0];
     let whole = !source.text(first).contains(['.', 'e', 'E']);
     if whole && count >= 10.0 && count == (column.len() - 1) as f64 {
-        record
-            .warn(first + 1, format!("{count} is the number of values below it and was left out"));
+        record.warn(first + 1, format!("{count} is the number of values below it and was ignored"));
         return column[1..].to_vec();
     }
-    // The count may stand below the values as well.
+    // The count may also stand below the values.
     let (last, above) = column.split_last().unwrap_or((&0.0, &[]));
     let end = source.lines.len() - 1;
     if *last >= 10.0 && *last == above.len() as f64 && !source.text(end).contains('.') {
-        record.warn(end + 1, format!("{last} is the number of values above it and was left out"));
+        record.warn(end + 1, format!("{last} is the number of values above it and was ignored"));
         return above.to_vec();
     }
     column.to_vec()

@@ -1,17 +1,19 @@
-//! Evidence from the numbers themselves: times, decimal commas, one series in rows, integrals, spectra.
+//! Infers the meaning of columns from the numbers: times, decimal commas, series in rows,
+//! integrals, spectra.
 
 use crate::format::source::{Source, latin1};
 use crate::math;
 
-/// Number of rows examined for the format of numbers.
+/// Number of rows examined to find the number format.
 const ROWS: usize = 200;
-/// Minimum share of rising steps for an unnamed first column to be times.
+/// Minimum fraction of increasing steps in an unnamed first column of times.
 const RISING: f64 = 0.95;
 
-/// `true` if an unnamed column holds times or row numbers: it rises nearly throughout, and no step is ten times
-/// the mean.
+/// Returns `true` if an unnamed column contains times or row numbers: it increases almost
+/// everywhere, and no step is ten times the mean step.
 ///
-/// Times that repeat or decrease still count as times, to be refused as such.
+/// Times that repeat or decrease in places are included; they are refused later with a specific
+/// error.
 pub(super) fn is_time(column: &[f64]) -> bool {
     if column.len() < 3 {
         return false;
@@ -22,16 +24,17 @@ pub(super) fn is_time(column: &[f64]) -> bool {
     mean > 0.0 && even && rises(column)
 }
 
-/// `true` if a column rises nearly throughout.
+/// Returns `true` if a column increases almost everywhere.
 pub(super) fn rises(column: &[f64]) -> bool {
     let rising = column.windows(2).filter(|pair| pair[1] > pair[0]).count();
     rising as f64 >= RISING * (column.len() - 1) as f64
 }
 
-/// Fewest rows of a column that is taken to rise evenly by its values alone.
+/// Minimum number of rows from which a column may be judged evenly increasing by its values alone.
 const EVEN_ROWS: usize = 20;
 
-/// `true` if no value of a column is further than one step from a straight line, as rounded times are.
+/// Returns `true` if every value of a column lies within one step of a straight line, like rounded
+/// times.
 pub(super) fn is_even(column: &[f64]) -> bool {
     let [from, .., to] = *column else { return false };
     let mean = (to - from) / (column.len() - 1) as f64;
@@ -40,7 +43,8 @@ pub(super) fn is_even(column: &[f64]) -> bool {
     column.len() >= EVEN_ROWS && column.iter().enumerate().map(off).all(|off| off < mean.abs())
 }
 
-/// `true` if a further column of times rises as the first does, by a ratio that may be stated, within one step.
+/// Returns `true` if a second time column increases in proportion to the first, within one step.
+/// The ratio may be given.
 pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bool {
     let last = first.len() - 1;
     let ratio = ratio.unwrap_or((other[last] - other[0]) / (first[last] - first[0]));
@@ -49,13 +53,14 @@ pub(super) fn rise_alike(first: &[f64], other: &[f64], ratio: Option<f64>) -> bo
     step > 0.0 && (0..first.len()).all(|row| off(row) < step)
 }
 
-/// `true` if a column counts its rows from 0 or 1.
+/// Returns `true` if a column numbers its rows from 0 or 1.
 pub(super) fn is_index(column: &[f64]) -> bool {
     matches!(column.first(), Some(0.0 | 1.0))
         && column.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
 }
 
-/// Returns the first row that repeats the time of the row before although the printed digits could distinguish them.
+/// Returns the first row that repeats the previous time although the printed digits are fine enough
+/// to distinguish them.
 pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     let steps = column.len().saturating_sub(1);
     let mean = (column.last()? - column.first()?) / steps.max(1) as f64;
@@ -65,7 +70,7 @@ pub(super) fn repeated_time(column: &[f64], resolution: f64) -> Option<usize> {
     (1..column.len()).find(|&row| column[row] == column[row - 1])
 }
 
-/// Returns the coarsest resolution of the times printed in a column: one unit of the last digit.
+/// Returns the coarsest resolution of the printed times in a column: one unit of the last digit.
 pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize, column: usize) -> f64 {
     let resolution = |line: usize| {
         let text = latin1(source.raw(line));
@@ -76,19 +81,19 @@ pub(super) fn time_resolution(source: &Source<'_>, first: usize, end: usize, col
     (first..end.min(first + ROWS)).map(resolution).reduce(f64::min).unwrap_or(1e-6)
 }
 
-/// Use of commas in a table.
+/// Meaning of commas in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Commas {
-    /// Between numbers, or not at all.
+    /// Separators between numbers, or absent.
     Separate,
-    /// As decimal signs.
+    /// Decimal commas.
     Decimal,
-    /// As both, so that no number is certain.
+    /// Both separators and decimal commas, so that the numbers are ambiguous.
     Both,
 }
 
-/// Determines the use of commas in a table: as decimal signs if no number has a point and another separator separates
-/// the numbers, or if digits after commas begin with zeros.
+/// Determines the meaning of commas in a table. They are decimal commas if no number has a point
+/// and another separator stands between the numbers, or if digits after commas begin with zeros.
 pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     let (mut any, mut zeros, mut one_each, mut other) = (false, false, true, true);
     for line in first..end.min(first + ROWS) {
@@ -113,8 +118,8 @@ pub(super) fn commas(source: &Source<'_>, first: usize, end: usize) -> Commas {
     }
 }
 
-/// `true` if rows of several numbers are one series written row by row: neighbors in a row, and across the ends of
-/// rows, differ less than neighbors in a column.
+/// Returns `true` if rows of several numbers are one series written row by row. In this case,
+/// neighbors within a row, and across the ends of rows, differ less than neighbors in a column.
 pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
     let (width, rows) = (table.len(), table[0].len());
     let (mut along, mut down) = (0.0, 0.0);
@@ -129,7 +134,7 @@ pub(super) fn is_one_series(table: &[Vec<f64>]) -> bool {
     along <= down
 }
 
-/// Returns the first pair of columns of which the second is the integral of the first, as of an acceleration.
+/// Returns the first pair of columns where the second is the integral of the first.
 pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     let pairs = (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| [a, b]));
     pairs.into_iter().filter(|[a, b]| a != b).find(|[a, b]| {
@@ -149,7 +154,8 @@ pub(super) fn integral(columns: &[&[f64]]) -> Option<[usize; 2]> {
     })
 }
 
-/// Returns which columns are the length of the vector of all the others or of three of them, within 1 %.
+/// Returns, for each column, whether it is the vector length of all other columns or of three of
+/// them, within 1 %.
 pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     let is_length = |at: usize| {
         let of = &columns[at];
@@ -170,8 +176,9 @@ pub(super) fn lengths(columns: &[Vec<f64>]) -> Vec<bool> {
     (0..columns.len()).map(is_length).collect()
 }
 
-/// `true` if no value is negative and the first one is not small, as in spectra; most values of an accelerometer that
-/// rests under gravity are their mean, also at both ends.
+/// Returns `true` if no value is negative and the first value is not small, as in a spectrum. An
+/// accelerometer at rest under gravity is excluded: most of its values, also at both ends, are
+/// close to their mean.
 pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     let rests = |column: &[f64]| {
         let mean = math::mean(column);
@@ -189,8 +196,8 @@ pub(super) fn is_one_sided(columns: &[Vec<f64>]) -> bool {
     columns.iter().all(one_sided) && !columns.iter().any(|column| rests(column))
 }
 
-/// Returns a row that holds a mark of a missing value, such as -999: nines alone, larger than all other values, which
-/// leave a gap below it.
+/// Returns the row of a placeholder for a missing value, such as -999: a number of nines only,
+/// larger in magnitude than all other values and separated from them by a gap.
 pub(super) fn mark(column: &[f64]) -> Option<usize> {
     let peak = math::peak(column);
     if !crate::format::is_nines(peak) {

@@ -1,4 +1,4 @@
-//! Columns of times: their unit, and the one that is used of several.
+//! Time columns: determines their unit and selects one of several.
 
 use super::names::{Holds, Name};
 use super::{facts, shape};
@@ -6,14 +6,16 @@ use crate::error::ReadError;
 use crate::format::source::{Source, quoted};
 use crate::record::{Quantity, Record};
 
-/// Largest time step (s) of a time column whose unit is not stated.
+/// Largest time step (s) of a time column with an unstated unit.
 pub(super) const LARGEST_BARE_STEP: f64 = 0.5;
-/// Smallest step (s) of a time column whose unit is not stated; times in minutes, hours and days have smaller numbers.
+/// Smallest time step (s) of a time column with an unstated unit. Times in minutes, hours or days
+/// have smaller steps.
 const SMALLEST_BARE_STEP: f64 = 4e-4;
-/// Smallest step (s) of a time column in seconds: no recorder has it, days of spreadsheets do.
+/// Smallest step (s) of a time column in seconds. No recorder is faster, but spreadsheet times in
+/// days have smaller steps.
 const SMALLEST_STEP: f64 = 1e-5;
 
-/// Returns the unit of the first column in seconds, if it has times.
+/// Returns the time unit (s) of the first column, if it contains times.
 pub(super) fn unit_of(
     source: &Source<'_>,
     first: usize,
@@ -34,13 +36,14 @@ pub(super) fn unit_of(
                         first,
                         "a time column in s, ms, us, ns or min",
                         quoted(unit),
-                        "write the times in one of these units, and its name in the header",
+                        "write the times in one of these units, and name the unit in the header",
                     )
                 })
             });
             (true, factor.transpose()?.or(in_label))
         }
-        // Times under a name of motion or none, such as what is left of a damaged header; no ground accelerates evenly.
+        // Evenly increasing values under the name of a motion, or without a name, are times, as in
+        // a damaged header; no ground acceleration increases evenly.
         Some([Name { holds, label, .. }, ..])
             if rises
                 && shape::is_even(&table[0])
@@ -51,16 +54,16 @@ pub(super) fn unit_of(
         {
             return Err(source.damaged(
                 first,
-                "times under a name of time, or accelerations",
+                "a column of times named as such, or accelerations",
                 format!(
                     "a first column called {} whose values rise by {} from row to row",
                     quoted(label),
                     table[0][1] - table[0][0]
                 ),
-                "name the columns in a line above them, such as \"time (s), acceleration (g)\", or leave the first out",
+                "name the columns in a line above them, such as \"time (s), acceleration (g)\", or remove the first column",
             ));
         }
-        // A rising column under another name does not hold times.
+        // An increasing column with another name does not contain times.
         Some(_) => return Ok(None),
         None => (false, None),
     };
@@ -74,7 +77,7 @@ pub(super) fn unit_of(
         None => (SMALLEST_BARE_STEP, LARGEST_BARE_STEP),
     };
     let seconds = step * unit.unwrap_or(1.0);
-    // Times that do not rise are refused as such.
+    // Times that do not increase are refused later.
     if seconds > largest || seconds > 0.0 && seconds < smallest {
         let (found, remedy) = if unit.is_some() {
             (
@@ -90,7 +93,7 @@ pub(super) fn unit_of(
         };
         return Err(source.damaged(
             first,
-            "a time column whose unit is stated where its steps are no strong motion's in seconds",
+            "a time column with steps of a strong-motion record, in seconds or in a stated unit",
             found,
             remedy,
         ));
@@ -98,10 +101,11 @@ pub(super) fn unit_of(
     Ok(Some(unit.unwrap_or(1.0)))
 }
 
-/// Leaves one column of times, the first with a unit, and returns the number of columns removed before it.
+/// Keeps one time column, the first with a unit, and returns the number of columns removed before
+/// it.
 ///
 /// # Errors
-/// If the columns of times do not rise alike.
+/// If the time columns do not increase alike.
 pub(super) fn one(
     source: &Source<'_>,
     record: &mut Record,
@@ -122,14 +126,14 @@ pub(super) fn one(
             return Err(source.damaged(
                 line,
                 "one column of times, or several that agree",
-                format!("{} and {}, which do not", names[kept].shown(), names[*at].shown()),
-                "leave out the one that does not belong to the accelerations",
+                format!("{} and {}, which disagree", names[kept].shown(), names[*at].shown()),
+                "remove the column that does not belong to the accelerations",
             ));
         }
         record.warn(
             line + 1,
             format!(
-                "{} states the same times as {} and was left out",
+                "{} contains the same times as {} and was ignored",
                 names[*at].shown(),
                 names[kept].shown()
             ),

@@ -1,4 +1,4 @@
-//! Words of headers, in the languages of the agencies: lower case, without accents.
+//! Header keywords in the languages of the agencies, in lower case and without accents.
 
 /// Names of the time between samples.
 pub(super) const STEP_KEYS: &[&str] = &[
@@ -54,7 +54,7 @@ pub(super) const STEP_KEYS: &[&str] = &[
     "サンプリング間隔",
 ];
 
-/// Names of the number of samples in a second.
+/// Names of the sampling rate.
 pub(super) const RATE_KEYS: &[&str] = &[
     "sampling rate",
     "sample rate",
@@ -100,7 +100,7 @@ pub(super) const RATE_KEYS: &[&str] = &[
     "サンプリング周波数",
 ];
 
-/// Words of a sampling interval or rate, of which the unit or the size of the number says which.
+/// Names of a sampling interval or rate; the unit or the size of the number decides which.
 pub(super) const SAMPLING_KEYS: &[&str] = &[
     "sampling",
     "sampled at",
@@ -118,11 +118,11 @@ pub(super) const SAMPLING_KEYS: &[&str] = &[
     "increment",
 ];
 
-/// Words of [`SAMPLING_KEYS`] that need no unit beside the number.
+/// Keywords of [`SAMPLING_KEYS`] that may have a number without a unit.
 pub(super) const BARE: &[&str] =
     &["sampling", "muestreo", "campionamento", "amostragem", "abtastung", "delta"];
 
-/// Words beside a number with a unit of time that make it the step.
+/// Words next to a number with a unit of time that identify the number as the step.
 pub(super) const BESIDE_STEPS: &[&str] = &["interval", "step", "increment", "spac", "sampl"];
 
 /// Names of the number of samples.
@@ -166,7 +166,7 @@ pub(super) const COUNT_KEYS: &[&str] = &[
     "データ数",
 ];
 
-/// Names of the length of a record.
+/// Names of the duration of a record.
 pub(super) const DURATION_KEYS: &[&str] =
     &["duration", "record length", "length of record", "total time", "length"];
 
@@ -184,11 +184,11 @@ pub(super) const PEAK_KEYS: &[&str] = &[
     "max acceleration",
 ];
 
-/// Names of the component.
+/// Names of a component.
 pub(super) const COMPONENT_KEYS: &[&str] =
     &["component", "comp.", "comp", "orientation", "direction", "azimuth", "channel"];
 
-/// Words before a key that change its meaning.
+/// Words that change the meaning of the key after them.
 pub(super) const OTHER_MEANING: &[&str] = &[
     "original",
     "orig",
@@ -204,7 +204,7 @@ pub(super) const OTHER_MEANING: &[&str] = &[
     "instrument",
 ];
 
-/// Words behind the number of samples in a second.
+/// Words after the number of samples per second.
 pub(super) const RATE_MARKS: &[&str] = &[
     "sps",
     "samples/sec",
@@ -218,13 +218,13 @@ pub(super) const RATE_MARKS: &[&str] = &[
     "amostras por segundo",
 ];
 
-/// First letters of words for an acceleration, a velocity and a displacement.
+/// First letters of words for acceleration, velocity and displacement.
 pub(super) const ACCELERATIONS: &[&str] = &["acc", "acel", "beschl", "ivme"];
 pub(super) const VELOCITIES: &[&str] = &["veloc", "vitess", "geschw"];
 pub(super) const DISPLACEMENTS: &[&str] =
     &["displ", "desplaz", "deplac", "spostam", "verschieb", "deslocam", "yerdeg"];
 
-/// `true` for units of a digitizer, whatever the unit given for the values.
+/// Returns `true` if a unit is that of a digitizer's output, which needs a sensitivity.
 pub(super) fn is_of_instrument(unit: &str) -> bool {
     const UNITS: &[&str] = &[
         "v", "mv", "uv", "volt", "volts", "lsb", "lsbs", "count", "counts", "cts", "adc", "digit",
@@ -237,7 +237,7 @@ pub(super) fn is_of_instrument(unit: &str) -> bool {
 pub(super) const UNIT_WORDS: &[&str] =
     &["unit", "unidad", "einheit", "satuan", "birim", "jednostk", "единиц", "单位"];
 
-/// Parts of words in lines about another frequency than that of the samples.
+/// Parts of words that indicate a frequency other than the sampling rate.
 pub(super) const OTHER_FREQUENCIES: &[&str] = &[
     "filt",
     "cut",
