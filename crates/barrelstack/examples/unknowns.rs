@@ -27,7 +27,9 @@ fn run(changes: Vec<String>) -> Result<Vec<Variants>, Box<dyn std::error::Error>
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truths: u32 = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(40);
-    println!("| stack | plane | stated range | true shares: least, quarters, greatest | in the range |");
+    println!(
+        "| stack | plane | stated range | true shares: least, quarters, greatest | in the range |"
+    );
     println!("|---|---|---|---|---|");
     for (name, changes) in STACKS {
         let own = |more: Vec<String>| {
@@ -54,7 +56,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         .any(|end| one.path.ends_with(&format!(".{end}")))
                 })
                 .map(|one| format!("{}={}", one.path, one.value));
-            let hair = ["imperfections.kind=hair".to_owned(), format!("imperfections.seed={truth}")];
+            let hair =
+                ["imperfections.kind=hair".to_owned(), format!("imperfections.seed={truth}")];
             let found = run(own(drawn.chain(hair).collect()))?;
             for (shares, one) in shares.iter_mut().zip(&found) {
                 shares.extend(one.spread.share);

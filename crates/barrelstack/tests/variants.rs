@@ -124,6 +124,48 @@ fn the_share_counts_what_became_of_the_variants_and_of_nothing_else() {
 }
 
 #[test]
+fn the_range_over_unmeasured_constants_comes_from_the_draws_of_the_variants() {
+    let scenario = |more: &[&str]| {
+        two_levels(&[&["motion.scale.factor=0.7", "imperfections.variants=32"], more].concat())
+    };
+    let spread = |more: &[&str]| found(&planes(&scenario(more)).unwrap()).remove(0).spread;
+    let whole = spread(&[]);
+    let [low, high] = whole.range.unwrap();
+    let stated = whole.share_as_stated.unwrap();
+    assert!(low < stated && stated < high && low < whole.share.unwrap(), "{whole:?}");
+    let names: Vec<&str> = whole.decides.iter().map(|one| one.field).collect();
+    // The paper's constants have a coefficient of damping and no posts.
+    for field in ["stiffness", "damping", "friction.coefficient"] {
+        assert!(names.contains(&format!("interface.barrel-rack.{field}").as_str()), "{names:?}");
+    }
+    assert_eq!(names.len(), 4);
+    assert!(whole.decides.is_sorted_by(|a, b| a.total >= b.total));
+    for one in &whole.decides {
+        let [first, last] = one.ends().unwrap();
+        let median = one.shares[4].value;
+        // The 5 % and the 95 % fractile of a lognormal distribution.
+        let reach = (1.644_854 * one.dispersion).exp();
+        assert!((last.value / median / reach - 1.0).abs() < 1e-6, "{one:?}");
+        assert!((median / first.value / reach - 1.0).abs() < 1e-6, "{one:?}");
+        assert!(one.width_if_measured <= high - low + 0.05, "{one:?}");
+    }
+    // A measured friction is drawn from its own scatter.
+    let measured = spread(&["imperfections.friction_barrel_rack=0.05"]);
+    let friction = |spread: &Spread| {
+        let all = spread.decides.iter();
+        all.clone()
+            .find(|one| one.field.starts_with("interface.barrel-rack.friction"))
+            .unwrap()
+            .clone()
+    };
+    assert_eq!(friction(&measured).dispersion, 0.05);
+    assert_ne!(friction(&whole).dispersion, 0.05);
+    // Places and masses alone have no range, nor have few variants.
+    assert_eq!(spread(&["imperfections.kind=hair"]).range, None);
+    assert_eq!(found(&planes(&two_levels(&[])).unwrap()).remove(0).spread.range, None);
+}
+
+#[test]
 fn variants_that_cannot_be_built_are_counted_and_widen_the_interval() {
     // A barrel 20 mm off its place stands in its cradle; the stated one is less far off.
     let mut stated = two_levels(&["imperfections.placement=5 mm"]);

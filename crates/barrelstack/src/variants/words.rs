@@ -388,7 +388,8 @@ pub fn percent(share: f64) -> String {
 mod tests {
     use std::collections::BTreeMap;
 
-    use super::{Range, Spread, Tone, View, headline, headline_in_space, percent, tone};
+    use super::{Range, Spread, Tone, View, headline, headline_in_space, measure, percent, tone};
+    use crate::variants::{ShareAt, Unknown};
 
     fn range(p05: f64, p95: f64, least: f64, most: f64) -> Range {
         Range { p05, p50: 0.5 * (p05 + p95), p95, least, most }
@@ -584,5 +585,45 @@ mod tests {
             both.ends_with(&format!("(at most 6 %). Along the barrels, in {crushed}")),
             "{both}"
         );
+    }
+
+    #[test]
+    fn the_range_over_unmeasured_constants_follows_the_verdict_of_the_worst_plane() {
+        let at = |value: f64, share: f64| ShareAt { value, share, interval: [share, share] };
+        let unknown = |difference| Unknown {
+            name: "stiffness of seats",
+            field: "interface.barrel-rack.stiffness",
+            unit: "N/m",
+            dispersion: 0.6,
+            shares: vec![at(1.118e6, 0.96), at(8.049e6, 0.59)],
+            difference,
+            total: 0.8,
+            width_if_measured: 0.55,
+        };
+        let mut one = spread(64, 53);
+        one.range = Some([0.17, 1.0]);
+        one.decides = vec![unknown([-0.6, -0.1])];
+        let said = headline(&[(View::Transverse, &spread(64, 3)), (View::Longitudinal, &one)]);
+        let range =
+            "Depending on constants that nobody has measured, 17 to 100 % fall along the barrels; ";
+        let decides = "the stiffness of seats decides: 96 % at 1.1 MN/m, 59 % at 8.0 MN/m.";
+        assert!(said.contains(&format!("(1–13 %). {range}{decides}")), "{said}");
+        let measured = measure(&one).unwrap();
+        let left = "On average that leaves a range of 55 percentage points, instead of 83.";
+        assert!(
+            measured.contains("`barrelstack calibrate stiffness`. ") && measured.ends_with(left)
+        );
+        // An effect that may be none decides nothing, nor does a small one that is certain.
+        one.decides = vec![unknown([-0.6, 0.1])];
+        let said = headline(&[(View::Longitudinal, &one)]);
+        assert!(said.contains(&format!("{range}none of them decides alone.")), "{said}");
+        one.range = Some([0.94, 1.0]);
+        let said = headline_in_space(&one);
+        let little =
+            "Constants that nobody has measured matter little: over their ranges 94 to 100 % fall.";
+        assert!(said.contains(little), "{said}");
+        // What narrows nothing is not recommended.
+        one.range = Some([0.4, 1.0]);
+        assert_eq!(measure(&one), None);
     }
 }
