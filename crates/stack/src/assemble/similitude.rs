@@ -41,14 +41,17 @@ impl Similitude {
         self.mass()
     }
 
-    /// Returns the factor of a stiffness `force / lengthⁿ`, with n = `exponent`; of a stiffness per length of boundary if
-    /// `per_length` is `true`.
+    /// Returns the factor of stiffnesses `force / lengthⁿ`, with n = `exponent`.
+    ///
+    /// With `per_length`, the factor of stiffnesses per length of boundary.
     pub fn stiffness(self, exponent: f64, per_length: bool) -> f64 {
         let divided = math::pow(self.length, exponent);
         self.force() / divided / if per_length { self.length } else { 1.0 }
     }
 
-    /// Returns the factor of a damping `force / velocity`; of a damping per length of boundary if `per_length` is `true`.
+    /// Returns the factor of damping constants `force / velocity`.
+    ///
+    /// With `per_length`, the factor of damping constants per length of boundary.
     pub fn damping(self, per_length: bool) -> f64 {
         self.force() / self.time() / if per_length { self.length } else { 1.0 }
     }

@@ -158,7 +158,7 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
 /// Length (m) of boundary that a contact without nodes represents, at full scale.
 pub(super) const TRIBUTARY: f64 = 0.01;
 
-/// Returns the node set that tests the boundary of a part exactly; `length` is the length scale of its tributary length.
+/// Returns the node set that tests the boundary of a part exactly, with its tributary length scaled by `length`.
 pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     let Placed { surface, offset, rotation } = placed;
     let tributary_length = TRIBUTARY * length;
