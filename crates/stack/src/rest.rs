@@ -2,17 +2,19 @@
 
 use barrelstack_dynamics::{Lack, SettleError};
 
-/// A stack that does not stand by itself, and the remedy.
+/// Error of a stack that does not stand by itself, with a remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}; {}", remedy(&error.lack))]
 pub struct Restless {
-    /// The body that fails, and the reason.
+    /// The body that does not come to rest, and the reason.
     pub error: SettleError,
 }
 
 impl Restless {
-    /// Returns `true` if the stack falls under its own weight. Where forces merely do not balance in time, or a
-    /// regularized friction law lets it creep, this is unknown.
+    /// Returns `true` if the stack falls under its own weight.
+    ///
+    /// Returns `false` if this is unknown, because forces do not balance in time or a regularized friction law lets the
+    /// stack creep.
     pub fn falls(&self) -> bool {
         match self.error.lack {
             Lack::Support
@@ -25,7 +27,7 @@ impl Restless {
     }
 }
 
-/// Returns the next move for the user.
+/// Returns the advice for the user.
 fn remedy(lack: &Lack) -> String {
     match lack {
         Lack::Support => {

@@ -282,14 +282,14 @@ impl<R: Real> Fates<R> {
 
     /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
     /// Records an accepted state.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
@@ -345,7 +345,7 @@ impl<R: Real> Fates<R> {
 
     /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
@@ -388,7 +388,7 @@ impl<R: Real> Fates<R> {
     /// a rack in the frame of the rack whose posts carry it, a rack relative to the mean of the barrels below, other
     /// bodies relative to the ground.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
@@ -419,14 +419,14 @@ impl<R: Real> Fates<R> {
 
 /// Raises a peak to a larger value.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
 /// Returns a value in masked lanes, and zero in others.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }

@@ -193,7 +193,7 @@ impl<R: Real> Joint<R> {
     /// Raises the peaks to the current force, at a time (s); those until the first loss of seat in `standing` lanes
     /// only.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
         let Self { until_loss, whole_run, .. } = self;
@@ -204,7 +204,7 @@ impl<R: Real> Joint<R> {
 
 /// Raises two peaks to a force (N) at a time (s), the first in standing lanes only.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(
     until_loss: &mut (R, R),
     whole_run: &mut (R, R),
@@ -223,7 +223,7 @@ fn raise<R: Real>(
 impl<R: Real> Joints<R> {
     /// Returns the index of the joint of two bodies, and `true` if the first of them is the upper one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
@@ -235,7 +235,7 @@ impl<R: Real> Joints<R> {
     /// Returns the index of the joint of two bodies that meet, and `true` if the first of them is the upper one;
     /// `None` if such joints are not followed.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let known = self.number(one, other);
         if known.is_some() || !self.follows_all {
@@ -259,7 +259,7 @@ impl<R: Real> Joints<R> {
     /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
     /// before it.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();

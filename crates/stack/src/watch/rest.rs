@@ -163,7 +163,7 @@ pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
 impl<R: Real> Rest<R> {
     /// Records an accepted state, and the lanes that have collapsed; returns the lanes at rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
@@ -187,7 +187,7 @@ impl<R: Real> Rest<R> {
 
     /// Returns the lanes in which a body is a barrel on the floor that reaches nothing any more.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {
         let ground = state.poses[Assembly::GROUND].position;
         let own = &self.bodies[at];

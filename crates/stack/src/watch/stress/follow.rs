@@ -70,7 +70,7 @@ struct Pair<R: Real> {
 impl<R: Real> Pair<R> {
     /// Transforms a contact point (m) from the frame of the target's surface to that of the body of a side.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn in_body(
         &self,
         side: Side,
@@ -98,7 +98,7 @@ impl Bounds {
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
@@ -347,7 +347,7 @@ impl<R: Real> StressWatch<R> {
     /// Records the contacts of an accepted state; `standing` are the lanes in which no seat had been lost before it,
     /// and `model` returns the model of a lane.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn observe<'a>(
         &mut self,
         standing: R::Mask,
