@@ -8,7 +8,8 @@ use barrelstack_input::{Dimension, InputError, section};
 use crate::solid::{SOLID, Solid};
 
 section! {
-    /// Viscous drag on a body, proportional to its absolute velocity rather than to that relative to the shaking ground.
+    /// Viscous drag on a body, proportional to its absolute velocity rather than to that relative to the shaking
+    /// ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body in space, the same in all directions.
@@ -39,7 +40,8 @@ section! {
     /// Density of the solid, as an alternative to the mass.
     density: Option<f64> =
         Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass over the volume");
-    /// Moments of inertia about the axes through the center of mass along local x, y and z, which are taken as principal axes.
+    /// Moments of inertia about the axes through the center of mass along local x, y and z, which are taken as
+    /// principal axes.
     inertia: Option<[f64; 3]> =
         Kind::Triple(Dimension::INERTIA), Default::Derived("those of a homogeneous solid");
     /// Center of mass, relative to the reference point of the solid.
@@ -90,7 +92,8 @@ impl SpatialBody {
         }
         if !free && (body.velocity != [0.0; 3] || body.spin != [0.0; 3]) {
             let field = if body.velocity == [0.0; 3] { "spin" } else { "velocity" };
-            let message = format!("a body fixed to the ground moves only with it; leave `{field}` out");
+            let message =
+                format!("a body fixed to the ground moves only with it; leave `{field}` out");
             return wrong(field, message);
         }
         // The inertia of a homogeneous solid is known only about the center of mass of that solid.

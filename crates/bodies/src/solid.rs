@@ -28,7 +28,8 @@ choices! {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
     }
-    /// A block with rounded edges; the reference point is the middle. Mass and inertia are those of a block with sharp edges.
+    /// A block with rounded edges; the reference point is the middle. Mass and inertia are those of a block with sharp
+    /// edges.
     Block = "block" {
         /// Side lengths along local x, y and z.
         sides: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;

@@ -95,14 +95,15 @@ demands! {
         let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
-    /// Largest normal stress on a barrel of the bottom level, divided by the largest at rest, wherever on it each occurs.
+    /// Largest normal stress on a barrel of the bottom level, divided by the largest at rest, wherever on it each
+    /// occurs.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.amplification(),
             Span::WholeRun => sources.stress(body)?.amplification_whole_run(),
         };
-    /// Largest normal stresses on a barrel of the bottom level, averaged over the part of its boundary that is loaded at
-    /// rest, divided by the average at rest.
+    /// Largest normal stresses on a barrel of the bottom level, averaged over the part of its boundary that is loaded
+    /// at rest, divided by the average at rest.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.mean_amplification(),

@@ -101,8 +101,8 @@ impl Scenario {
         Ok(self.with_record_file(&held(record)?))
     }
 
-    /// Returns the scenario with a file in memory ([`held`]) in place of its own motion, so that many scenarios can share
-    /// one file.
+    /// Returns the scenario with a file in memory ([`held`]) in place of its own motion, so that many scenarios can
+    /// share one file.
     #[must_use]
     pub fn with_record_file(&self, file: &FileRef) -> Self {
         let mut scenario = self.clone();

@@ -11,8 +11,8 @@ pub enum CollapseMode {
     Ejection,
     /// Two or more upper levels rock and fall together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; of the planes, only that along the barrels
-    /// can show it.
+    /// A rack walks along the barrels below until its rail passes their ends; of the planes, only that along the
+    /// barrels can show it.
     RackSliding,
     /// The whole stack overturns about its foot.
     Overturning,

@@ -34,7 +34,8 @@ section! {
     /// Chocks beside the barrels.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Chocks;
-    /// Chocks on the racks at both sides of every barrel, higher than the cradle; they have no effect along the barrels.
+    /// Chocks on the racks at both sides of every barrel, higher than the cradle; they have no effect along the
+    /// barrels.
     pub static SECTION = "chock";
     /// Number of levels with chocks, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
@@ -65,7 +66,7 @@ impl Chocks {
     }
 
     /// Does nothing, because chocks are solids of the racks.
-    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "all devices share this signature")]
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "the same for all devices")]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())
     }

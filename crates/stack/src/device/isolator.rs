@@ -137,7 +137,8 @@ impl Isolators {
         self.path != Path::None
     }
 
-    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction that a contact represents.
+    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction that a contact
+    /// represents.
     pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
@@ -155,8 +156,8 @@ impl Isolators {
         }
     }
 
-    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of them that the
-    /// element represents.
+    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of them that
+    /// the element represents.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,

@@ -83,7 +83,8 @@ section! {
     levels: u32 = LEVELS, Default::Value("0");
     /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
-    /// Stiffness of one strap, force per elongation; a polyester strap reaches its strength at some 5 to 7 % of its length.
+    /// Stiffness of one strap, force per elongation; a polyester strap reaches its strength at some 5 to 7 % of its
+    /// length.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
     /// Damping of one strap, force per rate of elongation, while it is taut.

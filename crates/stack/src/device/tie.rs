@@ -69,7 +69,8 @@ section! {
     /// Ties of racks.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct AnchorTies;
-    /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never push.
+    /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never
+    /// push.
     pub static SECTION = "tie";
     /// Number of levels that are tied, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");

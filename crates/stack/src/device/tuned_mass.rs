@@ -83,7 +83,8 @@ section! {
     /// Natural period of the mass; the optimum for an undamped structure with period T is (1 + μ) T for a mass ratio μ (Den Hartog 1956).
     period: f64 =
         Kind::Quantity(&[Dimension::TIME], Range::between(0.05, 20.0)), Default::Value("\"1 s\"");
-    /// Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog 1956).
+    /// Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog
+    /// 1956).
     damping_ratio: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.13");
     /// Stroke of the mass to either side before it meets a stop: an assumption.
     stroke: f64 =
@@ -164,7 +165,7 @@ impl TunedMass {
     }
 
     /// Installs a mass on every rack of its level, at the center of mass of the rack.
-    #[expect(clippy::unnecessary_wraps, reason = "all devices share this signature")]
+    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let level = self.level_of(spec.levels);

@@ -41,7 +41,8 @@ impl Fill {
         }
     }
 
-    /// Returns the mass (kg) of the wine in a barrel with a capacity (m³); `filled` is the fraction for a partly filled one.
+    /// Returns the mass (kg) of the wine in a barrel with a capacity (m³); `filled` is the fraction for a partly filled
+    /// one.
     fn mass(self, capacity: f64, filled: f64) -> f64 {
         catalog::WINE_DENSITY * capacity * self.share(filled)
     }
@@ -91,8 +92,8 @@ known! {
 }
 
 impl Barrel {
-    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; it is constant beyond the
-    /// heads.
+    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; it is constant beyond
+    /// the heads.
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
@@ -197,8 +198,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half the distance (m) between the heads at which the interior has the nominal volume, or half the largest
-    /// possible distance if the interior is smaller.
+    /// Returns half the distance (m) between the heads at which the interior has the nominal volume, or half the
+    /// largest possible distance if the interior is smaller.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);

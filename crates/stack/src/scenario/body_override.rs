@@ -33,8 +33,8 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring; racks count columns of racks, barrels columns of barrels. In both planes or
-    /// in space, columns count across the barrels.
+    /// Column, 1 at the left before mirroring; racks count columns of racks, barrels columns of barrels. In both planes
+    /// or in space, columns count across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
     /// Row along the barrels in space, 1 nearest; racks count rows of racks, barrels rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");

@@ -115,7 +115,8 @@ pub(super) fn read(
         check_law(&reader, element.kind)?;
         let stops = matches!(element.kind, ElementLaw::Guide { gap: Some(_), .. });
         if *stiffness == 0.0 && !stops {
-            let message = "an element without stiffness carries no force; state its stiffness".to_owned();
+            let message =
+                "an element without stiffness carries no force; state its stiffness".to_owned();
             return Err(reader.inconsistent("stiffness", message));
         }
         elements.push(element);

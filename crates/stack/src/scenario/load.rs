@@ -42,7 +42,10 @@ impl Scenario {
     /// # Errors
     ///
     /// As [`Scenario::parse`].
-    #[expect(clippy::should_implement_trait, reason = "the trait is implemented, too, but this needs no import")]
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "the trait is implemented, too, but this needs no import"
+    )]
     pub fn from_str(text: &str) -> Result<Self, ScenarioError> {
         Self::parse("scenario", text, &[])
     }

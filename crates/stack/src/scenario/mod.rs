@@ -204,8 +204,8 @@ impl Scenario {
         }
     }
 
-    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` if it was not written as
-    /// text.
+    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` if it was not written
+    /// as text.
     pub fn as_written(&self, path: &str) -> Option<&str> {
         if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }

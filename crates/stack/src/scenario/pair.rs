@@ -10,8 +10,8 @@ use super::writer::Writer;
 
 /// Impact stiffness (N/m^1.5) of pairs with barrels, and of seats at the end of their stroke.
 ///
-/// It stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within 15 mm. This is an assumption:
-/// no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
+/// It stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within 15 mm. This is an
+/// assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
 /// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
@@ -20,8 +20,8 @@ const HEAVY: f64 = 1.2e9;
 /// share the load of a barrel that lands on it.
 const LIGHT: f64 = 5e8;
 
-/// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient, and
-/// the source of that coefficient.
+/// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,
+/// and the source of that coefficient.
 macro_rules! pairs {
     ($(
         $(#[doc = $help:literal])+

@@ -172,19 +172,19 @@ const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// Fields of the stack other than devices and overrides.
 const OWN: [Field; 9] = fields! {
-    /// Model of the stack: in the plane across the barrels, in the plane along them, in both planes one after the other,
-    /// each under a horizontal component of the record, or in space ("spatial") under all components at once.
+    /// Model of the stack: in the plane across the barrels, in the plane along them, in both planes one after the
+    /// other, each under a horizontal component of the record, or in space ("spatial") under all components at once.
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
     /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Number of barrels per level in the plane of the model, a multiple of the number that one rack carries; counted across
-    /// the barrels if the model is in both planes or in space.
+    /// Number of barrels per level in the plane of the model, a multiple of the number that one rack carries; counted
+    /// across the barrels if the model is in both planes or in space.
     columns = COLUMNS, Default::Required;
     /// Number of barrels per level along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,
         Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
-    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes it across
-    /// its barrels and the other horizontal component along them.
+    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes it
+    /// across its barrels and the other horizontal component along them.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
         Default::Derived("in space, 0 deg; must not be given otherwise");
     /// The barrel.

@@ -237,8 +237,8 @@ table! {
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
-            /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses friction
-            /// sooner, but needs a smaller time step.
+            /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
+            /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
                 Default::Derived("that of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface, and on posts, and 4 on the ground, where tubes bend that do not lie flat; 1 otherwise");
             /// Ratio of the tangential damping of the stick to the normal damping.
