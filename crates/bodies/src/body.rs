@@ -30,7 +30,7 @@ section! {
     pub static BODY = "body-in-space", at most one of &["mass", "density"];
     /// Unique name.
     name: String = Kind::Text, Default::Required;
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
     kind: Option<String> = Kind::Text, Default::Derived("the name");
     /// Contact geometry.
     solid: Solid = Kind::Table(&SOLID), Default::Required;
@@ -67,7 +67,7 @@ section! {
 }
 
 impl SpatialBody {
-    /// Returns the label used by interfaces.
+    /// Returns the kind of the body, by which interfaces refer to it.
     pub fn kind(&self) -> &str {
         self.kind.as_deref().unwrap_or(&self.name)
     }

@@ -13,7 +13,7 @@ use barrelstack_dynamics::{
 
 use crate::GRAVITY;
 
-/// Gravity straight down (m/s²).
+/// Gravity in the direction of −z (m/s²).
 pub const DOWN: Vec2 = Vec2::new(0.0, -GRAVITY);
 
 /// Returns gravity (m/s²) in the frame of a slope that descends to the right at an angle (rad).
@@ -140,7 +140,7 @@ pub fn coulomb(
     }
 }
 
-/// Pairs the first node set of one body with the first surface of another, with interface 0.
+/// Returns the contact pair of the first node set of one body and the first surface of another, with interface 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     ContactPair {
         contactor,

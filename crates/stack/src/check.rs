@@ -46,7 +46,7 @@ described! {
     /// State of a stack at rest.
     #[derive(Clone, Debug)]
     pub struct AtRest {
-        /// Steps taken to find equilibrium.
+        /// Number of steps taken to find equilibrium.
         pub steps: u64,
         /// Largest distance by which a body sank into its contacts.
         pub deepest_sinking: f64 as "m",

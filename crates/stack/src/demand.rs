@@ -20,7 +20,7 @@ pub enum Span {
 pub struct Demand {
     /// Key in files.
     pub name: &'static str,
-    /// Description in a sentence.
+    /// Description of the demand in a sentence.
     pub meaning: &'static str,
     /// Label in print.
     pub label: &'static str,
@@ -48,7 +48,7 @@ impl Demand {
     }
 }
 
-/// Each line: doc comment, key, unit, label, factor, unit and decimals in print, and source of the value.
+/// Declares the demands. Each line has a doc comment, key, unit, label, factor, unit and decimals in print, and source.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+

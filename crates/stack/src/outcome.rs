@@ -21,7 +21,7 @@ pub enum CollapseMode {
 }
 
 impl CollapseMode {
-    /// The modes of a stack that is shaken.
+    /// The collapse modes of a stack that is shaken, which are all modes except gravity.
     pub const SHAKEN: [Self; 4] =
         [Self::Ejection, Self::Rocking, Self::RackSliding, Self::Overturning];
 
@@ -31,7 +31,7 @@ impl CollapseMode {
         all.into_iter().find(|mode| mode.name() == name)
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the mode in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ejection => "ejection",
@@ -58,7 +58,7 @@ pub enum Outcome {
         first: String,
         /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// Highest level that collapsed.
+        /// Highest level that collapsed with it.
         to_level: u32,
     },
     /// Not judged, because a free scene has no seats that could be lost.
@@ -67,7 +67,7 @@ pub enum Outcome {
     Interrupted,
     /// The computation broke down numerically, or its energy balance does not close.
     Invalid {
-        /// Reason, with time and body.
+        /// Reason for the breakdown, such as the time and the body, or the energy balance.
         reason: String,
     },
 }
@@ -83,7 +83,7 @@ impl Outcome {
         matches!(self, Self::Collapse { mode: CollapseMode::Gravity, .. })
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the outcome in files and reports, without its details.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Stable => "stable",

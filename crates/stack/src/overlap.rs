@@ -63,7 +63,7 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// Creates the boundaries of the bodies of a model as they are drawn.
+    /// Creates the boundaries of all bodies of a model, from the outlines as drawn.
     pub fn new(assembly: &Assembly) -> Self {
         let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
         let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
@@ -78,7 +78,7 @@ impl Boundaries {
                         |turn: &Rotation2| place(turn.apply(Vec2::new(circle.radius, 0.0)));
                     Some(Outline::Polygon(around.iter().map(corner).collect()))
                 }
-                // A trough is not a solid: it has no inside.
+                // A trough has no interior that a body could overlap.
                 Shape::Cradle(_) => None,
                 shape @ (Shape::Polygon(_) | Shape::BarrelProfile(_)) => {
                     Some(Outline::Polygon(shape.outline().0.into_iter().map(place).collect()))

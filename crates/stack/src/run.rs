@@ -38,7 +38,7 @@ pub use verdict::{Ended, Verdict};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The scenario of the run.
+    /// The scenario that was run.
     pub scenario: Scenario,
     /// The scenario as given; `scenario` may be a variant of it.
     pub stated: Box<Scenario>,
@@ -52,7 +52,7 @@ pub struct Run {
     pub fates: Fates,
     /// Fates of all force elements, in the order of the model.
     pub elements: Vec<ElementFate>,
-    /// Stress along every boundary.
+    /// Normal contact stress along the boundary of every barrel and rack.
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,

@@ -31,7 +31,7 @@ pub struct Watch<'a> {
     pub recording: Recording,
     /// Normal stress along every boundary.
     pub(crate) stresses: StressWatch,
-    /// Seats, falls, slips and tilts.
+    /// Losses of seats, falls, slips and tilts of all bodies.
     pub fates: Fates,
     /// Forces and failures of force elements.
     pub elements: ElementFates,
@@ -44,7 +44,7 @@ pub struct Watch<'a> {
     next_look: f64,
     /// Number of accepted states so far.
     states: u64,
-    /// Reason for the end; `None` while the run goes on, and if it reaches its end time.
+    /// Reason for the end of the run; `None` while it continues, and if it reaches its end time.
     pub ending: Option<Ending>,
 }
 
@@ -116,7 +116,7 @@ impl<R: Real> End<R> {
 lanewise!(struct End<R> { rest, after_collapse });
 
 impl End {
-    /// Returns the reason for the end at an accepted state; rest takes precedence, since nothing moves any more.
+    /// Returns the reason to end the run at an accepted state, if any; rest takes precedence over a collapse.
     pub(crate) fn why(&mut self, state: &State<Planar>, fates: &Fates) -> Option<Ending> {
         match self.observe(state, fates) {
             (_, true) => Some(Ending::Rest),

@@ -39,7 +39,7 @@ pub(crate) struct Builder<'a> {
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) kind: PartKind,
-    /// `None` for a body that belongs to no level.
+    /// Level of the body; `None` if it belongs to no level.
     pub(crate) level: Option<u32>,
     pub(crate) column: u32,
     /// Mass (kg).
@@ -48,7 +48,7 @@ pub(crate) struct Draft {
     ///
     /// `None` to compute the center of mass and the inertia from the solids, all with the same density.
     pub(crate) inertia: Option<f64>,
-    /// Position of the frame (m).
+    /// Position of the frame of the body (m).
     pub(crate) position: Vec2,
     /// Characteristic size (m).
     pub(crate) size: f64,

@@ -30,7 +30,7 @@ pub(super) enum Shown {
     Space,
 }
 
-/// Seats that one contact represents, all with the same penetration.
+/// The seats that one contact represents, all with the same penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bundle {
     /// Number of seats.

@@ -28,7 +28,7 @@ pub use similitude::Similitude;
 pub(crate) use solid::{Seat, Solid};
 pub use transverse::{BAR_RADIUS, TUBE_CORNER};
 
-/// Kind of a body.
+/// Kind of a body of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
     /// The ground and everything fixed to it.
@@ -39,14 +39,14 @@ pub enum PartKind {
     Rack,
     /// A protective device.
     Device,
-    /// Sloshing wine in a barrel.
+    /// The mass of the sloshing wave in a barrel.
     Wine,
     /// A body of a free scene.
     Body,
 }
 
 impl PartKind {
-    /// Returns the word used in files and reports.
+    /// Returns the name of the kind in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ground => "ground",
@@ -226,7 +226,7 @@ const SWINGING_STEP: f64 = 1e-3;
 /// Builds the model of a scenario.
 ///
 /// # Errors
-/// When shapes are impossible, bodies overlap, or names repeat.
+/// If a shape is invalid, bodies overlap, or names repeat.
 pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     let scale = Similitude::new(scenario.run.similitude);
     let mut assembly = match &scenario.scene {

@@ -23,7 +23,7 @@ pub fn cup(rack: &Rack) -> f64 {
 ///
 /// The posts stand at `spacing` (m) from the middle of the rack below.
 pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
-    // A post stands on a post, and is off it once displaced by its width.
+    // A foot stands on a post of its own width, so it is off the post once displaced by that width.
     rack.rail_width.min(spacing)
 }
 

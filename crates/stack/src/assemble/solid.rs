@@ -85,7 +85,7 @@ const ROUND: f64 = -2.0;
 const AT_END: f64 = 1e-9;
 
 impl Solid {
-    /// Creates a solid that is tested exactly all around.
+    /// Creates a solid whose whole boundary is tested exactly.
     pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
         Self {
             shape,

@@ -197,7 +197,7 @@ fn cradle(
     seat: Seat,
 ) -> Result<(), PolygonError> {
     let mut bar = |from: Vec2, to: Vec2| -> Result<(), PolygonError> {
-        // A support that lies on the beam is reduced to its round end.
+        // Of a support that does not rise above the beam, only the round end is left.
         let shape = if (to - from).z.abs() + (to - from).x.abs() < 1e-3 {
             Shape::Circle(Circle { radius: BAR_RADIUS })
         } else {
@@ -219,7 +219,7 @@ fn cradle(
         }
         Cradle::Arc { radius: trough, half_angle } => {
             let center = Vec2::new(place, rack.clearance + trough);
-            // Each bar touches the trough with its middle.
+            // Each bar touches the circle of the trough at its middle.
             let length = 2.0 * half_angle * trough;
             let count = (length / TROUGH_BAR).ceil().max(2.0);
             let turn = 2.0 * half_angle / count;

@@ -1,4 +1,4 @@
-//! Elastomer pads in the cradles: softer, more damped and less slippery than wood on steel.
+//! Elastomer pads in the cradles, which are softer, more damped and less slippery than wood on steel.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};

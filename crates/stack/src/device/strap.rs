@@ -74,7 +74,7 @@ named! {
 }
 
 section! {
-    /// Straps on the highest levels of a stack.
+    /// Straps on the top levels of a stack.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Straps;
     /// Straps on the top levels, which pull but never push and have no mass.

@@ -61,7 +61,7 @@ section! {
     /// Stops between racks and the barrels below.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct WalkingStops;
-    /// Stops between racks and the barrels below: lips that a rack meets once it has walked through a gap.
+    /// Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap.
     pub static SECTION = "walking_stop";
     /// Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never has
     /// stops.

@@ -114,7 +114,7 @@ pub fn meaning(name: &str) -> Option<&'static str> {
     known.chain([VARIANT]).find_map(|(known, meaning)| (known == name).then_some(meaning))
 }
 
-/// Each line: description, name, unit, role, and accessor.
+/// Declares the columns. Each line has a description, name, unit, role, and accessor.
 macro_rules! columns {
     ($(
         #[doc = $meaning:literal]
@@ -203,7 +203,7 @@ columns! {
     horizontal_force_peak_whole_run "N": Outcome Number |case| force(case, |joint| joint.whole_run.horizontal.0);
     /// stave_utilization over the whole run
     stave_utilization_whole_run "": Outcome Number |case| case.demands_whole_run.stave_utilization;
-    /// largest displacement of a barrel at the end
+    /// largest displacement of a barrel at the end of the case
     residual_displacement "m": Demand Number |case| case.residual_displacement;
     /// reason for the end of the case: rest, after-collapse, duration, patience, broken or not-shaken
     ended "": Run Text |case| case.ending.map(|ending| ending.name().to_owned());

@@ -137,7 +137,7 @@ pub fn rows(
     let parts: Option<Vec<Vec<Column>>> =
         pool::map(&batches, together, &|_| ()).into_iter().collect();
     let parts = parts?;
-    // Batch and row of each case.
+    // Batch of each case, and its row in that batch.
     let mut places = vec![(0, 0); count];
     for (at, number) in order.iter().enumerate() {
         places[*number] = (at / size, at % size);

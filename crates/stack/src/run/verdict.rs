@@ -111,7 +111,7 @@ fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64)
         Ending::Interrupted => Some(format!(
             "the run was stopped at {time:.3} s, before its end: its results hold until then, and it has no outcome"
         )),
-        // A stack that stands in the middle of a motion has not survived it.
+        // A stack that still stands in the middle of a motion has not survived the motion yet.
         Ending::Duration
             if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
         {

@@ -12,7 +12,7 @@ use super::stack::{COLUMNS, LEVELS, StackSpec};
 use super::tree::Table;
 
 named! {
-    /// The kind of body that an override changes.
+    /// Kind of body that an override changes.
     pub enum StackBody {
         /// A barrel; columns count barrels.
         Barrel = "barrel",
@@ -38,9 +38,9 @@ section! {
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
     /// Row along the barrels in space, 1 nearest; racks count rows of racks, barrels rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass in place of the regular one.
+    /// Mass of the body, instead of the regular one.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents in place of the regular ones; barrels only.
+    /// Contents of the barrel, instead of the regular ones; for barrels only.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
     /// Displacement from the regular position, positive to the right before mirroring.
     offset_x: f64 =

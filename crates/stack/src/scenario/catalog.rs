@@ -133,11 +133,11 @@ const STICK_ON_POST: f64 = 2.0;
 /// `validation/seats.md`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
-    /// One rail across the crown of a barrel below, and one support of a cradle under a barrel.
+    /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.
     pub barrel: Seat,
-    /// One end of a rail, or one foot, on the ground.
+    /// Seat of a rack on the ground: one end of a rail, or one foot.
     pub floor: Seat,
-    /// One post under the rack above.
+    /// Seat of a rack on a rack: one post under the rack above.
     pub post: Seat,
     /// Source of the numbers.
     pub source: &'static str,
@@ -304,12 +304,12 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|known| known.rack.base).collect()
 }
 
-/// Returns a barrel of the catalog.
+/// Returns the barrel of the catalog with the given name.
 pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
     BARRELS.iter().find(|barrel| barrel.name == name)
 }
 
-/// Returns a rack of the catalog.
+/// Returns the rack of the catalog with the given name.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
     RACKS.iter().find(|known| known.rack.base == name)
 }

@@ -30,7 +30,7 @@ section! {
     /// Slope, positive when it rises to the right.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
-    /// Label used by interfaces.
+    /// Name by which interfaces and elements refer to the ground.
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
@@ -53,7 +53,7 @@ section! {
 pub struct FreeBody {
     /// Unique name.
     pub name: String,
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it.
     pub kind: String,
     /// Outline of the body.
     pub shape: Shape,
@@ -69,7 +69,7 @@ pub struct FreeBody {
     pub angle: f64,
     /// Initial velocity of the center of mass (m/s).
     pub velocity: [f64; 2],
-    /// Initial spin, counterclockwise (rad/s).
+    /// Initial angular velocity, counterclockwise (rad/s).
     pub spin: f64,
     /// Contact nodes.
     pub nodes: Nodes,
@@ -86,7 +86,7 @@ pub struct FreeBody {
 /// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Label used by interfaces.
+    /// Kind of the boundary, by which interfaces refer to it.
     pub kind: String,
     /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
     pub shape: Option<Shape>,
@@ -136,7 +136,7 @@ const MOST_NODES: f64 = 2e6;
 table! {
     /// An additional massless boundary of a body.
     pub static BOUNDARY = "boundary";
-    /// Label used by interfaces.
+    /// Kind of the boundary, by which interfaces refer to it.
     kind = Kind::Text, Default::Required;
     /// Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the boundary
     /// consists of its nodes only.
@@ -156,7 +156,7 @@ table! {
     pub static BODY = "body";
     /// Unique name.
     name = Kind::Text, Default::Required;
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
     kind = Kind::Text, Default::Derived("the name");
     /// Outline of the body.
     shape = Kind::Table(&SHAPE), Default::Required;

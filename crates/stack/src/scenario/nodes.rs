@@ -58,7 +58,7 @@ table! {
     /// Nodes at the corners; one node at the deepest point of a circle; or exact contact, where convex outlines touch
     /// each other at their deepest points if both bodies state so.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
-    /// Greatest distance between nodes along the boundary.
+    /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
         Default::Nothing;
     /// Number of nodes on each side, or around a curved shape.

@@ -110,7 +110,7 @@ pairs! {
     RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.5,
         "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 of design and the 0.57 to 0.65 of tests \
          of steel on concrete";
-    /// Barrel in its cradle, and the rack above on the barrel.
+    /// Barrel in its cradle, and barrel under the rack above.
     BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.3,
         "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 of \
          wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
@@ -120,7 +120,7 @@ pairs! {
     BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
     /// Barrel on the ground.
     BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
-    /// Barrel against a rack on which it has no seat, or beside its seat.
+    /// Barrel against a rack on which it has no seat, or off its seat.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
         "as barrel on rack";
     /// Rack on the ground, whose seat is elsewhere.

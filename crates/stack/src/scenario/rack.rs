@@ -53,7 +53,7 @@ named! {
         Nodes = "nodes",
         /// One element at each place where two bodies touch.
         Element = "element",
-        /// One element for each of the two rails that a rack has across the barrels.
+        /// One element for each of the two rails of a rack, which coincide in the plane across the barrels.
         Rails = "rails",
     }
 }
@@ -83,12 +83,12 @@ known! {
     half_spacing as "post_half_spacing": f64 = size(0.01, 100.0), CATALOG;
     /// Distance of each post from the middle of the barrel beside it, along the barrels.
     half_spacing_along as "post_half_spacing_along": f64 = size(0.01, 100.0), CATALOG;
-    /// Overlap of the foot of the next rack over the sides of the post.
+    /// Height by which the foot of the next rack overlaps the sides of the post.
     spigot as "post_spigot": f64 = size(0.01, 100.0), CATALOG;
 }
 
 known! {
-    /// A rack.
+    /// A rack with its dimensions, cradles and seats.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]

@@ -27,7 +27,7 @@ choices! {
     RungeKutta4 = "runge-kutta-4";
     /// Bogacki-Shampine: order three, with error control.
     BogackiShampine = "bogacki-shampine" {
-        /// Relative error allowed in one step.
+        /// Largest relative error of one step.
         tolerance: f64 =
             Kind::Number(Range { least: 1e-14, above: false, greatest: 0.1 }), Default::Value("1e-6");
     }
@@ -111,15 +111,15 @@ section! {
 }
 
 section! {
-    /// Recording of a run.
+    /// Rates at which a run is recorded.
     #[derive(Debug, Clone, PartialEq)]
     pub struct RecordSpec;
-    /// Recording of the run.
+    /// Rates at which the run is recorded.
     pub static RECORD = "record";
-    /// Frames of all poses per second of simulated time.
+    /// Number of frames, with the poses of all bodies, per second of simulated time.
     frame_rate: f64 =
         Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e4)), Default::Value("\"60 Hz\"");
-    /// Samples of time histories per second of simulated time.
+    /// Number of samples of time histories per second of simulated time.
     history_rate: f64 =
         Kind::Quantity(&[Dimension::FREQUENCY], Range::between(0.01, 1e5)), Default::Value("\"200 Hz\"");
 }

@@ -38,7 +38,7 @@ choices! {
     }
     /// A polygon; the reference point is the local origin.
     Polygon = "polygon" {
-        /// Corners in order; sides must not cross.
+        /// Corners in order around the polygon; sides must not cross.
         vertices: Vec<[f64; 2]> = Kind::Points(Dimension::LENGTH), Default::Required;
     }
     /// A circular trough open upward; the reference point is the center of the circle.

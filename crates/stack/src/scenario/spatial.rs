@@ -24,7 +24,7 @@ section! {
     /// Slope, positive if it rises to the right, along x.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
-    /// Label used by interfaces.
+    /// Name by which interfaces refer to the ground.
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 

@@ -135,7 +135,7 @@ impl View {
     /// Both planes.
     pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
 
-    /// Returns the word used in files and results.
+    /// Returns the name of the plane in files and results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Transverse => "transverse",

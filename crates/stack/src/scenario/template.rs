@@ -120,7 +120,7 @@ impl Template {
         merge::field_at(Some(&self.table), &root::ROOT, &keys)
     }
 
-    /// Returns the most similar valid path.
+    /// Returns the valid path that is most similar to a misspelled one.
     pub fn nearest(&self, path: &str) -> Option<String> {
         let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
         for at in 0..keys.len() {

@@ -2,7 +2,7 @@
 
 use barrelstack_dynamics::{Scratch, Space, State};
 
-/// Fate of one force element.
+/// Largest forces of one force element, and its failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElementFate {
     /// Force (N) of the largest magnitude until the first loss of seat, and its time (s).

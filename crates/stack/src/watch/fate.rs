@@ -48,7 +48,7 @@ pub enum Loss {
     Dropped,
 }
 
-/// Fate of one body.
+/// Outcome of a run for one body: loss of seat, fall, and largest motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
     /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
@@ -112,7 +112,7 @@ pub struct Fates<R: Real = f64> {
     bodies: Vec<Followed<R>>,
     /// Time (s) at which the first body left its seat; infinite before.
     collapse: R,
-    /// The first body to leave its seat.
+    /// The first body that left its seat.
     first: PerLane<Option<BodyId>>,
     /// Time (s) at which the first barrel had fallen; infinite before.
     first_fall: R,
@@ -269,7 +269,7 @@ impl Fates {
     }
 }
 
-/// Returns a time (s) if it is finite.
+/// Returns a time (s) if it is finite; `None` otherwise.
 fn known(time: f64) -> Option<f64> {
     time.is_finite().then_some(time)
 }
@@ -418,7 +418,7 @@ impl<R: Real> Fates<R> {
     }
 }
 
-/// Raises a peak to a larger value.
+/// Raises a peak to a value if the value is larger.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(peak: &mut R, value: R) {

@@ -142,7 +142,7 @@ impl Joints {
         Self { joints, of_upper, follows_all }
     }
 
-    /// Records the state at rest.
+    /// Records the forces in the state at rest.
     pub(crate) fn start(&mut self, time: f64, scratch: &Scratch<Planar>) {
         self.observe(time, true, scratch);
         for joint in &mut self.joints {
@@ -204,7 +204,7 @@ impl<R: Real> Joint<R> {
     }
 }
 
-/// Raises two peaks to a force (N) at a time (s), the first in standing lanes only.
+/// Raises two peaks to a force (N) at a time (s) if it is larger; the first peak in standing lanes only.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(

@@ -52,7 +52,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// Returns the word used in files and reports.
+    /// Returns the name of the reason in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -171,7 +171,7 @@ impl<R: Real> Rest<R> {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
-            // Once every lane moves, the other bodies need no test.
+            // Once a body moves in every lane, the other bodies need no test.
             if moves.all() {
                 break;
             }

@@ -31,7 +31,7 @@ pub struct BoundaryPoint {
     pub position: Vec2,
     /// Unit normal out of the body.
     pub normal: Vec2,
-    /// Coordinate along the boundary: angle (rad) from `x` on a circle, `x` (m) elsewhere.
+    /// Coordinate along the boundary: the angle (rad) from the `x` axis on a circle, `x` (m) elsewhere.
     pub coordinate: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct StressEnvelope {
     /// Where the boundary is loaded at rest, it is the loaded length, so that stress at rest times length is the
     /// contact force.
     pub lengths: Vec<f64>,
-    /// `true` if the last point is next to the first.
+    /// `true` if the boundary is closed, so that the last point is next to the first.
     pub closed: bool,
     /// Stress at rest (N/m).
     pub at_rest: Vec<f64>,

@@ -17,7 +17,7 @@ named! {
         /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
         /// node.
         Length = "length",
-        /// Constants hold for one seat, however many nodes it is divided into: one rail across the crown of a barrel,
+        /// Constants hold for one seat, however many nodes it is divided into: one rail on the crown of a barrel,
         /// one support of a cradle, one end of a rail or one foot on the ground, one post.
         Seat = "seat",
     }
@@ -31,7 +31,7 @@ pub enum Damping {
     Coefficient(f64),
     /// Damping that gives a restitution for a reference mass or speed.
     Restitution {
-        /// Ratio of normal speeds after and before, in `(0, 1]`.
+        /// Ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
         /// For a linear law, the mass that strikes one node or seat (kg), or one meter of boundary (kg/m); for a
         /// Hunt-Crossley law, the impact speed (m/s).
@@ -92,9 +92,9 @@ pub enum Friction {
         coefficient: f64,
         /// Static coefficient, not below the kinetic one.
         static_coefficient: f64,
-        /// Tangential stiffness over normal stiffness.
+        /// Ratio of the tangential to the normal stiffness.
         tangential_stiffness_ratio: f64,
-        /// Tangential damping over normal damping.
+        /// Ratio of the tangential to the normal damping.
         tangential_damping_ratio: f64,
     },
     /// Coulomb friction smoothed near zero slip rate: it creeps and never sticks.

@@ -20,13 +20,13 @@ const NODE: (f64, f64) = (980_000.0, 2200.0);
 /// Default constants of a pair of a stack, for those that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
-    /// Constants of the seat, if the pair is one.
+    /// Constants of the seat, if the pair is a seat of a rack.
     pub(in crate::scenario) seat: Option<Seat>,
     pub(in crate::scenario) rebound_stiffness: f64,
     pub(in crate::scenario) coefficient: f64,
 }
 
-/// Reads a contact law and finishes its table.
+/// Reads a contact law from its table.
 pub(in crate::scenario) fn read(
     reader: Reader<'_>,
     defaults: Option<PairDefaults>,
@@ -254,7 +254,7 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes the contact law of a stack in its section.
+/// Writes the contact law of a pair of a stack as a table.
 pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
     let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);
