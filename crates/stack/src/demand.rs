@@ -90,7 +90,7 @@ macro_rules! demands {
 
 demands! {
     /// Largest displacement of the top barrels relative to the ground, divided by the height of the stack.
-    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |sources, body| {
+    top_drift_ratio "1": "largest drift of the top, relative to the height", 100.0 "%" 1, |sources, body| {
         let height = sources.assembly.height;
         let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
@@ -111,27 +111,27 @@ demands! {
         };
     /// Largest vertical force between a barrel and a rack in any step, divided by the capacity of the staves
     /// (`stack.barrel.stave_capacity`).
-    stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |sources, body| {
+    stave_utilization "1": "largest load on a barrel between its racks, relative to what its staves bear", 100.0 "%" 0, |sources, body| {
         sources.fate(body, PartKind::Barrel, None)?;
         let load = sources.joints.stave_load(body, &|id| sources.assembly.parts[id].kind, sources.span);
         Some(load? / sources.assembly.stave_capacity)
     };
     /// Largest slip of the bottom rack on the ground.
-    base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
+    base_slip_peak "m": "largest slip of the bottom rack on the ground", 100.0 "cm" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, Some(1))?.slip);
     /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
-    base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm" 1,
+    base_slip_at_collapse "m": "slip of the bottom rack at the collapse", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
     /// Slip of the bottom rack on the ground at the end of the run.
-    base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm" 1,
+    base_slip_residual "m": "slip of the bottom rack at the end of the run", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.residual_slip);
     /// Largest displacement of any rack on the barrels below, or of its feet on the posts of the rack below.
-    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |sources, body| {
+    rack_walk_peak "m": "largest walk of a rack on the barrels below", 100.0 "cm" 1, |sources, body| {
         let motion = sources.motion(body, PartKind::Rack, None)?;
         (!sources.assembly.parts[body].supports.is_empty()).then_some(motion.slip)
     };
     /// Largest tilt of any rack.
-    rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg" 1,
+    rack_tilt_peak "rad": "largest tilt of a rack", 57.295_779_513_082_32 "deg" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, None)?.tilt);
 }
 

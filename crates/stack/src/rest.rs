@@ -34,7 +34,7 @@ fn remedy(lack: &Lack) -> String {
             "put something under it, or let it fall from the start (run.settle = false)".to_owned()
         }
         Lack::Stiffness { interface, .. } => format!(
-            "see whether interface.{interface}.stiffness has the right unit, or take fewer levels"
+            "check whether interface.{interface}.stiffness has the right unit, or take fewer levels"
         ),
         Lack::Friction { interface, .. } => format!(
             "a larger coefficient of interface.{interface}.friction may hold it, or a place where it \
@@ -49,9 +49,11 @@ fn remedy(lack: &Lack) -> String {
                                  edge may keep it upright"
                 .to_owned()
         }
-        Lack::Place => "see whether it has room, and lies where it should".to_owned(),
-        Lack::Time { .. } => "see whether the stiffnesses of its contacts have the right unit, or \
+        Lack::Place => "check whether it has room, and is placed where it should be".to_owned(),
+        Lack::Time { .. } => {
+            "check whether the stiffnesses of its contacts have the right unit, or \
                               start without equilibrium (run.settle = false)"
-            .to_owned(),
+                .to_owned()
+        }
     }
 }

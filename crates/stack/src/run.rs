@@ -378,7 +378,7 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     }
     Err(RunFailure::Duration(format!(
         "{end_time:e} s in steps of {step:e} s are {steps:.0e} steps, more than a run may take \
-         ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
+         ({MOST_STEPS:.0e}): shorten run.duration, or check whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
 }
@@ -422,7 +422,7 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
         .filter(|interface| interface.friction.creep_speed(0.5) > 0.0)
         .map(|interface| {
             format!(
-                "{}: the regularized friction law creeps, at half of the friction limit with \
+                "{}: the regularized friction law creeps; at half of the friction limit, by \
                  {:.2e} m/s",
                 interface.name,
                 interface.friction.creep_speed(0.5)

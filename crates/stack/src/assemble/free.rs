@@ -309,7 +309,7 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     let refuse = |problem: String| AssembleError::Shape { body: body.to_owned(), problem };
     Ok(match shape {
         scenario::Shape::Compound { .. } => {
-            return Err(refuse("a part of a compound is a compound itself".into()));
+            return Err(refuse("a part of a compound must not be a compound itself".into()));
         }
         scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
             Polygon::rectangle(width * length, height * length, corner_radius * length)

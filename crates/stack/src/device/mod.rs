@@ -230,7 +230,7 @@ fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), Inpu
         return Ok(());
     }
     let path = reader.path_of("levels");
-    let message = format!("`{path}` is {device}, but the stack has only {stack}");
+    let message = format!("`{path}` is {device}, but the stack has only {stack} levels");
     Err(reader.inconsistent("levels", message))
 }
 

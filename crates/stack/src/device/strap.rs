@@ -110,7 +110,7 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
     }
     if let Some(strength) = straps.strength.filter(|strength| *strength <= straps.pretension) {
         let message = format!(
-            "`{}` of {} N is not below the strength of {strength} N",
+            "`{}` of {} N is not below the strength of {strength} N; lower it, or raise the strength",
             reader.path_of("pretension"),
             straps.pretension
         );

@@ -122,7 +122,7 @@ impl Drop for Stage {
     }
 }
 
-/// Returns the time since [`EPOCH`] (ns); 0 in WebAssembly, where the standard library has no clock and the time is not
+/// Returns the time since [`EPOCH`] (ns); 0 on `wasm32`, where the standard library has no clock and the time is not
 /// used.
 fn now() -> i64 {
     if cfg!(target_family = "wasm") {

@@ -256,7 +256,7 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_POSTS,
         help: "Stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
-                 assumption, the post height makes the usual level pitch, the posts stand clear of the barrels on both \
+                 assumption, the post height gives the usual level pitch, the posts stand clear of the barrels on both \
                  sides of them, and along the barrels within the 38 in on which racks for two barrels stand",
     },
     CatalogRack {
@@ -264,7 +264,7 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
-                 Filiatrault et al. 2010), across the shelf as here along the barrels; no maker of such a rack is \
+                 Filiatrault et al. 2010), there across the shelf, here along the barrels; no maker of such a rack is \
                  known: an assumption",
     },
     CatalogRack {

@@ -104,7 +104,7 @@ pub(super) fn read(
                 let names = bodies.iter().map(|body| body.name.as_str()).take(20);
                 let names: Vec<&str> = names.chain([ground.kind.as_str()]).collect();
                 let message =
-                    format!("no body is called \"{body}\"; there are {}", names.join(", "));
+                    format!("no body is called \"{body}\"; the bodies are {}", names.join(", "));
                 return Err(reader.inconsistent("between", message));
             }
         }

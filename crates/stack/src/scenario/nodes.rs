@@ -96,7 +96,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
         .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count", "list"]))?;
     let Some(shape) = shape else {
         if !matches!(rule, Nodes::At(_)) {
-            let message = "a boundary without a shape has nodes at chosen places only; write \
+            let message = "a boundary without a shape has nodes at chosen points only; write \
                            `nodes = { list = [{ at = [\"0 m\", \"0 m\"] }] }`, or give it a shape";
             let found = ["rule", "spacing", "count"].into_iter().find(|field| nodes.has(field));
             return Err(nodes.inconsistent(found.unwrap_or("rule"), message.to_owned()));
@@ -123,7 +123,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
         }
         Nodes::Spacing(spacing) if shape.perimeter() / spacing > MOST_NODES => {
             let message = format!(
-                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider one",
+                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider spacing",
                 shape.perimeter()
             );
             return Err(nodes.inconsistent("spacing", message));

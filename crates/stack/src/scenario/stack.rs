@@ -301,7 +301,7 @@ fn check_geometry(
         let below = (columns / per_rack) * per_rack;
         let nearest = if below == 0 { per_rack } else { below };
         let message = format!(
-            "`stack.{field}` is {columns}, but one `{}` rack carries {per_rack} barrels in this view; take {nearest} \
+            "`stack.{field}` is {columns}, but one `{}` rack carries {per_rack} barrels in this plane; take {nearest} \
              columns or set `stack.rack.{}`",
             rack.base,
             match stack.view {
