@@ -8,15 +8,16 @@ use barrelstack_input::{Dimension, InputError, section};
 use crate::solid::{SOLID, Solid};
 
 section! {
-    /// Viscous drag on a body, by its velocity relative to the ground before it was shaken.
+    /// Viscous drag on a body, proportional to its absolute velocity rather than to that relative to the shaking
+    /// ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
-    /// Viscous drag on the motion of a body in space, alike in all directions.
+    /// Viscous drag on the motion of a body in space, the same in all directions.
     pub static VISCOUS = "viscous-in-space";
-    /// Force per velocity of the center of mass.
+    /// Drag force per velocity of the center of mass.
     linear: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Moment per spin.
+    /// Drag moment per angular velocity.
     angular: f64 =
         Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }
@@ -25,38 +26,39 @@ section! {
     /// One body of a free scene in space.
     #[derive(Debug, Clone, PartialEq)]
     pub struct SpatialBody;
-    /// A rigid body of a free scene in space, where x is to the right, y away and z up.
+    /// A rigid body of a free scene in space, with x to the right, y away from the viewer and z up.
     pub static BODY = "body-in-space", at most one of &["mass", "density"];
     /// Unique name.
     name: String = Kind::Text, Default::Required;
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
     kind: Option<String> = Kind::Text, Default::Derived("the name");
     /// Contact geometry.
     solid: Solid = Kind::Table(&SOLID), Default::Required;
     /// Mass.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE),
-        Default::Derived("that of the solid by `density`; a body that is not fixed to the ground needs one of both");
-    /// Density of the solid, in place of the mass.
+        Default::Derived("`density` times the volume of the solid; a body that is not fixed to the ground needs one of the two");
+    /// Density of the solid, as an alternative to the mass.
     density: Option<f64> =
         Kind::Quantity(&[Dimension::DENSITY], Range::POSITIVE), Default::Derived("the mass over the volume");
-    /// Moments of inertia about axes along local x, y and z through the center of mass, which are principal axes then.
+    /// Moments of inertia about the axes through the center of mass along local x, y and z, which are taken as
+    /// principal axes.
     inertia: Option<[f64; 3]> =
         Kind::Triple(Dimension::INERTIA), Default::Derived("those of a homogeneous solid");
-    /// Center of mass, from the reference point of the solid.
+    /// Center of mass, relative to the reference point of the solid.
     center_of_mass: Option<[f64; 3]> =
         Kind::Triple(Dimension::LENGTH), Default::Derived("that of a homogeneous solid");
-    /// Place of the reference point of the solid at the start.
+    /// Initial position of the reference point of the solid.
     position: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
-    /// Orientation at the start: about x, then y, then z, axes that stand still, each counterclockwise.
+    /// Initial orientation: rotations about the fixed axes x, then y, then z, each counterclockwise.
     orientation: [f64; 3] =
         Kind::Triple(Dimension::ANGLE), Default::Value("[\"0 deg\", \"0 deg\", \"0 deg\"]");
-    /// Velocity of the center of mass at the start.
+    /// Initial velocity of the center of mass.
     velocity: [f64; 3] =
         Kind::Triple(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\", \"0 m/s\"]");
-    /// Spin at the start about x, y and z, axes that stand still, each counterclockwise.
+    /// Initial angular velocity about the fixed axes x, y and z, each counterclockwise.
     spin: [f64; 3] =
         Kind::Triple(Dimension::SPIN), Default::Value("[\"0 rad/s\", \"0 rad/s\", \"0 rad/s\"]");
-    /// Bodies of one group do not meet by an interface that says `within_groups = false`.
+    /// Group of the body: an interface with `within_groups = false` does not act between two bodies of the same group.
     group: Option<String> = Kind::Text, Default::Nothing;
     /// True if the body moves with the ground.
     fixed_to_ground: bool = Kind::Flag, Default::Value("false");
@@ -65,7 +67,7 @@ section! {
 }
 
 impl SpatialBody {
-    /// Returns the label used by interfaces.
+    /// Returns the kind of the body, by which interfaces refer to it.
     pub fn kind(&self) -> &str {
         self.kind.as_deref().unwrap_or(&self.name)
     }
@@ -73,7 +75,7 @@ impl SpatialBody {
     /// Reads a body and checks the consistency of its fields.
     ///
     /// # Errors
-    /// The first problem found, at its place.
+    /// Returns the first problem found, with its place in the file.
     pub fn checked(reader: Reader<'_>) -> Result<Self, InputError> {
         let body = Self::read_fields(&reader)?;
         let wrong = |field, message: String| Err(reader.inconsistent(field, message));
@@ -90,13 +92,14 @@ impl SpatialBody {
         }
         if !free && (body.velocity != [0.0; 3] || body.spin != [0.0; 3]) {
             let field = if body.velocity == [0.0; 3] { "spin" } else { "velocity" };
-            let message = format!("what is fixed to the ground moves with it; leave `{field}` out");
+            let message =
+                format!("a body fixed to the ground moves only with it; leave `{field}` out");
             return wrong(field, message);
         }
-        // The inertia of homogeneous matter holds only about its own center.
+        // The inertia of a homogeneous solid is known only about the center of mass of that solid.
         if body.center_of_mass.is_some() && body.inertia.is_none() {
             let message = format!(
-                "a center of mass of its own means that the body is not homogeneous; give `{}` too",
+                "a stated center of mass means that the body is not homogeneous; state `{}` too",
                 reader.path_of("inertia")
             );
             return wrong("center_of_mass", message);
@@ -105,8 +108,8 @@ impl SpatialBody {
             let most = x.max(y).max(z);
             if x.min(y).min(z) <= 0.0 || most > (x + y + z - most) * (1.0 + 1e-9) {
                 let message = format!(
-                    "no matter has moments of inertia of {x}, {y} and {z} kg·m²: all are above zero, and none is more \
-                     than the other two together; correct them"
+                    "no rigid body has moments of inertia of {x}, {y} and {z} kg·m²: each must be above zero, and none more \
+                     than the sum of the other two; correct them"
                 );
                 return wrong("inertia", message);
             }

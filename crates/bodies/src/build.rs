@@ -1,4 +1,4 @@
-//! Builds the body of a model from its specification.
+//! Conversion of a body stated in a file into the body of a model.
 
 use barrelstack_dynamics::solid::{Ball, Barrel, Block, Bulk, Capsule, Hull, Rounded};
 use barrelstack_dynamics::{
@@ -8,7 +8,7 @@ use barrelstack_dynamics::{
 
 use crate::{Solid, SpatialBody};
 
-/// A solid at its position in a body, with its bulk at unit density.
+/// One solid of a body: surface, placement in the body, and mass properties at unit density.
 struct Piece {
     surface: Surface,
     offset: Vec3,
@@ -17,7 +17,7 @@ struct Piece {
 }
 
 impl SpatialBody {
-    /// Builds the body in its initial state, in the frame of its principal axes about its center of mass.
+    /// Builds the body in its initial state; the body frame is that of the principal axes at the center of mass.
     pub fn build(&self) -> Body<Spatial> {
         let pieces = pieces(&self.solid);
         let turned = turn(self.orientation);
@@ -44,12 +44,12 @@ impl SpatialBody {
         }
     }
 
-    /// Returns mass and center of mass, principal moments of inertia (kg·m²), and the orientation of their axes in the
-    /// body.
+    /// Returns the mass and center of mass, the principal moments of inertia (kg·m²), and the orientation of the
+    /// principal axes in the body.
     fn matter(&self, pieces: &[Piece]) -> (Bulk, Vec3, Quaternion) {
         let ones: Vec<Bulk> = pieces.iter().filter_map(|piece| piece.bulk).collect();
         let unit = Bulk { mass: 1.0, center: Vec3::default(), second: [Vec3::default(); 3] };
-        // A body fixed to the ground needs no matter; a half-space has none.
+        // A half-space has no mass; only a body fixed to the ground consists of one, and its mass is never used.
         let solid = if ones.is_empty() { unit } else { Bulk::sum(ones) };
         let mass = self.mass.or_else(|| Some(self.density? * solid.mass)).unwrap_or(1.0);
         let share = mass / solid.mass;
@@ -75,7 +75,7 @@ fn vector([x, y, z]: [f64; 3]) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// Returns the rotation about `x`, then `y`, then `z` (rad), which are fixed axes.
+/// Returns the rotation by three angles (rad) about the fixed axes `x`, then `y`, then `z`.
 fn turn([x, y, z]: [f64; 3]) -> Quaternion {
     let about = |x, y, z| Quaternion::turn(Vec3::new(x, y, z));
     about(0.0, 0.0, z).after(about(0.0, y, 0.0)).after(about(x, 0.0, 0.0))
@@ -137,7 +137,7 @@ fn simple(solid: &Solid) -> Option<(Surface, Option<Bulk>)> {
     })
 }
 
-/// Returns the contactor of a surface; a half-space is only a target.
+/// Returns the contact nodes of a surface; `None` for a half-space or a dish, which are targets only.
 fn touching(placed: &Placed<Spatial>) -> Option<Nodes<Spatial>> {
     let hull = match &placed.surface {
         Surface::HalfSpace | Surface::Dish(_) => return None,
@@ -198,7 +198,7 @@ mod tests {
         let position = [5.0, 0.0, 0.0];
         let orientation = [0.0, 0.0, std::f64::consts::FRAC_PI_2];
         let dumbbell = SpatialBody { position, orientation, ..body(solid) }.build();
-        // The center (1, 1, 0) of the file, a quarter turn on.
+        // The center of mass (1, 1, 0) as stated, rotated by a quarter turn.
         let center = dumbbell.pose.position - Vec3::new(4.0, 1.0, 0.0);
         assert!(center.length() < 1e-15, "{center:?}");
         let own = 0.4 * 0.1 * 0.1 * 2.0;
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn turns_are_about_axes_that_stand_still() {
-        // About x the local z axis becomes -y, about y it stays, about z it becomes x.
+        // The rotation about x takes the local z axis to -y, that about y is zero, and that about z takes it to x.
         let quarter = std::f64::consts::FRAC_PI_2;
         let up = turn([quarter, 0.0, quarter]).matrix().apply(Vec3::new(0.0, 0.0, 1.0));
         assert!((up - Vec3::new(1.0, 0.0, 0.0)).length() < 1e-15, "{up:?}");

@@ -1,10 +1,11 @@
-//! Bodies in space: the tables `[[body]]` of a spatial free scene, and the bodies that they describe.
+//! Bodies in space: the `[[body]]` tables of a free scene in space, and the model bodies built from them.
 //!
 //! ```text
-//! [[body]] ─ body ─▶ SpatialBody { solid, … } ─ SpatialBody::build ─▶ Body<Spatial>, which a model moves
+//! [[body]] ─ body ─▶ SpatialBody { solid, … } ─ SpatialBody::build ─▶ Body<Spatial>, a body of a model
 //! ```
 
-// Results must be bit-identical on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so the standard transcendental functions are disallowed
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod body;

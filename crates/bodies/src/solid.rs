@@ -1,4 +1,4 @@
-//! Solids of bodies in space as stated in files: ball, capsule, block, barrel, half-space, and compounds.
+//! Shapes of bodies in space as stated in files: ball, capsule, block, barrel, half-space, and compounds.
 
 use barrelstack_dynamics::solid::Barrel;
 use barrelstack_input::choices::Chosen;
@@ -9,33 +9,34 @@ use barrelstack_input::writer::Writer;
 use barrelstack_input::{Dimension, InputError, choices, section, table};
 
 choices! {
-    /// A solid about its reference point.
+    /// Shape of a body, relative to its reference point.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub enum Solid;
-    /// The forms of solids.
+    /// The shapes that a file can state.
     static SOLIDS;
-    /// The reference point is the center.
+    /// A ball; the reference point is the center.
     Ball = "ball" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
     }
-    /// A tube with round ends along local x; the reference point is the middle.
+    /// A cylinder along local x with hemispherical ends; the reference point is the middle.
     Capsule = "capsule" {
-        /// Length with both round ends.
+        /// Length, including both ends.
         length: f64 = SIZE, Default::Required;
         /// Radius.
         radius: f64 = SIZE, Default::Required;
     }
-    /// A block with rounded edges; the reference point is the middle. Its matter is that of one with sharp edges.
+    /// A block with rounded edges; the reference point is the middle. Mass and inertia are those of a block with sharp
+    /// edges.
     Block = "block" {
-        /// Along local x, y and z.
+        /// Side lengths along local x, y and z.
         sides: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Required;
-        /// Radius of the rounded edges, which contacts never sink in deeper than.
+        /// Radius of the rounded edges; the penetration at a contact must stay below it.
         rounding: f64 = SIZE, Default::Value("\"5 mm\"");
     }
-    /// A barrel with its axis along local x, homogeneous; the reference point is the middle.
+    /// A homogeneous barrel with its axis along local x; the reference point is the middle.
     Barrel = "barrel" {
         /// Length.
         length: f64 = SIZE, Default::Required;
@@ -43,47 +44,47 @@ choices! {
         bilge_diameter: f64 = SIZE, Default::Required;
         /// Diameter at the ends.
         head_diameter: f64 = SIZE, Default::Required;
-        /// Radius of the rounded chime between stave and head.
+        /// Radius of the chime, the rounded rim between staves and head.
         chime_radius: f64 = SIZE, Default::Value("\"10 mm\"");
     }
-    /// All below local z = 0, such as a wall once it is turned; of a body fixed to the ground alone.
+    /// Everything below local z = 0, such as a floor or, rotated, a wall; only for a body fixed to the ground.
     HalfSpace = "half-space";
-    /// Several solids that are one body; the reference point is the local origin.
+    /// Several solids joined into one rigid body; the reference point is the local origin.
     Compound = "compound" {
-        /// The solids, all of one density; where they overlap, matter counts twice.
+        /// The solids, all of the same density; where they overlap, the mass counts twice.
         parts: Vec<PartSolid> = Kind::Tables(&PART), Default::Required;
     }
 }
 
-/// The solids allowed in a compound: those before the half-space.
+/// The shapes allowed in a compound: those before the half-space.
 static OF_PARTS: &[Variant] = SOLIDS.split_at(4).0;
 
-/// Returns their names.
+/// Returns the names of the shapes allowed in a compound.
 fn part_names() -> Vec<&'static str> {
     OF_PARTS.iter().map(|variant| variant.name).collect()
 }
 
-/// Sizes of solids (m): from far below a splinter to far above a building.
+/// A dimension of a solid, from 0.1 mm to 10 km.
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e4 });
 
 table! {
-    /// Solid of a body in space, about its reference point.
+    /// Shape of a body in space, relative to its reference point.
     pub static SOLID = "solid";
-    /// Form of the solid.
+    /// Shape of the solid.
     type = Kind::Choice(Solid::names), Default::Required;
     of SOLIDS, by type;
 }
 
 table! {
-    /// Solid of a part, about its reference point.
+    /// Shape of a part of a compound, relative to its reference point.
     static PART_SOLID = "part-solid";
-    /// Form of the solid, bounded and no compound itself.
+    /// Shape of the part; neither a half-space nor a compound.
     type = Kind::Choice(part_names), Default::Required;
     of *OF_PARTS, by type;
 }
 
-/// The solid of a part; the same type, read from another table.
+/// Reads and writes the solid of a part: the type is that of a whole body, the table another one.
 impl Held for Solid {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, InputError> {
         read(reader.section(name)?)
@@ -96,16 +97,16 @@ impl Held for Solid {
 }
 
 section! {
-    /// A solid of several that are one body.
+    /// One part of a compound.
     #[derive(Debug, Clone, PartialEq)]
     pub struct PartSolid;
-    /// One solid of several that are one body.
+    /// One solid of a compound, with its placement in the body.
     pub static PART = "solid-part";
-    /// Solid.
+    /// Shape of the part.
     solid: Solid = Kind::Table(&PART_SOLID), Default::Required;
-    /// Place of its reference point in the body.
+    /// Position of the reference point of the part in the body.
     offset: [f64; 3] = Kind::Triple(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\", \"0 m\"]");
-    /// Rotation in the body: about x, then y, then z of the body, each counterclockwise.
+    /// Rotation of the part: about the axes x, then y, then z of the body, each counterclockwise.
     turn: [f64; 3] =
         Kind::Triple(Dimension::ANGLE), Default::Value("[\"0 deg\", \"0 deg\", \"0 deg\"]");
 }
@@ -115,7 +116,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
     match &solid {
         Solid::Capsule { length, radius } if *length < 2.0 * radius => {
             let message = format!(
-                "`{}` of {length} m holds no two round ends of {radius} m; it is at least {} m, a ball",
+                "`{}` of {length} m is too short for two round ends with a radius of {radius} m; it must be at least {} m, which is a ball",
                 reader.path_of("length"),
                 2.0 * radius
             );
@@ -123,7 +124,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         }
         Solid::Block { sides, .. } if sides.iter().any(|side| !(2e-4..=1e4).contains(side)) => {
             let message = format!(
-                "a side of `{}` is not between 0.0002 m and 10000 m; state all three as lengths above zero",
+                "every side of `{}` must be between 0.0002 m and 10000 m; correct the one outside this range",
                 reader.path_of("sides")
             );
             return Err(reader.inconsistent("sides", message));
@@ -131,7 +132,7 @@ fn read(reader: Reader<'_>) -> Result<Solid, InputError> {
         Solid::Block { sides, rounding } if sides.iter().any(|side| 2.0 * rounding >= *side) => {
             let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
             let message = format!(
-                "`{}` of {rounding} m does not fit twice in a side of {least} m; state a smaller one",
+                "`{}` of {rounding} m is not below half of the shortest side, {least} m; state a smaller radius",
                 reader.path_of("rounding")
             );
             return Err(reader.inconsistent("rounding", message));

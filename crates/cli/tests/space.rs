@@ -65,7 +65,7 @@ fn what_space_does_not_know_is_refused_before_any_work() {
     let more = ["--set=stack.view=spatial", "--against=stack.levels=2"];
     let output = barrelstack([&["compare", "demo-napa"], &more[..]].concat());
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("this works in a plane"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("this analysis works in a plane"), "{}", stderr(&output));
 }
 
 #[test]
@@ -148,7 +148,10 @@ fn what_a_free_scene_in_space_does_not_know_is_refused_before_any_work() {
         ),
         (&["run", "rolling-ball", "--variants=3"], "a free scene has no variants"),
         (&["render", "rolling-ball", "--only=animation", "--out", &place], "take --only paraview"),
-        (&["compare", "rolling-ball", "--against=run.duration=2 s"], "this works in a plane"),
+        (
+            &["compare", "rolling-ball", "--against=run.duration=2 s"],
+            "this analysis works in a plane",
+        ),
     ] {
         let output = barrelstack(command);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
@@ -171,6 +174,9 @@ fn what_works_in_planes_alone_refuses_space_at_its_field_before_any_work() {
         let output = barrelstack([words, &["-q", "--out", &out]].concat());
         assert_eq!(output.status.code(), Some(2), "{words:?}: {}", stderr(&output));
         let message = stderr(&output);
-        assert!(message.contains("mine.toml:4:8: this works in a plane"), "{words:?}: {message}");
+        assert!(
+            message.contains("mine.toml:4:8: this analysis works in a plane"),
+            "{words:?}: {message}"
+        );
     }
 }

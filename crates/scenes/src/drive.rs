@@ -1,73 +1,73 @@
-//! Ground motions with exact displacement, velocity and acceleration.
+//! Ground motions given by formulas, with exact displacement, velocity and acceleration.
 
 use std::f64::consts::PI;
 
 use barrelstack_dynamics::math::{cos, sin};
 use barrelstack_dynamics::{Drive, Planar, Vec2};
 
-/// A horizontal ground motion given by displacement (m), velocity (m/s) and acceleration (m/s²).
+/// A horizontal ground motion given by a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shake {
     /// Constant velocity (m/s).
     Cruise(f64),
-    /// Acceleration (m/s²) that grows linearly until `ramp` (s) and is then constant.
+    /// Acceleration that grows linearly until the time `ramp` and is constant from then on.
     Ramped {
-        /// (m/s²).
+        /// Final acceleration (m/s²).
         acceleration: f64,
-        /// (s).
+        /// Duration of the growth (s).
         ramp: f64,
     },
     /// Constant acceleration for a duration, then constant velocity.
     Rectangular {
-        /// (m/s²).
+        /// Acceleration during the pulse (m/s²).
         acceleration: f64,
-        /// (s).
+        /// Duration of the pulse (s).
         duration: f64,
     },
-    /// `a sin ωt` for a number of half waves, then constant velocity.
+    /// Acceleration `a sin ωt` for a number of half waves, then constant velocity.
     Sine {
-        /// (m/s²).
+        /// Acceleration amplitude `a` (m/s²).
         acceleration: f64,
-        /// ω (rad/s).
+        /// Angular frequency ω (rad/s).
         omega: f64,
-        /// 1 for a half-sine, 2 for one sine.
+        /// Number of half waves: 1 for a half-sine, 2 for one full sine.
         half_waves: f64,
     },
-    /// `a cos ωt` for one period, then rest.
+    /// Acceleration `a cos ωt` for one period, then rest.
     Cosine {
-        /// (m/s²).
+        /// Acceleration amplitude `a` (m/s²).
         acceleration: f64,
-        /// ω (rad/s).
+        /// Angular frequency ω (rad/s).
         omega: f64,
     },
-    /// `a sin ωt` for all times, about a fixed position.
+    /// Acceleration `a sin ωt` for all times, about a fixed position.
     Harmonic {
-        /// (m/s²).
+        /// Acceleration amplitude `a` (m/s²).
         acceleration: f64,
-        /// ω (rad/s).
+        /// Angular frequency ω (rad/s).
         omega: f64,
     },
-    /// Displacement `A sin ωt` for all times: the ground starts with a velocity.
+    /// Displacement `A sin ωt` for all times; the initial velocity is `A ω`.
     Swing {
-        /// A (m).
+        /// Displacement amplitude `A` (m).
         amplitude: f64,
-        /// ω (rad/s).
+        /// Angular frequency ω (rad/s).
         omega: f64,
     },
 }
 
 impl Shake {
-    /// Returns a constant acceleration (m/s²) for all times.
+    /// Creates a motion with a constant acceleration (m/s²) for all times.
     pub fn constant(acceleration: f64) -> Self {
         Self::Rectangular { acceleration, duration: f64::INFINITY }
     }
 
-    /// Returns one half-wave of a sine of acceleration (m/s²) of a duration (s), then constant velocity.
+    /// Creates a half-sine pulse with a peak acceleration (m/s²) and a duration (s), followed by constant velocity.
     pub fn half_sine(acceleration: f64, duration: f64) -> Self {
         Self::Sine { acceleration, omega: PI / duration, half_waves: 1.0 }
     }
 
-    /// Returns the time (s) at which the acceleration ends; infinity for motions that continue.
+    /// Returns the time (s) at which the acceleration ends; infinity for a motion that never ends.
     pub fn end(&self) -> f64 {
         match *self {
             Self::Cruise(_) => 0.0,
@@ -78,7 +78,7 @@ impl Shake {
         }
     }
 
-    /// Returns the acceleration (m/s²); at the end time that from before.
+    /// Returns the acceleration (m/s²) at a time (s); at the end time, its value just before.
     pub fn acceleration(&self, t: f64) -> f64 {
         if t > self.end() {
             return 0.0;
@@ -95,7 +95,7 @@ impl Shake {
         }
     }
 
-    /// Returns displacement (m) and velocity (m/s).
+    /// Returns the displacement (m) and velocity (m/s) at a time (s).
     pub fn place(&self, t: f64) -> (f64, f64) {
         let during = t.min(self.end());
         let (x, v) = match *self {
@@ -134,11 +134,11 @@ impl Drive<Planar> for Shake {
     }
 }
 
-/// A horizontal motion combined with a vertical one.
+/// A horizontal and a vertical motion at the same time.
 pub struct Both {
-    /// Along `x`.
+    /// Horizontal motion, along `x`.
     pub x: Shake,
-    /// Along `z`.
+    /// Vertical motion, along `z`.
     pub z: Shake,
 }
 
@@ -149,7 +149,7 @@ impl Drive<Planar> for Both {
     }
 }
 
-/// A record: acceleration linear between samples, displacement and velocity its exact integrals.
+/// A sampled record: linear acceleration between samples, integrated exactly to velocity and displacement.
 #[derive(Clone, Debug)]
 pub struct Sampled {
     step: f64,
@@ -159,7 +159,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Creates a record from samples (m/s²) at a step (s), starting at rest.
+    /// Creates a record that starts at rest, from acceleration samples (m/s²) at a time step (s).
     pub fn new(step: f64, acceleration: Vec<f64>) -> Self {
         let (mut velocity, mut displacement) = (vec![0.0], vec![0.0]);
         for (i, pair) in acceleration.windows(2).enumerate() {
@@ -175,14 +175,14 @@ impl Sampled {
         (self.acceleration.len() - 1) as f64 * self.step
     }
 
-    /// Returns the index of the sample before a time, and the time since (s).
+    /// Returns the index of the last sample before a time, and the time elapsed since that sample (s).
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "times from 0 on")]
     fn cell(&self, t: f64) -> (usize, f64) {
         let i = ((t / self.step) as usize).min(self.acceleration.len() - 2);
         (i, t - i as f64 * self.step)
     }
 
-    /// Returns the acceleration (m/s²), zero after the end.
+    /// Returns the acceleration (m/s²) at a time (s); zero after the end of the record.
     pub fn acceleration(&self, t: f64) -> f64 {
         if t > self.duration() {
             return 0.0;
@@ -192,7 +192,8 @@ impl Sampled {
     }
 }
 
-/// Returns displacement and velocity after `s` of a step in which the acceleration changes linearly from `a` to `b`.
+/// Returns displacement and velocity at the time `s` within a step, from `x` and `v` at its start, where the
+/// acceleration changes linearly from `a` to `b` over the step.
 fn advance(a: f64, b: f64, step: f64, s: f64, v: f64, x: f64) -> (f64, f64) {
     let slope = (b - a) / step;
     (x + v * s + 0.5 * a * s * s + slope * s * s * s / 6.0, v + a * s + 0.5 * slope * s * s)

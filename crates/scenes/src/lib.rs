@@ -1,4 +1,4 @@
-//! Scenes, ground motions and closed forms, shared by the tests of the dynamics and the validation.
+//! Scenes, ground motions and closed-form solutions shared by the dynamics tests and the validation program.
 
 pub mod drive;
 pub mod order;

@@ -1,5 +1,6 @@
-//! Scenes whose bodies may be listed in any order: in the reverse one, every two free bodies exchange contactor and
-//! target.
+//! Scenes that test whether results depend on the order in which bodies are listed.
+//!
+//! In reverse order, every two free bodies swap the roles of contactor and target.
 
 use std::ops::ControlFlow;
 
@@ -15,25 +16,25 @@ use crate::scene::{DOWN, Scene, all_pairs, centered, coulomb, disc, floor, inter
 use crate::tumble::Random;
 use crate::{GRAVITY, spatial};
 
-/// Bodies under gravity that touch by one law.
+/// A scene that is run with its bodies in the given and in the reverse order.
 pub struct Order<S: Space> {
     /// Name of the scene.
     pub name: String,
-    /// The bodies, of which prescribed ones come first.
+    /// The bodies; those with prescribed motion come first.
     pub bodies: Vec<Body<S>>,
     laws: Interface<S>,
     gravity: S::Vector,
 }
 
 impl<S: Space<Real = f64>> Order<S> {
-    /// Returns the largest difference in position (m) of any body up to a time (s), between the bodies in the given
-    /// order and in the reverse one.
+    /// Runs the scene with its free bodies in the given and in the reverse order, and returns the largest difference
+    /// in the position (m) of any body until `end` (s).
     ///
     /// # Errors
     /// If a run fails.
     ///
     /// # Panics
-    /// If the bodies make no valid model, which is a mistake in a scene.
+    /// If the bodies do not form a valid model, which is a mistake in the definition of the scene.
     pub fn reversal(&self, step: f64, end: f64) -> Result<f64, RunError> {
         let fixed = self.bodies.iter().take_while(|body| body.motion == Motion::Prescribed).count();
         let mut reversed = self.bodies.clone();
@@ -51,7 +52,7 @@ impl<S: Space<Real = f64>> Order<S> {
         Ok(worst)
     }
 
-    /// Returns the positions (m) of all bodies after every step.
+    /// Runs the bodies and returns the positions (m) of all of them after every step.
     fn path(
         &self,
         bodies: Vec<Body<S>>,
@@ -70,13 +71,13 @@ impl<S: Space<Real = f64>> Order<S> {
     }
 }
 
-/// Returns a law of 2 MN/m with friction of 0.35.
+/// Returns the contact law of all scenes: 2 MN/m and a friction coefficient of 0.35.
 fn laws<S: Space<Real = f64>>() -> Interface<S> {
     let normal = NormalLaw::SpeedGap { stiffness: 2e6, damping: 2e3 };
     interface(normal, coulomb(0.35, 2e6, 1e3))
 }
 
-/// Returns a body of the plane by its kind: a circle, a sharp box, one with round corners, a barrel in side view.
+/// Returns a planar body by its kind: circle, box, box with round corners, or barrel in side view.
 fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body<Planar> {
     let radius = 0.3;
     let shape = match kind {
@@ -93,7 +94,7 @@ fn planar(kind: usize, name: &str, mass: f64, x: f64, z: f64, turn: f64) -> Body
     }
 }
 
-/// Returns a solid by its kind: a ball, a tube, a barrel, a block.
+/// Returns a body in space by its kind: ball, tube, barrel, or block.
 fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Spatial> {
     let inertia = Vec3::new(0.03, 0.045, 0.045) * mass;
     let hull = match kind {
@@ -113,12 +114,12 @@ fn solid(kind: usize, name: &str, mass: f64, place: Vec3, turn: Vec3) -> Body<Sp
     body
 }
 
-/// Names of the kinds of bodies, in the plane and in space.
+/// Names of the kinds of bodies: first those in the plane, then those in space.
 const KINDS: [[&str; 4]; 2] =
     [["circle", "box", "round box", "barrel profile"], ["ball", "tube", "barrel", "block"]];
 
-/// Returns every two kinds of bodies of the plane that collide aside of their middles, spinning, of 100 and 60 kg and of
-/// 100 kg each.
+/// Returns off-center collisions of two spinning planar bodies, for every pair of kinds: once with masses of 100 and
+/// 60 kg, once with 100 kg each.
 pub fn planar_pairs() -> Vec<Order<Planar>> {
     let pair = |i: usize| {
         let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
@@ -134,7 +135,8 @@ pub fn planar_pairs() -> Vec<Order<Planar>> {
     (0..32).map(pair).collect()
 }
 
-/// Returns every two kinds of solids that collide aside of their middles, spinning, of 100 and 60 kg and of 100 kg each.
+/// Returns off-center collisions of two spinning bodies in space, for every pair of kinds: once with masses of 100
+/// and 60 kg, once with 100 kg each.
 pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     let pair = |i: usize| {
         let (a, b, mass) = (i / 4 % 4, i % 4, [60.0, 100.0][i / 16]);
@@ -152,7 +154,7 @@ pub fn spatial_pairs() -> Vec<Order<Spatial>> {
     (0..32).map(pair).collect()
 }
 
-/// Returns four bodies of the plane that tumble onto a floor and each other.
+/// Returns four planar bodies that tumble onto a floor and onto each other.
 pub fn planar_heap(seed: usize) -> Order<Planar> {
     let mut random = Random(seed as u64);
     let mut bodies = vec![floor()];
@@ -168,7 +170,7 @@ pub fn planar_heap(seed: usize) -> Order<Planar> {
     Order { name: format!("four on a floor, {seed}"), bodies, laws: laws(), gravity: DOWN }
 }
 
-/// Returns two solids that tumble onto a floor and each other.
+/// Returns two bodies in space that tumble onto a floor and onto each other.
 pub fn spatial_heap(seed: usize) -> Order<Spatial> {
     let mut random = Random(seed as u64);
     let mut bodies = vec![spatial::floor()];

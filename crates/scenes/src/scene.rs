@@ -1,4 +1,4 @@
-//! Scenes: floors, blocks and discs, run with an observer of every step.
+//! Planar test scenes of floors, blocks and discs, and the runner of planar and spatial scenes.
 
 use std::ops::ControlFlow;
 
@@ -13,11 +13,12 @@ use barrelstack_dynamics::{
 
 use crate::GRAVITY;
 
-/// Gravity straight down (m/s²).
+/// Gravity in the direction of −z (m/s²).
 pub const DOWN: Vec2 = Vec2::new(0.0, -GRAVITY);
 
-/// Returns gravity in the frame of a slope that descends to the right at an angle (rad): the slope is a level floor
-/// under rotated gravity.
+/// Returns gravity (m/s²) in the frame of a slope that descends to the right at an angle (rad).
+///
+/// The slope is modeled as a level floor under rotated gravity.
 pub fn gravity_on_slope(angle: f64) -> Vec2 {
     Vec2::new(GRAVITY * math::sin(angle), -GRAVITY * math::cos(angle))
 }
@@ -27,7 +28,7 @@ pub fn centered(shape: Shape) -> Placed<Planar> {
     Placed { surface: shape, offset: Vec2::default(), rotation: Rotation2::identity() }
 }
 
-/// Returns the ground with surfaces fixed to it.
+/// Returns a ground body with the given surfaces.
 pub fn ground_of(surfaces: Vec<Placed<Planar>>) -> Body<Planar> {
     Body { surfaces, ..floor() }
 }
@@ -42,7 +43,9 @@ pub fn pose(x: f64, z: f64, orientation: f64) -> Pose<Planar> {
     Pose { position: Vec2::new(x, z), orientation }
 }
 
-/// Returns a free disc with one rolling node; `gyration_squared` is k² (m²), ½ r² for a solid one.
+/// Returns a free disc with one rolling node.
+///
+/// `gyration_squared` is the squared radius of gyration k² (m²), which is ½ r² for a solid disc.
 pub fn disc(
     name: &str,
     radius: f64,
@@ -57,10 +60,11 @@ pub fn disc(
     }
 }
 
-/// Returns a sharp rectangle about its center, corners counterclockwise from the lower left.
+/// Returns a rectangle with sharp corners, centered at the origin; its corners are listed counterclockwise from the
+/// lower left.
 ///
 /// # Panics
-/// If a side is not a positive number, which is a mistake in a problem.
+/// If a side is not a positive number, which is a mistake in the definition of the scene.
 pub fn rectangle(width: f64, height: f64) -> Polygon {
     match Polygon::rectangle(width, height, 0.0) {
         Ok(polygon) => polygon,
@@ -68,12 +72,12 @@ pub fn rectangle(width: f64, height: f64) -> Polygon {
     }
 }
 
-/// Returns a free rectangular block with sharp corners, which are its nodes.
+/// Returns a free rectangular block with sharp corners and a node at each of them.
 pub fn block(name: &str, size: (f64, f64), mass: f64, pose: Pose<Planar>) -> Body<Planar> {
     finely_noded_block(name, size, mass, f64::INFINITY, pose)
 }
 
-/// Returns a block with nodes along its whole boundary, no further apart than `spacing` (m).
+/// Returns a free rectangular block with nodes along its whole boundary, at most `spacing` (m) apart.
 pub fn finely_noded_block(
     name: &str,
     (width, height): (f64, f64),
@@ -90,7 +94,7 @@ pub fn finely_noded_block(
     }
 }
 
-/// Returns boundary nodes as the nodes of a body whose shape is centered.
+/// Converts boundary nodes of a shape to nodes of a body whose shape is centered.
 pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
     let node = |n: &BoundaryNode| Node {
         position: n.position,
@@ -100,7 +104,7 @@ pub fn fixed(nodes: &[BoundaryNode]) -> Nodes<Planar> {
     Nodes::Fixed(nodes.iter().map(node).collect())
 }
 
-/// Returns nodes at points (m) of a body.
+/// Returns a node set with one node at each of the given points (m) of a body.
 pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     Nodes::Fixed(
         points
@@ -110,7 +114,7 @@ pub fn points(points: &[Vec2]) -> Nodes<Planar> {
     )
 }
 
-/// Returns an interface with constants per node.
+/// Returns an interface whose constants hold per node.
 pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw) -> Interface<S> {
     Interface {
         name: "contact".into(),
@@ -122,7 +126,7 @@ pub fn interface<S: Space<Real = f64>>(normal: NormalLaw, friction: FrictionLaw)
     }
 }
 
-/// Returns Coulomb friction with one coefficient.
+/// Returns a Coulomb friction law with equal static and kinetic coefficients.
 pub fn coulomb(
     coefficient: f64,
     tangential_stiffness: f64,
@@ -136,7 +140,7 @@ pub fn coulomb(
     }
 }
 
-/// Pairs the first node set of one body with the first surface of another, with interface 0.
+/// Returns the contact pair of the first node set of one body and the first surface of another, with interface 0.
 pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     ContactPair {
         contactor,
@@ -148,8 +152,9 @@ pub fn pair(contactor: BodyId, target: BodyId) -> ContactPair {
     }
 }
 
-/// Pairs every body with nodes with every other body's first surface; two discs, or two solids, form one pair, and of a
-/// disc and a convex boundary only the disc is tested.
+/// Returns the contact pairs of every body that has nodes with the first surface of every other body.
+///
+/// Two discs, or two solids, form one pair only; of a disc and a convex boundary, only the disc is the contactor.
 pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     let round =
         |i: usize| matches!(bodies[i].nodes.first(), Some(Nodes::Rolling { .. } | Nodes::Whole(_)));
@@ -170,7 +175,7 @@ pub fn all_pairs<S: Space>(bodies: &[Body<S>]) -> Vec<ContactPair> {
     pairs
 }
 
-/// A model with its state and scratch memory.
+/// A model with its state, ready to be settled and run.
 pub struct Scene<S: Space = Planar> {
     /// The model, constant during a run.
     pub model: Model<S>,
@@ -183,7 +188,7 @@ pub struct Scene<S: Space = Planar> {
 }
 
 impl<S: Space<Real = f64>> Scene<S> {
-    /// Creates a scene of bodies that may all touch, with one interface.
+    /// Creates a scene of bodies that can all touch each other, with one interface.
     ///
     /// # Errors
     /// If the bodies do not make a valid model.
@@ -196,37 +201,37 @@ impl<S: Space<Real = f64>> Scene<S> {
         Ok(Self::of(Model::new(bodies, vec![interface], pairs, gravity)?))
     }
 
-    /// Creates the initial state of a model.
+    /// Creates a scene of a model in its initial state.
     pub fn of(model: Model<S>) -> Self {
         let state = State::initial(&model);
         let scratch = Scratch::new(&model);
         Self { model, state, scratch, method: Method::VelocityVerlet }
     }
 
-    /// Settles the scene and returns it.
+    /// Brings the scene to static equilibrium and returns the scene.
     ///
     /// # Errors
-    /// If it does not come to rest.
+    /// If the bodies do not come to rest.
     pub fn settled(mut self, tolerance: f64) -> Result<Self, SettleError> {
         self.settle(tolerance)?;
         Ok(self)
     }
 
-    /// Settles the scene and returns the result.
+    /// Brings the scene to static equilibrium and returns the measures of the equilibrium.
     ///
     /// # Errors
-    /// If it does not come to rest.
+    /// If the bodies do not come to rest.
     pub fn settle(&mut self, tolerance: f64) -> Result<Settled, SettleError> {
         settle(&self.model, &mut self.state, &mut self.scratch, tolerance)
     }
 
-    /// Sets another method.
+    /// Sets the integration method.
     pub fn by(&mut self, method: Method) -> &mut Self {
         self.method = method;
         self
     }
 
-    /// Runs to a time (s).
+    /// Runs the scene until `end_time` (s).
     ///
     /// # Errors
     /// If the run fails numerically.
@@ -239,7 +244,7 @@ impl<S: Space<Real = f64>> Scene<S> {
         self.watch(drive, time_step, end_time, |_, _, _| ControlFlow::Continue(()))
     }
 
-    /// Runs to a time (s), calling `observer` after every accepted step.
+    /// Runs the scene until `end_time` (s) and calls `observer` after every accepted step.
     ///
     /// # Errors
     /// If the run fails numerically.

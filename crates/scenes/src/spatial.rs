@@ -1,4 +1,4 @@
-//! Bodies of spatial scenes: floors, balls, blocks on feet, barrels.
+//! Bodies of test scenes in space: floors, balls, capsules, blocks, barrels and contact points.
 
 use barrelstack_dynamics::solid::{Ball, Hull, Rounded};
 use barrelstack_dynamics::{
@@ -12,7 +12,7 @@ pub fn gravity_on_slope(gravity: f64, angle: f64, heading: f64) -> Vec3 {
     Vec3::new(along * math::cos(heading), along * math::sin(heading), -gravity * math::cos(angle))
 }
 
-/// Returns a rotation (rad) about the vertical.
+/// Returns a rotation by an angle (rad) about the vertical axis.
 pub fn yaw(angle: f64) -> Quaternion {
     Quaternion::turn(Vec3::new(0.0, 0.0, angle))
 }
@@ -22,12 +22,12 @@ pub fn centered(surface: Solid) -> Placed<Spatial> {
     Placed { surface, offset: Vec3::default(), rotation: Rotation3::identity() }
 }
 
-/// Returns a free body without boundaries, of a mass (kg) and principal moments of inertia (kg·m²).
+/// Returns a free body without surfaces or nodes, from its mass (kg) and principal moments of inertia (kg·m²).
 pub fn free(name: &str, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
     Body::free(name, mass, inertia, Pose { position, orientation: Quaternion::identity() })
 }
 
-/// Returns the ground with surfaces fixed to it.
+/// Returns a ground body with the given surfaces.
 pub fn ground_of(surfaces: Vec<Placed<Spatial>>) -> Body<Spatial> {
     // Its motion is prescribed, so its mass is irrelevant.
     let body = free("ground", 1.0, Vec3::new(1.0, 1.0, 1.0), Vec3::default());
@@ -39,7 +39,7 @@ pub fn floor() -> Body<Spatial> {
     ground_of(vec![centered(Solid::HalfSpace)])
 }
 
-/// Returns a free homogeneous ball.
+/// Returns a free homogeneous ball with a radius (m), a mass (kg) and a center (m).
 pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
     let inertia = 0.4 * mass * radius * radius;
     Body {
@@ -49,7 +49,7 @@ pub fn ball(radius: f64, mass: f64, center: Vec3) -> Body<Spatial> {
     }
 }
 
-/// Returns contact points (m) of a body: feet, legs, corners.
+/// Returns a node set with one node at each of the given points (m), such as feet or corners of a body.
 pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
     Nodes::Fixed(
         points
@@ -59,12 +59,12 @@ pub fn points(points: &[Vec3]) -> Nodes<Spatial> {
     )
 }
 
-/// Returns the four corners (m) of a rectangle of half sides `x` and `y` at the height `z`.
+/// Returns the four corners (m) of a horizontal rectangle with half sides `x` and `y` at the height `z`.
 pub fn corners(x: f64, y: f64, z: f64) -> [Vec3; 4] {
     [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| Vec3::new(a * x, b * y, z))
 }
 
-/// Returns a free capsule or barrel, contactor and target, with its center of mass in the middle.
+/// Returns a free capsule, block or barrel that is both contactor and target, with its center of mass in the middle.
 pub fn solid(name: &str, hull: Hull, mass: f64, inertia: Vec3, position: Vec3) -> Body<Spatial> {
     Body {
         surfaces: vec![centered(hull.surface())],

@@ -1,4 +1,4 @@
-//! Closed forms, each with its source.
+//! Closed-form solutions, each with its source.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,20 +6,23 @@ use barrelstack_dynamics::math::{acos, acosh, atan, atan2, cos, exp, sin};
 
 use crate::GRAVITY;
 
-/// Returns p = √(3g/4R) (rad/s) of a rectangle of half-diagonal R (m) (Housner 1963).
+/// Returns the rocking frequency parameter p = √(3g/4R) (rad/s) of a rectangle with half-diagonal R (m) (Housner
+/// 1963).
 pub fn rocking_rate(radius: f64) -> f64 {
     (0.75 * GRAVITY / radius).sqrt()
 }
 
-/// Returns η = 1 − (3/2) sin² α of a rectangle: angular momentum about the new corner is conserved (Housner 1963).
+/// Returns the restitution η = 1 − (3/2) sin² α of a rocking rectangle of slenderness angle α (rad).
+///
+/// Angular momentum about the new corner is conserved (Housner 1963).
 pub fn housner_restitution(alpha: f64) -> f64 {
     1.0 - 1.5 * sin(alpha) * sin(alpha)
 }
 
-/// Returns p times the time from rest at a rotation of `share · α` to upright, exact for any α.
+/// Returns p times the time in which a rocking rectangle returns from rest at the rotation `share · α` to upright.
 ///
-/// From energy, θ'²/2p² = cos(α − θ₀) − cos(α − θ), with θ = θ₀ (1 − s²), which removes the root from
-/// the integrand, by the midpoint rule.
+/// Exact for any α. Conservation of energy gives θ'²/2p² = cos(α − θ₀) − cos(α − θ). The substitution
+/// θ = θ₀ (1 − s²) removes the square root from the integrand, which is then integrated by the midpoint rule.
 pub fn quarter_period(alpha: f64, share: f64) -> f64 {
     let start = share * alpha;
     let parts = 20_000;
@@ -27,21 +30,24 @@ pub fn quarter_period(alpha: f64, share: f64) -> f64 {
         .map(|i| {
             let s = (f64::from(i) + 0.5) / f64::from(parts);
             let theta = start * (1.0 - s * s);
-            // The difference of cosines without cancellation.
+            // The difference of the cosines as a product, which avoids cancellation.
             let fall = 2.0 * sin(alpha - 0.5 * (start + theta)) * sin(0.5 * (start - theta));
             2.0 * start * s / (2.0 * fall).sqrt() / f64::from(parts)
         })
         .sum()
 }
 
-/// Returns the quarter period times p of a slender block: arcosh[1/(1 − φ)] (Housner 1963).
+/// Returns p times the quarter period of a slender block that starts at rest from φ = θ₀/α: arcosh[1/(1 − φ)]
+/// (Housner 1963).
 pub fn slender_quarter_period(share: f64) -> f64 {
     acosh(1.0 / (1.0 - share))
 }
 
-/// Returns the peak rotation over α after an impact that keeps `ratio` = η² of the energy, exact for any α.
+/// Returns the ratio of the next peak rotation to α after an impact that keeps the fraction `ratio` = η² of the energy.
+///
+/// The block starts at rest from the rotation `share · α`; the result is exact for any α.
 pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
-    // cos(α − θ) − cos α is reduced by the ratio; written with half angles.
+    // The impact reduces cos(α − θ) − cos α by the ratio; half angles avoid cancellation.
     let height = |theta: f64| 2.0 * sin(alpha - 0.5 * theta) * sin(0.5 * theta);
     let left = ratio * height(share * alpha);
     let (mut low, mut high) = (0.0, share * alpha);
@@ -52,23 +58,27 @@ pub fn next_peak(alpha: f64, share: f64, ratio: f64) -> f64 {
     0.5 * (low + high) / alpha
 }
 
-/// Returns the strength over gα at which a rectangular pulse of `p t₁` overturns a slender block (Housner 1963).
+/// Returns the least amplitude A/(gα) of a rectangular pulse of duration t₁ that overturns a slender block, from
+/// `p t₁` (Housner 1963).
 pub fn rectangular_overturning(rate_times_duration: f64) -> f64 {
     1.0 / (1.0 - exp(-rate_times_duration))
 }
 
-/// Returns the strength over gα at which a half-sine of ω/p = ρ overturns a slender block: the root of
-/// cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
+/// Returns the least amplitude A/(gα) of a half-sine pulse with ω/p = ρ that overturns a slender block.
+///
+/// This is the root of cos ψ + e^{−(π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
 pub fn half_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) + exp(-(PI - psi) / ratio))
 }
 
-/// Returns that strength for one sine without impact: cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ.
+/// Returns the least amplitude A/(gα) of a one-sine pulse that overturns a slender block without impact.
+///
+/// This is the root of cos ψ − e^{−(2π−ψ)/ρ} = ρ sin ψ with sin ψ = gα/A (Makris and Roussos 2000).
 pub fn one_sine_overturning(ratio: f64) -> f64 {
     sine_root(ratio, |psi| cos(psi) - exp(-(TAU - psi) / ratio))
 }
 
-/// Returns 1/sin of the angle at which `side(ψ) = ρ sin ψ`, ψ below π/2.
+/// Returns `1/sin ψ` at the angle ψ below π/2 that solves `side(ψ) = ρ sin ψ`.
 fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (1e-9, FRAC_PI_2);
     for _ in 0..100 {
@@ -78,24 +88,27 @@ fn sine_root(ratio: f64, side: impl Fn(f64) -> f64) -> f64 {
     1.0 / sin(0.5 * (low + high))
 }
 
-/// Returns that strength for one cosine without impact: (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
+/// Returns the least amplitude A/(gα) of a one-cosine pulse that overturns a slender block without impact:
+/// (1 + ρ²)/(1 − e^{−2π/ρ}) (Makris and Roussos 2000).
 pub fn one_cosine_overturning(ratio: f64) -> f64 {
     (1.0 + ratio * ratio) / (1.0 - exp(-TAU / ratio))
 }
 
-/// Returns the friction coefficient from which a block of slenderness `s` rocks without sliding on a base
-/// that accelerates at `β g`, β > s (Shao and Tung 1999, Taniguchi 2002).
+/// Returns the least friction coefficient at which a block of slenderness `s` rocks without sliding on a base
+/// that accelerates at `β g`, with β > s (Shao and Tung 1999, Taniguchi 2002).
 pub fn least_friction_for_rocking(beta: f64, s: f64) -> f64 {
     (beta * (1.0 + 4.0 * s * s) + 3.0 * s) / (4.0 + s * s + 3.0 * beta * s)
 }
 
-/// Returns the slip (m) of a block of yield acceleration `N g` in a rectangular pulse `A g` (Newmark 1965).
+/// Returns the slip (m) of a block with yield acceleration `n g` on ground that accelerates at `a g` for `duration` (s)
+/// (Newmark 1965).
 pub fn slide_in_rectangular_pulse(a: f64, n: f64, duration: f64) -> f64 {
     let speed = a * GRAVITY * duration;
     speed * speed / (2.0 * GRAVITY * n) * (1.0 - n / a)
 }
 
-/// Returns the slip (m) in a half-sine pulse, by integration.
+/// Returns the slip (m) of a block with yield acceleration `n g` under a half-sine pulse of amplitude `a g` and
+/// `duration` (s), by integration.
 pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     let omega = PI / duration;
     let start = atan(n / (a * a - n * n).sqrt());
@@ -106,18 +119,19 @@ pub fn slide_in_half_sine(a: f64, n: f64, duration: f64) -> f64 {
     slip + speed * speed / (2.0 * n * GRAVITY)
 }
 
-/// Returns the relative amplitude (m) of a block that slides continuously on ground that shakes with
-/// `A g sin ωt` (Den Hartog 1931).
+/// Returns the amplitude (m), relative to the ground, of a block with yield acceleration `n g` that slides without
+/// pause on ground with the acceleration `a g sin ωt` (Den Hartog 1931).
 pub fn steady_slide_amplitude(a: f64, n: f64, omega: f64) -> f64 {
     let share = PI * n / (2.0 * a);
     a * GRAVITY / (omega * omega) * (1.0 - share * share).sqrt()
 }
 
-/// Returns the restitution under gravity of a node with a damper on approach only, `None` if the mass does not lift
-/// off, and its deepest penetration in units of v₀/ω.
+/// Returns the restitution and the deepest penetration (in units of v₀/ω) of a mass that falls on a spring with a
+/// damper that acts on approach only.
 ///
-/// `gravity_number` is Γ = g/(ωv₀). Approach is damped motion about the sunken rest position Γ (in
-/// units of v₀/ω), rebound is undamped: e = √(x² − 2Γx) with x the deepest penetration.
+/// The restitution is `None` if the mass does not lift off. `gravity_number` is Γ = g/(ωv₀). The approach is a damped
+/// motion about the rest position Γ (in units of v₀/ω), and the rebound is undamped: e = √(x² − 2Γx), where x is
+/// the deepest penetration.
 pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option<f64>, f64) {
     let (zeta, gamma) = (damping_ratio, gravity_number);
     let omega = (1.0 - zeta * zeta).sqrt();
@@ -129,7 +143,7 @@ pub fn rebound_under_gravity(damping_ratio: f64, gravity_number: f64) -> (Option
     ((square > 0.0).then(|| square.sqrt()), deepest)
 }
 
-/// Returns the Γ from which a mass does not lift off.
+/// Returns the least Γ = g/(ωv₀) at which a mass does not lift off after the impact of [`rebound_under_gravity`].
 pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..100 {
@@ -143,7 +157,9 @@ pub fn lift_off_lost(damping_ratio: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns ω t of a contact with a damper on approach only: a damped approach, an undamped quarter period of rebound.
+/// Returns the duration of an impact, as the phase ω t, with a damper that acts on approach only.
+///
+/// It is the sum of the damped approach and an undamped rebound of a quarter period.
 pub fn contact_phase(damping_ratio: f64) -> f64 {
     let zeta = damping_ratio;
     let way_in = if (zeta - 1.0).abs() < 1e-9 {
@@ -156,17 +172,22 @@ pub fn contact_phase(damping_ratio: f64) -> f64 {
     way_in + FRAC_PI_2
 }
 
-/// Returns the fraction of the base acceleration that a rolling body of `ratio` = k²/r² attains.
+/// Returns the acceleration of a body that rolls on a moving base, as a fraction of the acceleration of the base.
+///
+/// `ratio` is k²/r², with the radius of gyration k and the radius r of the body.
 pub fn rolling_share(ratio: f64) -> f64 {
     ratio / (1.0 + ratio)
 }
 
-/// Returns ω (rad/s) of small rolling oscillations of a cylinder in a round cradle, without slip.
+/// Returns the angular frequency (rad/s) at which a cylinder rolls to and fro in a round cradle without slip, at small
+/// amplitude.
+///
+/// `ratio` is k²/r², with the radius of gyration k and the radius r of the cylinder.
 pub fn swing_in_cradle(cradle_radius: f64, radius: f64, ratio: f64) -> f64 {
     (GRAVITY / ((cradle_radius - radius) * (1.0 + ratio))).sqrt()
 }
 
-/// Returns the largest overhang (m) of `n` equal bricks of a length (m): the harmonic stack.
+/// Returns the largest overhang (m) of a stack of `n` equal bricks of the given length (m), one brick per layer.
 pub fn overhang(n: u32, length: f64) -> f64 {
     0.5 * length * (1..=n).map(|i| 1.0 / f64::from(i)).sum::<f64>()
 }

@@ -1,14 +1,14 @@
-//! Random heaps of discs and blocks: a scene for properties that hold in general.
+//! Random heaps of discs and blocks, for tests of properties that must hold in any scene.
 
 use barrelstack_dynamics::{Body, Interface, NormalLaw, Planar, Twist, Vec2};
 
 use crate::scene::{coulomb, disc, finely_noded_block, floor, interface, pose};
 
-/// A small generator (splitmix64), so that a seed gives the same scene on every machine.
+/// A small random number generator (splitmix64), which gives the same scene for a seed on every machine.
 pub struct Random(pub u64);
 
 impl Random {
-    /// Returns a number in a range.
+    /// Returns the next random number, uniform between `low` and `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -18,8 +18,9 @@ impl Random {
     }
 }
 
-/// Returns a floor and a loose heap of discs and blocks above it, which fall, rotate and collide; blocks have nodes no
-/// further apart than `spacing` (m), or only at their corners if that is infinite.
+/// Returns a floor and a loose heap of discs and blocks above it, which fall, rotate and collide.
+///
+/// The nodes of a block are at most `spacing` (m) apart; with an infinite spacing they are its corners.
 pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     let mut random = Random(seed);
     let mut bodies = vec![floor()];
@@ -45,8 +46,9 @@ pub fn bodies(seed: u64, count: usize, spacing: f64) -> Vec<Body<Planar>> {
     bodies
 }
 
-/// Returns a speed-gap law and Coulomb friction that suit these bodies; `factor` multiplies stiffness, `damping`
-/// the dampers.
+/// Returns a contact law that suits the bodies of a heap: speed-gap with Coulomb friction.
+///
+/// `factor` multiplies the stiffnesses, and `damping` the damping constants.
 pub fn rough(factor: f64, damping: f64) -> Interface<Planar> {
     interface(
         NormalLaw::SpeedGap { stiffness: 2.0e5 * factor, damping: 600.0 * damping },

@@ -1,4 +1,4 @@
-//! Closed forms against the numbers of published tables.
+//! Tests of the closed-form solutions against published tables.
 
 use barrelstack_scenes::GRAVITY;
 use barrelstack_scenes::theory::{
@@ -6,12 +6,12 @@ use barrelstack_scenes::theory::{
     slide_in_rectangular_pulse, steady_slide_amplitude,
 };
 
-/// The gravity (m/s²) of the table of sliding blocks; all displacements are proportional to it.
+/// Gravity (m/s²) in the published table of sliding blocks; all displacements are proportional to it.
 const TABLE_GRAVITY: f64 = 9.81;
 
 #[test]
 fn a_block_let_go_falls_back_in_housners_quarter_period() {
-    // Slender and exact values of p T / 4 at α = 0.25.
+    // For each amplitude, the slender and the exact value of p T / 4 at α = 0.25.
     for (share, slender, exact) in [
         (0.10, 0.46715, 0.46920),
         (0.25, 0.79537, 0.79798),

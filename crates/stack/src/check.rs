@@ -1,4 +1,4 @@
-//! Checks a scenario without shaking it: is it sound, and does its stack stand?
+//! Check of a scenario without shaking it: whether it is sound, and whether its stack stands.
 
 use barrelstack_dynamics::Settled;
 use barrelstack_dynamics::settle::Locked;
@@ -15,48 +15,48 @@ described! {
     /// Result of a check that found the scenario sound.
     #[derive(Clone, Debug)]
     pub struct Checked {
-        /// Name and version of this layout.
+        /// Name and version of the schema.
         pub schema: &'static str ["check/1"],
         /// The scenario's title.
         pub title: String,
-        /// The plane of the model, or that a stack is in space; null for a free scene.
+        /// Plane of the model, or `spatial` for a stack in space; null for a free scene.
         pub view: Option<&'static str> ["transverse", "longitudinal", "spatial"],
-        /// Barrels.
+        /// Number of barrels.
         pub barrels: usize,
-        /// Racks.
+        /// Number of racks.
         pub racks: usize,
-        /// Bodies of a free scene.
+        /// Number of bodies of a free scene.
         pub free_bodies: usize,
         /// Time step.
         pub time_step: f64 as "s",
-        /// State at rest; null where the scenario starts without.
+        /// State at rest; null if the scenario starts without settling.
         pub rest: Option<AtRest>,
         /// Ground motion.
         pub motion: Option<MotionSummary>,
-        /// Warnings of elastic sticks that are too soft for the motion, one sentence each.
+        /// Warnings about friction springs that are too soft for the motion, one sentence each.
         pub sticks: Vec<String>,
-        /// Warnings.
+        /// Warnings about the ground motion, one sentence each.
         pub warnings: Vec<String>,
         /// Hash of the scenario with every default written out.
         pub scenario_hash: String,
-        /// The same of the other plane, where the scenario looks at its stack in both.
+        /// Result for the other plane, if the scenario has its stack in both planes.
         pub other_plane: Option<Box<Checked>>,
     }
 
     /// State of a stack at rest.
     #[derive(Clone, Debug)]
     pub struct AtRest {
-        /// Steps taken to find equilibrium.
+        /// Number of steps taken to find equilibrium.
         pub steps: u64,
-        /// Deepest sinking of a body into its contacts.
+        /// Largest distance by which a body sank into its contacts.
         pub deepest_sinking: f64 as "m",
-        /// Force that is left unbalanced, over gravity.
+        /// Unbalanced force that remains, as a fraction of gravity.
         pub unbalanced: f64 as "1",
-        /// Friction locked in as the stack sank, over the normal forces.
+        /// Friction locked in while the stack settled, as a fraction of the normal forces.
         pub locked_friction: f64 as "1",
-        /// Contacts that hold.
+        /// Number of contacts that stick.
         pub holding: usize,
-        /// Contacts at their limit of friction.
+        /// Number of contacts at their friction limit.
         pub slipping: usize,
     }
 }
@@ -70,7 +70,7 @@ impl AtRest {
 }
 
 impl Checked {
-    /// Returns the findings as lines of text.
+    /// Returns the result of the check as lines of text.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![self.title.clone()];
         let counts =
@@ -120,7 +120,7 @@ impl Checked {
     }
 }
 
-/// Runs everything that precedes the shaking.
+/// Checks a scenario: performs everything in a run that precedes the shaking.
 ///
 /// # Errors
 /// As [`Scenario::run`].

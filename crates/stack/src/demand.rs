@@ -1,4 +1,4 @@
-//! Demands on a stack: each declared once, with its source, its name, and its unit in print.
+//! Demands on a stack, such as drift and slip, each declared once with its name, units, and source.
 
 use barrelstack_report::described::{self, Described, Field, Objects};
 use serde::Serialize;
@@ -6,21 +6,21 @@ use serde::Serialize;
 use crate::assemble::{Assembly, PartKind};
 use crate::watch::{Fate, Fates, Joints, PeakMotion, StressEnvelope, Stresses};
 
-/// Part of a run over which demands and largest forces are taken.
+/// Part of a run over which demands and largest forces are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// Until the first body leaves its seat; the whole run where none does.
+    /// Until the first body leaves its seat; the whole run if none does.
     UntilLoss,
-    /// The whole run, with all that falls.
+    /// The whole run, including falls.
     WholeRun,
 }
 
-/// A demand on a stack.
+/// Definition of a demand on a stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Demand {
     /// Key in files.
     pub name: &'static str,
-    /// Description in a sentence.
+    /// Description of the demand in a sentence.
     pub meaning: &'static str,
     /// Label in print.
     pub label: &'static str,
@@ -28,33 +28,33 @@ pub struct Demand {
     pub unit: &'static str,
     /// Unit in print.
     pub shown_unit: &'static str,
-    /// Factor from the value in files to that in print.
+    /// Factor that converts the value in files to the value in print.
     pub factor: f64,
-    /// Number of decimals in print: finer digits mean nothing.
+    /// Number of decimals in print; further digits are not significant.
     pub decimals: usize,
-    /// Returns the value in files; `None` where it does not apply.
+    /// Returns the value in files; `None` if the demand does not apply.
     pub get: fn(&Demands) -> Option<f64>,
 }
 
 impl Demand {
-    /// Returns `true` if its value belongs to the end of the run, whichever span it is taken over.
+    /// Returns `true` if the demand is a value at the end of the run, whatever the span.
     pub fn is_of_the_end(&self) -> bool {
         self.name == "base_slip_residual"
     }
 
-    /// Returns the value in print; `None` where it does not apply.
+    /// Returns the value in print; `None` if the demand does not apply.
     pub fn shown(&self, demands: &Demands) -> Option<f64> {
         (self.get)(demands).map(|value| value * self.factor)
     }
 }
 
-/// Each line: doc comment, key, unit, label, factor, unit and decimals in print, and source of the value.
+/// Declares the demands. Each line has a doc comment, key, unit, label, factor, unit and decimals in print, and source.
 macro_rules! demands {
     ($(
         $(#[doc = $doc:literal])+
         $name:ident $unit:literal: $label:literal, $factor:literal $shown:literal $decimals:literal, $of:expr;
     )*) => {
-        /// Demands on the stack in a [`Span`] of its run; all null where the run is invalid.
+        /// Demands on the stack in a [`Span`] of its run; all null if the run is invalid.
         #[derive(Clone, Debug, Default, Serialize)]
         pub struct Demands {
             $($(#[doc = $doc])+ pub $name: Option<f64>,)*
@@ -73,7 +73,7 @@ macro_rules! demands {
         }),*];
 
         impl Demands {
-            /// Returns the demands on a stack of a run that did not break down.
+            /// Computes the demands on a stack in a span of a valid run.
             pub fn of(
                 assembly: &Assembly,
                 fates: &Fates,
@@ -89,48 +89,49 @@ macro_rules! demands {
 }
 
 demands! {
-    /// Largest displacement of the top barrels against the ground, over the height of the stack.
-    top_drift_ratio "1": "drift of the top against the ground, of the height", 100.0 "%" 1, |sources, body| {
+    /// Largest displacement of the top barrels relative to the ground, divided by the height of the stack.
+    top_drift_ratio "1": "largest drift of the top, relative to the height", 100.0 "%" 1, |sources, body| {
         let height = sources.assembly.height;
         let drift = sources.motion(body, PartKind::Barrel, Some(sources.assembly.levels))?.displacement;
         (height > 0.0).then_some(drift / height)
     };
-    /// Largest normal stress on a barrel of the bottom level over the largest at rest, wherever on it each of them is.
+    /// Largest normal stress on a barrel of the bottom level, divided by the largest at rest, wherever on it each
+    /// occurs.
     stress_amplification "1": "stress amplification, largest on a bottom barrel", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.amplification(),
             Span::WholeRun => sources.stress(body)?.amplification_whole_run(),
         };
-    /// Largest normal stresses on a barrel of the bottom level, averaged over the boundary that is loaded at rest, over
-    /// the average at rest.
+    /// Largest normal stresses on a barrel of the bottom level, averaged over the part of its boundary that is loaded
+    /// at rest, divided by the average at rest.
     mean_stress_amplification "1": "stress amplification, average over the loaded boundary", 1.0 "× at rest" 2,
         |sources, body| match sources.span {
             Span::UntilLoss => sources.stress(body)?.mean_amplification(),
             Span::WholeRun => sources.stress(body)?.mean_amplification_whole_run(),
         };
-    /// Largest vertical force between a barrel and a rack in any step, over what its staves bear
+    /// Largest vertical force between a barrel and a rack in any step, divided by the capacity of the staves
     /// (`stack.barrel.stave_capacity`).
-    stave_utilization "1": "load of a barrel between its racks, of what its staves bear", 100.0 "%" 0, |sources, body| {
+    stave_utilization "1": "largest load on a barrel between its racks, relative to what its staves bear", 100.0 "%" 0, |sources, body| {
         sources.fate(body, PartKind::Barrel, None)?;
         let load = sources.joints.stave_load(body, &|id| sources.assembly.parts[id].kind, sources.span);
         Some(load? / sources.assembly.stave_capacity)
     };
     /// Largest slip of the bottom rack on the ground.
-    base_slip_peak "m": "slip of the bottom rack on the ground, largest", 100.0 "cm" 1,
+    base_slip_peak "m": "largest slip of the bottom rack on the ground", 100.0 "cm" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, Some(1))?.slip);
     /// Slip of the bottom rack on the ground, at the moment of the collapse (at the end if there was none).
-    base_slip_at_collapse "m": "slip of the bottom rack, at the collapse", 100.0 "cm" 1,
+    base_slip_at_collapse "m": "slip of the bottom rack at the collapse", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.displacement_at_collapse);
-    /// The same at the end of the run.
-    base_slip_residual "m": "slip of the bottom rack, at the end of the run", 100.0 "cm" 1,
+    /// Slip of the bottom rack on the ground at the end of the run.
+    base_slip_residual "m": "slip of the bottom rack at the end of the run", 100.0 "cm" 1,
         |sources, body| Some(sources.fate(body, PartKind::Rack, Some(1))?.residual_slip);
-    /// Largest walk of any rack on the barrels below, or of its foot on the posts of the rack below.
-    rack_walk_peak "m": "walk of a rack on the barrels below, largest", 100.0 "cm" 1, |sources, body| {
+    /// Largest displacement of any rack on the barrels below, or of its feet on the posts of the rack below.
+    rack_walk_peak "m": "largest walk of a rack on the barrels below", 100.0 "cm" 1, |sources, body| {
         let motion = sources.motion(body, PartKind::Rack, None)?;
         (!sources.assembly.parts[body].supports.is_empty()).then_some(motion.slip)
     };
     /// Largest tilt of any rack.
-    rack_tilt_peak "rad": "tilt of a rack, largest", 57.295_779_513_082_32 "deg" 1,
+    rack_tilt_peak "rad": "largest tilt of a rack", 57.295_779_513_082_32 "deg" 1,
         |sources, body| Some(sources.motion(body, PartKind::Rack, None)?.tilt);
 }
 
@@ -145,13 +146,13 @@ impl Described for Demands {
             schema: <Option<f64> as Described>::schema,
         };
         let fields: Vec<Field> = DEMANDS.iter().map(field).collect();
-        let meaning = "Demands on the stack, until the first loss of seat or over the whole run as the field says that \
-                       holds them; slips at the collapse and at the end are those of their moments in both.";
+        let meaning = "Demands on the stack, until the first loss of seat or over the whole run, as stated by the field \
+                       that holds them; slips at the collapse and at the end of the run are the same in both.";
         described::object(objects, "Demands", meaning, &fields)
     }
 }
 
-/// Sources of demands.
+/// Observations of a run from which its demands are computed.
 struct Sources<'a> {
     assembly: &'a Assembly,
     fates: &'a Fates,
@@ -161,20 +162,20 @@ struct Sources<'a> {
 }
 
 impl Sources<'_> {
-    /// Returns the value that is largest in size, with its sign, over all bodies that have one.
+    /// Returns the value of largest magnitude, with its sign, over all bodies to which the demand applies.
     fn most(&self, of: fn(&Self, usize) -> Option<f64>) -> Option<f64> {
         let larger = |most: f64, value: f64| if value.abs() > most.abs() { value } else { most };
         (0..self.assembly.parts.len()).filter_map(|body| of(self, body)).reduce(larger)
     }
 
-    /// Returns the fate of a body of a kind on a level; `None` for any other body.
+    /// Returns the fate of a body if it has the given kind and level; `None` for any other body.
     fn fate(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<Fate> {
         let part = &self.assembly.parts[body];
         let wanted = part.kind == kind && level.is_none_or(|level| part.level == Some(level));
         wanted.then(|| self.fates.fate(body))
     }
 
-    /// Returns the largest motions of a body of a kind on a level; `None` for any other body.
+    /// Returns the largest motions of a body if it has the given kind and level; `None` for any other body.
     fn motion(&self, body: usize, kind: PartKind, level: Option<u32>) -> Option<PeakMotion> {
         let fate = self.fate(body, kind, level)?;
         Some(match self.span {
@@ -183,7 +184,7 @@ impl Sources<'_> {
         })
     }
 
-    /// Returns the stress around a barrel of the bottom level.
+    /// Returns the stress around a barrel of the bottom level; `None` for any other body.
     fn stress(&self, body: usize) -> Option<&StressEnvelope> {
         self.fate(body, PartKind::Barrel, Some(1))?;
         self.stresses.of(body)

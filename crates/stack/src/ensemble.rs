@@ -1,8 +1,8 @@
-//! Ensembles: many cases at once, of which only the results are kept.
+//! Ensembles: many cases that run together and keep only their results.
 //!
 //! Cases of one topology run side by side in the lanes of a vector register; a lane whose case has ended takes the
 //! next one.
-//! Every case gives the same bits as alone, whatever runs beside it and however wide the lanes are.
+//! Every case gives the same bits as if it ran alone, whatever runs beside it and however many lanes there are.
 
 mod batch;
 mod case;
@@ -32,22 +32,23 @@ pub use rows::{Grounds, rows};
 pub use trail::{RATE, Trail};
 pub use work::{Share, Stage, Work};
 
-/// Version of the results of an ensemble: raised whenever the same case may give other bits, so that results of two
-/// versions are never combined.
+/// Version of the results of an ensemble.
+///
+/// It is raised whenever the same case may give other bits, so that results of two versions are never combined.
 pub const VERSION: u32 = 13;
 
-/// Number of cases that a thread takes at once: enough to fill lanes, few enough that all threads have some.
+/// Number of cases that a thread takes at once: enough to fill its lanes, few enough to leave work for all threads.
 const BATCH: usize = 32;
 
 /// Progress callback and cancellation of an ensemble.
 pub struct Audience<'a> {
     /// Called for each finished case, in any order.
     pub on_case: &'a mut dyn FnMut(&CaseResult),
-    /// Polled; returns `true` to stop.
+    /// Polled during the run; returns `true` to stop it.
     pub stop: &'a dyn Fn() -> bool,
 }
 
-/// Cases to run together, on all cores.
+/// A set of cases that run together on all cores.
 ///
 /// ```
 /// use barrelstack_stack::ensemble::{Ensemble, Prepared};
@@ -64,21 +65,22 @@ pub struct Audience<'a> {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Ensemble {
-    /// The cases; those with the same stack or motion share it.
+    /// The cases; those with the same stack or motion share its data.
     pub cases: Vec<Prepared>,
-    /// Vector unit to run in; by default the widest of the machine. Results do not depend on it.
+    /// Vector unit to use; by default the widest of the machine. Results do not depend on it.
     pub lanes: Option<Width>,
 }
 
 impl Ensemble {
-    /// Runs all cases; returns their results in order.
+    /// Runs all cases and returns their results in the order of the cases.
     pub fn run(&self) -> Vec<CaseResult> {
-        // It is never stopped, so every case has its result.
+        // The run is never stopped, so every case has a result.
         self.run_watched(&|_| ControlFlow::Continue(())).unwrap_or_default()
     }
 
-    /// Runs as [`Ensemble::run`] with an observer, which is called for every finished case, in any order and from
-    /// several threads, and may stop the ensemble; then there are no results.
+    /// Runs all cases with an observer that may stop the ensemble; `None` if it was stopped.
+    ///
+    /// The observer is called for every finished case, in any order and from several threads.
     pub fn run_watched(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -86,7 +88,9 @@ impl Ensemble {
         self.run_until(observer, &|| false)
     }
 
-    /// Runs as [`Ensemble::run_watched`], and polls many times a second whether to stop.
+    /// Runs as [`Ensemble::run_watched`], and stops as soon as `asked_to_stop` returns `true`.
+    ///
+    /// `asked_to_stop` is polled many times a second.
     pub fn run_until(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -95,9 +99,9 @@ impl Ensemble {
         self.run_as_far(observer, asked_to_stop).into_iter().collect()
     }
 
-    /// Runs as [`Ensemble::run_until`], and returns `None` for each case that was not finished when it was stopped.
+    /// Runs as [`Ensemble::run_until`], but keeps the results of a stopped run: `None` for each unfinished case.
     ///
-    /// Collapses end first, so the finished cases are no unbiased sample.
+    /// Cases with a collapse end earlier, so the finished cases are a biased sample.
     pub fn run_as_far(
         &self,
         observer: &(dyn Fn(&CaseResult) -> ControlFlow<()> + Sync),
@@ -119,14 +123,14 @@ impl Ensemble {
     }
 }
 
-/// Runs cases on one core and returns their results in order; `None` when stopped.
+/// Runs cases on one core and returns their results in order; `None` if stopped.
 ///
-/// The grouping of cases changes nothing about any of them.
+/// Results do not depend on how cases are grouped into calls.
 pub fn simulate(cases: &[Prepared], audience: &mut Audience<'_>) -> Option<Vec<CaseResult>> {
     simulate_in(Width::widest(), cases, audience)
 }
 
-/// Runs as [`simulate`], in lanes of a width; a machine without it runs one case after the other.
+/// Runs as [`simulate`] in lanes of a given width; a machine without such lanes runs one case after the other.
 pub fn simulate_in(
     width: Width,
     cases: &[Prepared],
@@ -135,7 +139,7 @@ pub fn simulate_in(
     simulate_as_far(width, cases, audience).into_iter().collect()
 }
 
-/// Runs as [`simulate_in`]; returns `None` for each case that was not finished when it was stopped.
+/// Runs as [`simulate_in`], but keeps the results of a stopped run: `None` for each unfinished case.
 fn simulate_as_far(
     width: Width,
     cases: &[Prepared],
@@ -184,13 +188,15 @@ fn simulate_as_far(
 }
 
 impl Stack<'_> {
-    /// Returns the standing stack, or the reason why there is none.
+    /// Returns the settled stack, or the reason why the stack does not stand.
     fn found(&self) -> Result<&Standing, String> {
         self.standing.as_ref().map_err(ToString::to_string)
     }
 
-    /// Returns the result of every case on a stack that cannot be shaken: a collapse if it falls under its own
-    /// weight, no verdict if it cannot be built or does not come to rest.
+    /// Returns the result of every case on a stack that cannot be shaken; `None` if it can.
+    ///
+    /// The result is a collapse if the stack falls under its own weight; it has no verdict if the stack cannot be
+    /// built or does not come to rest.
     fn refusal(&self) -> Option<CaseResult> {
         let failure = self.standing.as_ref().err()?;
         Some(
@@ -201,7 +207,7 @@ impl Stack<'_> {
     fn fallen_at_rest(&self, failure: &RunFailure) -> Option<CaseResult> {
         let RunFailure::Settle(restless) = failure else { return None };
         let levels = self.scenario.stack().filter(|_| restless.falls())?.levels;
-        // As built, before it fell.
+        // The stack as built, before it fell.
         let assembly = assemble(self.scenario).ok()?;
         let level = |part: &Part| part.level.unwrap_or(1);
         let first = assembly.parts.iter().find(|part| part.name == restless.error.body);
@@ -221,7 +227,7 @@ impl Stack<'_> {
     }
 }
 
-/// A case on its stack.
+/// A case and the stack on which it runs.
 #[derive(Clone, Copy)]
 struct Run<'a> {
     case: &'a Prepared,
@@ -229,12 +235,12 @@ struct Run<'a> {
     index: usize,
     /// Index of its stack.
     stack: usize,
-    /// Latest end (s).
+    /// Latest time (s) at which the run ends.
     end_time: f64,
 }
 
 impl Run<'_> {
-    /// Returns the criteria that may end it earlier.
+    /// Returns the criteria that may end the run earlier.
     fn end(&self, standing: &Standing) -> End {
         End::new(&self.case.scenario, &standing.assembly, &self.case.ground)
     }
@@ -254,7 +260,7 @@ fn prepare<'a>(
     let stack = known.unwrap_or(stacks.len());
     if known.is_none() {
         let built = Stack::built(scenario, end_time);
-        // An error of this motion: under a shorter one the stack may run.
+        // This error concerns the motion: the same stack may run under a shorter one.
         if let Err(failure @ RunFailure::Duration(_)) = &built.standing {
             return Err(failure.to_string());
         }
@@ -265,7 +271,7 @@ fn prepare<'a>(
     Ok(Run { case, index, stack, end_time })
 }
 
-/// Groups the runs that can run together, in the order of their cases.
+/// Groups the runs that can share a batch, in the order of their cases.
 fn groups<'a>(runs: &[Run<'a>], stacks: &[Stack<'_>]) -> Vec<(Method, Vec<Run<'a>>)> {
     let topology = |stack: &Stack<'_>| Some(Topology::of(&stack.found().ok()?.assembly.model));
     let topologies: Vec<_> = stacks.iter().map(topology).collect();

@@ -1,4 +1,4 @@
-//! The ground motion of a scenario: read or made, scaled, and ready to drive.
+//! Ground motion of a scenario: read or generated, scaled, and ready to drive a run.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ described! {
     /// Ground motion of the run.
     #[derive(Clone, Debug)]
     pub struct MotionSummary of motion: &GroundMotion {
-        /// Its name.
+        /// Name of the motion.
         pub name: String = motion.name.clone(),
         /// Peak horizontal acceleration (m/s²).
         pub pga: f64 as "m/s2" = motion.pga(),
@@ -26,13 +26,13 @@ described! {
         pub pgd: f64 as "m" = motion.pgd(),
         /// True if there is a vertical component.
         pub vertical: bool = motion.vertical.is_some(),
-        /// When the shaking ends.
+        /// Time at which the shaking ends.
         pub duration: f64 as "s" = motion.duration,
     }
 }
 
 impl Scenario {
-    /// Reads or generates the motion of the scenario, scaled.
+    /// Reads or generates the ground motion of the scenario, and scales it.
     ///
     /// # Errors
     /// If a record cannot be read, lacks the requested component, or cannot be scaled.
@@ -40,10 +40,10 @@ impl Scenario {
         of_spec(&self.motion, self.run.similitude)
     }
 
-    /// Returns the ground under a record in memory, in place of the scenario's own motion.
+    /// Returns the ground motion of a record in memory, in place of the scenario's own motion.
     ///
-    /// Components, processing and scale are those of the scenario; if its own motion is no record, the first
-    /// horizontal component with the default processing.
+    /// Components, processing and scale are those of the scenario. If its own motion is not a record, the first
+    /// horizontal component with the default processing is used.
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -63,10 +63,10 @@ impl Scenario {
         of_record(record, &spec, &self.motion, self.run.similitude)
     }
 
-    /// Returns the scenario with the records of its motion in memory, fetched by their paths, so that nothing made
-    /// from it opens a file; records already in memory are not fetched.
+    /// Returns the scenario with the records of its motion loaded into memory, so that it opens no file from then on.
     ///
-    /// A run fetches with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as
+    /// `fetch` returns the content of a file by its path; records already in memory are not fetched. A run fetches
+    /// with [`from_disk`]. On failure `fetch` returns the message of the operating system, such as
     /// "there is no such file".
     ///
     /// ```
@@ -91,8 +91,9 @@ impl Scenario {
         Ok(held)
     }
 
-    /// Returns the scenario with a record in memory in place of its own motion; components, processing and scale stay
-    /// those that it states.
+    /// Returns the scenario with a record in memory in place of its own motion.
+    ///
+    /// Components, processing and scale remain those of the scenario.
     ///
     /// # Errors
     /// If the record has no channel, or channels of different steps.
@@ -100,8 +101,8 @@ impl Scenario {
         Ok(self.with_record_file(&held(record)?))
     }
 
-    /// Replaces the motion as [`Scenario::with_record`] does, by a file in memory ([`held`]), so that many scenarios
-    /// share one.
+    /// Returns the scenario with a file in memory ([`held`]) in place of its own motion, so that many scenarios can
+    /// share one file.
     #[must_use]
     pub fn with_record_file(&self, file: &FileRef) -> Self {
         let mut scenario = self.clone();
@@ -111,8 +112,8 @@ impl Scenario {
         scenario
     }
 
-    /// Applies the record settings of the scenario to another record; without any, uses the first horizontal
-    /// component with the default processing.
+    /// Returns a record with the record settings of the scenario; without such settings, with the first horizontal
+    /// component and the default processing.
     fn recorded(&self, source: RecordSource) -> RecordMotion {
         match &self.motion.source {
             MotionSource::Record(own) => RecordMotion { source, ..own.clone() },

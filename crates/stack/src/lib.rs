@@ -4,13 +4,14 @@
 //! scenario.toml ─▶ Scenario ─ assemble ─▶ Assembly { Model, parts }
 //! record ─ ground ─▶ Ground ────────────────────┐
 //!                                               ▼
-//!                   settle ─▶ simulate, watched by Watch ─▶ Run
+//!                   settle ─▶ simulate, observed by Watch ─▶ Run
 //! ```
 //!
 //! One run comes from [`Scenario::run`], many from an [`Ensemble`].
 //! Verdicts, reports and pictures are in `barrelstack`, which reexports all of this under the same names.
 
-// Physics has the same bits on every machine, so transcendental functions are our own (`clippy.toml`).
+// Results must be bit-identical on every machine, so the standard transcendental functions are disallowed
+// (`clippy.toml`).
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod assemble;

@@ -4,33 +4,34 @@ use crate::assemble::{Assembly, PartKind};
 use crate::scenario::View;
 use crate::watch::{Fates, Loss};
 
-/// Collapse modes: those of the shaking-table tests behind the paper.
+/// Collapse mode of a stack; all except gravity are modes of the shaking-table tests of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollapseMode {
     /// Barrels of the top level are thrown out of their cradles, or off the stack with their rack.
     Ejection,
-    /// Two or more upper levels, or a level below the top, rock off together.
+    /// Two or more upper levels rock and fall together.
     Rocking,
-    /// A rack walks along the barrels below until its rail passes their ends; only a longitudinal view can show it.
+    /// A rack walks along the barrels below until its rail passes their ends; of the planes, only that along the
+    /// barrels can show it.
     RackSliding,
     /// The whole stack overturns about its foot.
     Overturning,
-    /// The stack falls under its own weight, before it is shaken.
+    /// The stack falls under its own weight before it is shaken.
     Gravity,
 }
 
 impl CollapseMode {
-    /// The modes of a stack that is shaken.
+    /// The collapse modes of a stack that is shaken, which are all modes except gravity.
     pub const SHAKEN: [Self; 4] =
         [Self::Ejection, Self::Rocking, Self::RackSliding, Self::Overturning];
 
-    /// Returns the mode with a name as in [`CollapseMode::name`].
+    /// Returns the mode with the given [`name`](CollapseMode::name).
     pub fn named(name: &str) -> Option<Self> {
         let all = Self::SHAKEN.into_iter().chain([Self::Gravity]);
         all.into_iter().find(|mode| mode.name() == name)
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the mode in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ejection => "ejection",
@@ -45,7 +46,7 @@ impl CollapseMode {
 /// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// Everything kept its seat.
+    /// Every body kept its seat.
     Stable,
     /// A body left its seat.
     Collapse {
@@ -53,20 +54,20 @@ pub enum Outcome {
         mode: CollapseMode,
         /// Time (s) at which the first body left its seat.
         time: f64,
-        /// Name of that body.
+        /// Name of the first body that left its seat.
         first: String,
         /// Lowest level whose seat or support was lost.
         from_level: u32,
-        /// Highest level that collapsed.
+        /// Highest level that collapsed with it.
         to_level: u32,
     },
-    /// A free scene has no seats to lose.
+    /// Not judged, because a free scene has no seats that could be lost.
     NotJudged,
-    /// The caller stopped the run before its end; what would have followed is unknown.
+    /// The caller stopped the run before its end, so its outcome is unknown.
     Interrupted,
-    /// The numbers broke down.
+    /// The computation broke down numerically, or its energy balance does not close.
     Invalid {
-        /// Reason, with time and body.
+        /// Reason for the breakdown, such as the time and the body, or the energy balance.
         reason: String,
     },
 }
@@ -77,12 +78,12 @@ impl Outcome {
         matches!(self, Self::Collapse { .. })
     }
 
-    /// Returns `true` if it collapsed under its own weight, before it was shaken.
+    /// Returns `true` if the stack collapsed under its own weight before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         matches!(self, Self::Collapse { mode: CollapseMode::Gravity, .. })
     }
 
-    /// Returns the word used in files and reports.
+    /// Returns the name of the outcome in files and reports, without its details.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Stable => "stable",
@@ -102,8 +103,8 @@ impl Outcome {
 /// - A rack of the top level, or a barrel from a rack that keeps its own seat: ejection.
 /// - Any other rack: rocking of its level and all above.
 ///
-/// This follows the paper, which calls the loss of the two upper of three levels rocking, and that of the top level
-/// of four, barrels and rack, the ejection of the top barrels.
+/// This follows the paper, which classifies the loss of the upper two of three levels as rocking, and the loss of the
+/// top level of four (barrels and rack) as ejection of the top barrels.
 pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     if assembly.levels == 0 {
         return Outcome::NotJudged;
@@ -122,8 +123,9 @@ pub fn judge(assembly: &Assembly, fates: &Fates) -> Outcome {
     )
 }
 
-/// Returns the collapse that begins at a time (s) with a body, given by name, kind and level, in a stack with a
-/// number of levels; `slid` is `true` if a rack has slid off along the barrels.
+/// Returns the collapse that begins at a time (s) with the loss of seat of a body, in a stack with `levels` levels.
+///
+/// The body is given by name, kind and level; `slid` is `true` if it is a rack that slid off along the barrels.
 pub fn collapse(
     time: f64,
     (first, kind, from_level): (&str, PartKind, u32),

@@ -1,20 +1,20 @@
-//! Overlap depths of bodies, from their drawn boundaries alone: independent of contact elements and laws.
+//! Overlap depths of bodies, computed from their outlines alone, independently of contact elements and laws.
 
 use barrelstack_dynamics::space::Rotation2;
 use barrelstack_dynamics::{Body, BodyId, Linear as _, Planar, Pose, Shape, State, Vec2};
 
 use crate::assemble::{AssembleError, Assembly, Part, PartKind};
 
-/// Largest initial overlap (m) of two bodies that settling under weight can explain.
+/// Largest initial overlap (m) of two bodies that can be explained by settlement under their weight.
 pub const ALLOWED: f64 = 2e-3;
 
-/// Number of corners of the polygon that represents a circle; it lies at most `r (1 − cos π/n)` inside.
+/// Number of corners n of the polygon that represents a circle, which lies inside it by at most `r (1 − cos π/n)`.
 const AROUND: usize = 256;
 
-/// Rejects bodies that overlap before anything has moved.
+/// Rejects an initial state in which bodies overlap.
 ///
 /// # Errors
-/// Names the two that overlap most.
+/// Returns an error that names the two bodies that overlap most.
 pub(crate) fn check_overlap(
     assembly: &Assembly,
     state: &State<Planar>,
@@ -34,27 +34,27 @@ pub(crate) fn check_overlap(
 pub struct Overlap {
     /// The bodies, the lower ID first.
     pub bodies: [BodyId; 2],
-    /// Shortest displacement (m) that separates their two deepest convex parts.
+    /// Shortest displacement (m) that separates the two convex parts that overlap most.
     pub depth: f64,
 }
 
-/// The convex outlines of all bodies of a model, in their frames.
+/// The convex outlines of all bodies of a model, each in the frame of its body.
 pub struct Boundaries {
     bodies: Vec<Vec<(Outline, Depth)>>,
 }
 
-/// Position of a part out of the plane of the drawing.
+/// Position of a part perpendicular to the plane of the drawing.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Depth {
-    /// In a barrel.
+    /// The part is a barrel.
     Barrel,
-    /// Beside the barrels, so that it touches none.
+    /// The part stands beside the barrels and touches none.
     Beside,
-    /// At any depth.
+    /// The part can touch all others.
     Any,
 }
 
-/// A convex part.
+/// Outline of a convex part.
 enum Outline {
     /// Corners (m), counterclockwise.
     Polygon(Vec<Vec2>),
@@ -63,7 +63,7 @@ enum Outline {
 }
 
 impl Boundaries {
-    /// Creates the boundaries of the bodies of a model as they are drawn.
+    /// Creates the boundaries of all bodies of a model, from the outlines as drawn.
     pub fn new(assembly: &Assembly) -> Self {
         let turn = |i: usize| Rotation2::new(std::f64::consts::TAU * i as f64 / AROUND as f64);
         let around: Vec<Rotation2> = (0..AROUND).map(turn).collect();
@@ -78,7 +78,7 @@ impl Boundaries {
                         |turn: &Rotation2| place(turn.apply(Vec2::new(circle.radius, 0.0)));
                     Some(Outline::Polygon(around.iter().map(corner).collect()))
                 }
-                // A trough is not a solid: it has no inside.
+                // A trough has no interior that a body could overlap.
                 Shape::Cradle(_) => None,
                 shape @ (Shape::Polygon(_) | Shape::BarrelProfile(_)) => {
                     Some(Outline::Polygon(shape.outline().0.into_iter().map(place).collect()))
@@ -97,12 +97,12 @@ impl Boundaries {
         Self { bodies: assembly.parts.iter().zip(assembly.model.bodies()).map(placed).collect() }
     }
 
-    /// Returns the deepest overlap of any two bodies at these poses; `None` where no two overlap.
+    /// Returns the deepest overlap of any two bodies at the given poses; `None` if no two overlap.
     pub fn deepest(&self, poses: &[Pose<Planar>]) -> Option<Overlap> {
         self.overlaps(poses).into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))
     }
 
-    /// Returns all pairs of bodies that overlap at these poses.
+    /// Returns all pairs of bodies that overlap at the given poses.
     pub fn overlaps(&self, poses: &[Pose<Planar>]) -> Vec<Overlap> {
         let at = |pose: &Pose<Planar>, (outline, depth): &(Outline, Depth)| {
             let (outline, around) = outline.at(pose);
@@ -111,7 +111,7 @@ impl Boundaries {
         let bodies = self.bodies.iter().zip(poses);
         let placed: Vec<Vec<Solid>> =
             bodies.map(|(solids, pose)| solids.iter().map(|s| at(pose, s)).collect()).collect();
-        // Sweep along x, so that the cost of a row of bodies is not quadratic.
+        // Sweep along x, so that the cost does not grow quadratically with the number of bodies in a row.
         let mut extents: Vec<(f64, f64, BodyId)> = Vec::new();
         for (body, outlines) in placed.iter().enumerate() {
             let least =
@@ -168,7 +168,7 @@ impl Outline {
 /// A part at a pose, its bounding box, and its position out of the plane.
 type Solid = (Outline, [f64; 4], Depth);
 
-/// Returns the deepest overlap (m) of the parts of two bodies, each with its box; zero where there is none.
+/// Returns the deepest overlap (m) of the parts of two bodies; zero if they do not overlap.
 fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
     let mut depth = 0.0_f64;
     for (a, box_a, of_a) in first {
@@ -186,7 +186,7 @@ fn deepest_of(first: &[Solid], second: &[Solid]) -> f64 {
     depth
 }
 
-/// Returns the shortest displacement (m) that separates two convex outlines; zero or less where they are apart.
+/// Returns the shortest displacement (m) that separates two convex outlines; zero or less if they are apart.
 ///
 /// For two convex polygons it is along a normal of a side of one of them.
 fn parting(a: &Outline, b: &Outline) -> f64 {
@@ -209,7 +209,7 @@ fn least_along(sides: &[Vec2], corners: &[Vec2]) -> f64 {
         let mut lowest = f64::INFINITY;
         for corner in corners {
             lowest = lowest.min((*corner - *from).dot(outward));
-            // Another side separates them sooner.
+            // Another side separates the polygons by a shorter displacement.
             if -lowest >= least {
                 break;
             }

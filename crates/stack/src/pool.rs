@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Runs all tasks, each on whichever thread is free; returns results in the order of the tasks.
+/// Runs all tasks on all cores and returns their results in the order of the tasks.
 ///
 /// Threads take the tasks in order, so put the long ones first. The assignment to threads does not affect results.
 /// `done` is called with the number of finished tasks.
@@ -33,6 +33,6 @@ pub fn map<T: Sync, R: Send>(
         }
         worker();
     });
-    // Every slot is filled: a thread that panics takes the scope, and so this call, with it.
+    // Every slot is filled, because the scope propagates the panic of any thread.
     slots.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
 }

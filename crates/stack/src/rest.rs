@@ -2,17 +2,19 @@
 
 use barrelstack_dynamics::{Lack, SettleError};
 
-/// A stack that does not stand by itself, and the remedy.
+/// Error of a stack that does not stand by itself, with a remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{error}; {}", remedy(&error.lack))]
 pub struct Restless {
-    /// The body that fails, and the reason.
+    /// The body that does not come to rest, and the reason.
     pub error: SettleError,
 }
 
 impl Restless {
-    /// Returns `true` if the stack falls under its own weight. Where forces merely do not balance in time, or a
-    /// regularized friction law lets it creep, this is unknown.
+    /// Returns `true` if the stack falls under its own weight.
+    ///
+    /// Returns `false` if this is unknown, because forces do not balance in time or a regularized friction law lets the
+    /// stack creep.
     pub fn falls(&self) -> bool {
         match self.error.lack {
             Lack::Support
@@ -25,14 +27,14 @@ impl Restless {
     }
 }
 
-/// Returns the next move for the user.
+/// Returns the advice for the user.
 fn remedy(lack: &Lack) -> String {
     match lack {
         Lack::Support => {
             "put something under it, or let it fall from the start (run.settle = false)".to_owned()
         }
         Lack::Stiffness { interface, .. } => format!(
-            "see whether interface.{interface}.stiffness has the right unit, or take fewer levels"
+            "check whether interface.{interface}.stiffness has the right unit, or take fewer levels"
         ),
         Lack::Friction { interface, .. } => format!(
             "a larger coefficient of interface.{interface}.friction may hold it, or a place where it \
@@ -47,9 +49,11 @@ fn remedy(lack: &Lack) -> String {
                                  edge may keep it upright"
                 .to_owned()
         }
-        Lack::Place => "see whether it has room, and lies where it should".to_owned(),
-        Lack::Time { .. } => "see whether the stiffnesses of its contacts have the right unit, or \
+        Lack::Place => "check whether it has room, and is placed where it should be".to_owned(),
+        Lack::Time { .. } => {
+            "check whether the stiffnesses of its contacts have the right unit, or \
                               start without equilibrium (run.settle = false)"
-            .to_owned(),
+                .to_owned()
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! One run of a scenario, and its result.
+//! A single run of a scenario and its result.
 
 mod failure;
 mod verdict;
@@ -38,7 +38,7 @@ pub use verdict::{Ended, Verdict};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The scenario of the run.
+    /// The scenario that was run.
     pub scenario: Scenario,
     /// The scenario as given; `scenario` may be a variant of it.
     pub stated: Box<Scenario>,
@@ -52,29 +52,29 @@ pub struct Run {
     pub fates: Fates,
     /// Fates of all force elements, in the order of the model.
     pub elements: Vec<ElementFate>,
-    /// Stress along every boundary.
+    /// Normal contact stress along the boundary of every barrel and rack.
     pub stresses: Stresses,
     /// Frames and histories.
     pub recording: Recording,
-    /// Energy balance at the end; `None` if numbers were lost.
+    /// Energy balance at the end; `None` after a numerical breakdown.
     pub energy: Option<EnergySummary>,
-    /// Result of settling; `None` where the scenario starts without.
+    /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
     /// Integration settings.
     pub simulation: Simulation,
     /// Work counters.
     pub work: Work,
-    /// Time (s) that the run reached.
+    /// Simulated time (s) that the run reached.
     pub end_time: f64,
-    /// Reason for its end.
+    /// Reason for the end of the run.
     pub ending: Ending,
-    /// `true` if the caller stopped it early.
+    /// `true` if the caller stopped the run early.
     pub interrupted: bool,
     /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
 }
 
-/// Amount of computation.
+/// Amount of computation in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Number of accepted steps.
@@ -90,14 +90,14 @@ pub struct Work {
 pub struct Progress {
     /// Simulated time (s) reached.
     pub time: f64,
-    /// Simulated time (s) at which it ends, unless rest or a collapse ends it earlier.
+    /// Simulated time (s) at which the run ends, unless rest or a collapse ends it earlier.
     pub end_time: f64,
 }
 
 /// Remaining time (s) of a motion above which a run counts as cut short.
 pub const CUT: f64 = 0.01;
 
-/// Maximum number of steps of a run; a stack takes some 10⁵ steps a second.
+/// Maximum number of steps of a run; about 10⁵ steps of a stack are computed in a second.
 const MOST_STEPS: f64 = 1e9;
 
 impl Scenario {
@@ -121,8 +121,9 @@ impl Scenario {
         self.run_watched(&mut |_| ControlFlow::Continue(()))
     }
 
-    /// Runs the scenario with an observer, which receives the progress every 0.05 s of simulated time and may stop
-    /// it; the results until then are returned.
+    /// Runs the scenario with an observer that may stop the run; the results up to then are returned.
+    ///
+    /// The observer receives the progress every 0.05 s of simulated time.
     ///
     /// # Errors
     /// As [`Scenario::run`].
@@ -134,8 +135,10 @@ impl Scenario {
         held.run_on(held.ground()?, observer)
     }
 
-    /// Runs the scenario on a given ground with an observer; its own motion is ignored, but counts in the fingerprint
-    /// of the run. [`Scenario::with_record`] makes a scenario of another record.
+    /// Runs the scenario on a given ground with an observer.
+    ///
+    /// The scenario's own motion is ignored, but enters the fingerprint of the run. Use [`Scenario::with_record`] for
+    /// a scenario with another record.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -164,8 +167,10 @@ impl Scenario {
         self.run_before(ground, Pace::Time, &mut eye)
     }
 
-    /// Runs the scenario on a given ground with a callback, which is called at a pace and may stop it: for a stop
-    /// criterion of one's own, or a quantity that no history has.
+    /// Runs the scenario on a given ground with a callback that may stop the run.
+    ///
+    /// The callback is called at the given pace. Use it for a custom stop criterion, or for a quantity that is in no
+    /// history.
     ///
     /// ```
     /// use std::num::NonZero;
@@ -224,7 +229,7 @@ impl Scenario {
             conclude(&assembly, &ground, &fates, ended, state.time, ending);
         warnings.extend(restitution_warning(self));
         if outcome == Outcome::Stable {
-            // A fallen stack has no slip that could be wrong.
+            // Soft sticks falsify small slips only, which are of no interest once the stack has collapsed.
             let slips = (0..assembly.parts.len()).map(|body| fates.fate(body).residual_slip.abs());
             let most = slips.fold(0.0, f64::max);
             warnings.extend(
@@ -261,13 +266,13 @@ impl Scenario {
 }
 
 impl Run {
-    /// Returns the time (s) of the motion that is left where `run.duration` ended the run; `None` where none is.
+    /// Returns the time (s) of the motion that was left when `run.duration` ended the run; `None` if none was left.
     pub fn cut(&self) -> Option<f64> {
         verdict::cut(self.ending, self.ground.end(), self.end_time)
     }
 }
 
-/// Judges a run in a plane that ended at a time (s), with warnings about its end.
+/// Judges a planar run that ended at a time (s), and adds warnings about its end.
 pub(crate) fn conclude(
     assembly: &Assembly,
     ground: &Ground,
@@ -283,12 +288,12 @@ pub(crate) fn conclude(
     verdict
 }
 
-/// Returns the step (s) that a scenario sets, or the one its stiffest contact suggests.
+/// Returns the time step (s) that a scenario sets, or by default the one that its stiffest contact suggests.
 ///
-/// A scaled stack takes the step of the full one, scaled, so that the two runs are the same run.
+/// A stack at another length scale takes the scaled step of the full-size stack, so that both runs are equivalent.
 ///
 /// # Errors
-/// If the step set is above the critical one, at which every explicit fixed-step method is unstable.
+/// If the step in the scenario is above the critical step, at which every explicit fixed-step method is unstable.
 pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFailure> {
     let scale = scenario.run.similitude.sqrt();
     let Some(step) = scenario.run.step.map(|step| step * scale) else {
@@ -306,7 +311,7 @@ pub fn time_step(scenario: &Scenario, assembly: &Assembly) -> Result<f64, RunFai
     })
 }
 
-/// Converts a step (s) to milliseconds, for print.
+/// Converts a time step (s) to milliseconds, rounded for print.
 fn milliseconds(step: f64) -> f64 {
     (1e9 * step).round() / 1e6
 }
@@ -321,7 +326,7 @@ pub fn method(scenario: &Scenario) -> Method {
     }
 }
 
-/// Returns the thresholds beyond which a body of a scenario has left its seat, and has fallen.
+/// Returns the thresholds beyond which a body of a scenario counts as off its seat, or as fallen.
 pub fn thresholds(scenario: &Scenario) -> Thresholds {
     match &scenario.scene {
         Scene::Stack { outcome, .. } => Thresholds::of(outcome, scenario.run.similitude),
@@ -336,11 +341,12 @@ pub fn thresholds(scenario: &Scenario) -> Thresholds {
     }
 }
 
-/// Returns the latest end (s) of a run, from its scenario and from the end of its motion (s), if it has one;
-/// `time_scale` is that of similitude.
+/// Returns the latest time (s) at which a run ends, from its scenario and the end of its motion (s), if any.
+///
+/// `time_scale` is the time scale of similitude.
 ///
 /// # Errors
-/// If neither defines an end.
+/// If neither the scenario nor a motion defines an end.
 pub fn end_time(
     scenario: &Scenario,
     motion_end: Option<f64>,
@@ -361,10 +367,10 @@ pub fn end_time(
     }
 }
 
-/// Rejects a run that would not end in a day; both times in s.
+/// Rejects a run that would take too many steps; both times are in s.
 ///
 /// # Errors
-/// If it takes more than 10⁹ steps.
+/// If the run takes more than 10⁹ steps.
 pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     let steps = end_time / step;
     if steps <= MOST_STEPS {
@@ -372,13 +378,14 @@ pub fn check_length(end_time: f64, step: f64) -> Result<(), RunFailure> {
     }
     Err(RunFailure::Duration(format!(
         "{end_time:e} s in steps of {step:e} s are {steps:.0e} steps, more than a run may take \
-         ({MOST_STEPS:.0e}): shorten run.duration, or see whether run.step and the stiffness of the \
+         ({MOST_STEPS:.0e}): shorten run.duration, or check whether run.step and the stiffness of the \
          contacts have the right unit"
     )))
 }
 
-/// Rejects a recording that would not fit into memory, before any of it is allocated; `rates` are those of frames and
-/// histories (Hz).
+/// Rejects a recording that would not fit into memory, before any of it is allocated.
+///
+/// The rates (Hz) are those of frames and of histories.
 pub(crate) fn check_memory(
     assembly: &Assembly,
     end_time: f64,
@@ -390,7 +397,7 @@ pub(crate) fn check_memory(
     check_kept(frame, (end_time * history_rate + 1.0, channels))
 }
 
-/// Checks the memory for a number of frames of bodies, with some numbers each, and for samples of channels.
+/// Checks the memory for a number of frames, with some numbers for each body, and for the samples of histories.
 ///
 /// # Errors
 /// If they take more than 2 GB.
@@ -406,7 +413,7 @@ pub fn check_kept(
     Err(RunFailure::Memory { samples, channels, frames, bodies, gigabytes: kept / 1e9 })
 }
 
-/// Returns a warning for each law that cannot hold a body at rest, with its creep rate.
+/// Returns a warning, with the creep speed, for each friction law that cannot hold a body at rest.
 fn creep_warning(assembly: &Assembly) -> Vec<String> {
     assembly
         .model
@@ -415,7 +422,7 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
         .filter(|interface| interface.friction.creep_speed(0.5) > 0.0)
         .map(|interface| {
             format!(
-                "{}: the regularized friction law creeps; under half of the friction limit by \
+                "{}: the regularized friction law creeps; at half of the friction limit, by \
                  {:.2e} m/s",
                 interface.name,
                 interface.friction.creep_speed(0.5)
@@ -425,8 +432,9 @@ fn creep_warning(assembly: &Assembly) -> Vec<String> {
 }
 
 impl Run {
-    /// Returns the basis of the constants of the seats of a stack, or of all interfaces of a free scene, such as
-    /// "seat"; "mixed" when they differ.
+    /// Returns the basis of the contact constants, such as "seat", or "mixed" if they differ.
+    ///
+    /// In a stack, only seats count; in a free scene, all interfaces.
     pub fn stiffness_basis(&self) -> &'static str {
         let model = &self.assembly.model;
         let seats = |interface: &&Interface<Planar>| {

@@ -1,4 +1,4 @@
-//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves.
+//! First sloshing wave of the wine in a partly filled barrel: its period, and the share of the wine that moves with it.
 
 use std::f64::consts::PI;
 
@@ -7,32 +7,33 @@ use barrelstack_dynamics::math::{acos, cos, exp, sin, sin_cos};
 /// The first sloshing wave of a tank as an equivalent pendulum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
-    /// Share of the mass of the liquid that moves.
+    /// Fraction of the mass of the liquid that moves with the wave.
     pub share: f64,
     /// Length (m) of the pendulum, `g/ω²`.
     pub length: f64,
-    /// Depth (m) of its mass below the middle of the tank, where it is modeled as a mass on a spring.
+    /// Depth (m) of the moving mass below the middle of the tank, if it is modeled as a mass on a spring.
     pub depth: f64,
 }
 
 /// Number of basis functions on the free surface.
 const TERMS: usize = 60;
 
-/// Half length of the strip to which the surface is mapped (1); beyond it the wall is within rounding error.
+/// Half the length of the strip to which the surface is mapped (dimensionless); beyond it, the surface is at the wall
+/// to within rounding error.
 const HALF_STRIP: f64 = 16.0;
 
 /// Number of quadrature points.
 const POINTS: usize = 400;
 
-/// Returns the first wave across a horizontal circular cylinder of a radius (m) that is filled to a share of its
-/// volume.
+/// Returns the first wave across a horizontal circular cylinder with a radius (m), filled to a fraction of its volume.
 ///
-/// In the potential theory of small waves the segment of the circle is mapped to a strip by `x + i z = b tanh(w/2)`,
-/// with half the width `b` of the surface; there a function `sin k ξ` on the surface has the normal derivative `k
-/// tanh k β` times itself, where `β` is the angle between surface and wall. The remaining eigenvalue problem on the
-/// surface has a rapidly converging basis.
-/// Half full it gives `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960); nearly empty 1, and
-/// nearly full the ice-fishing problem `ω² b/g = 2.0061` (Fox and Kuttler 1983).
+/// In the potential theory of small waves, the segment of the circle is mapped to a strip by `x + i z = b tanh(w/2)`,
+/// where `b` is half the width of the surface. In the strip, a function `sin k ξ` on the surface has the normal
+/// derivative `k tanh k β` times itself, where `β` is the angle between surface and wall. The remaining eigenvalue
+/// problem on the surface has a rapidly converging basis.
+/// For a half-full cylinder, the result is `ω² R/g = 1.35573`, in agreement with McIver (1989) and Budiansky (1960).
+/// The limit for a nearly empty one is `ω² R/g = 1`, and for a nearly full one the ice-fishing problem with
+/// `ω² b/g = 2.0061` (Fox and Kuttler 1983).
 /// The mass follows from the excitation of the wave by a lateral acceleration (Ibrahim 2005, section 5).
 pub fn across(radius: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
@@ -51,7 +52,7 @@ pub fn across(radius: f64, filled: f64) -> Wave {
         let sum = |i: usize| amplitudes.iter().zip(&functions).map(|(a, f)| a * f[i]).sum();
         (0..POINTS).map(sum).collect()
     };
-    // The largest 1/κ, by power iteration; the next one is less than half as large.
+    // The largest 1/κ by power iteration, which converges fast: the next eigenvalue is less than half as large.
     let mut amplitudes = vec![0.0; TERMS];
     amplitudes[0] = 1.0;
     let mut inverse = 0.0;
@@ -77,9 +78,11 @@ pub fn across(radius: f64, filled: f64) -> Wave {
     Wave { share: push * push / (norm * inverse * area), length, depth: length }
 }
 
-/// Returns the first wave along a barrel as that of a rectangular tank of its length (m), filled to the mean depth of
-/// the wine under its surface: `ω² = π g/L tanh(π h/L)` with the mass `8 tanh(π h/L)/(π³ h/L)` of the wine (Ibrahim
-/// 2005, section 5). An approximation, since the bottom of a barrel is round.
+/// Returns the first wave along a barrel, approximated by that of a rectangular tank.
+///
+/// The tank has the length L (m) of the barrel, and is filled to the mean depth h of the wine under its surface:
+/// `ω² = π g/L tanh(π h/L)`, where the fraction `8 tanh(π h/L)/(π³ h/L)` of the mass moves (Ibrahim 2005, section 5).
+/// This is an approximation, since the bottom of a barrel is round.
 pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let angle = wetted(filled);
     let (b, area) = (sin(angle), angle - sin(angle) * cos(angle));
@@ -87,12 +90,12 @@ pub fn along(radius: f64, room_length: f64, filled: f64) -> Wave {
     let ratio = depth / room_length;
     let swing = tanh(PI * ratio);
     let share = 8.0 * swing / (PI * PI * PI * ratio);
-    // Keeps the center of mass of the wine while the rest is in the middle of the barrel.
+    // This depth preserves the center of mass of the wine, with the rest of it at the middle of the barrel.
     let center = radius * 2.0 * b * b * b / (3.0 * area);
     Wave { share, length: room_length / (PI * swing), depth: center / share }
 }
 
-/// Returns half of the angle (rad) of a circular segment that has a share of the area of its circle.
+/// Returns half the angle (rad) of the circular segment whose area is a fraction of the area of its circle.
 fn wetted(filled: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI);
     for _ in 0..60 {
@@ -103,7 +106,7 @@ fn wetted(filled: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns the filled share of the volume of a horizontal cylinder for a depth over its radius.
+/// Returns the filled fraction of a horizontal cylinder, from the depth of the liquid divided by the radius.
 pub fn filled_to(depth: f64) -> f64 {
     let angle = acos(1.0 - depth);
     let (sin, cos) = sin_cos(angle);

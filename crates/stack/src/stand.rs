@@ -1,4 +1,4 @@
-//! Builds and settles the stacks of scenarios, one alone or many side by side.
+//! Building and settling of the stacks of scenarios, one alone or many side by side.
 
 use barrelstack_dynamics::lanes::{Task, Topology, Width};
 use barrelstack_dynamics::real::Real;
@@ -11,11 +11,12 @@ use crate::rest::Restless;
 use crate::run::{RunFailure, check_length, time_step};
 use crate::scenario::{Scenario, Scene};
 
-/// Largest residual force at rest, over gravity.
+/// Largest unbalanced force of a stack at rest, as a fraction of gravity.
 pub const UNBALANCED: f64 = 1e-10;
 
-/// Minimum number of stacks or cases of one topology to run in lanes: a bundle costs as much as some three single
-/// runs, however few of its lanes are used.
+/// Minimum number of stacks or cases of one topology that run in lanes.
+///
+/// A bundle costs as much as about three single runs, however few of its lanes are used.
 pub(crate) const FEWEST: usize = 3;
 
 /// A stack at rest, ready to be shaken.
@@ -25,23 +26,23 @@ pub struct Standing {
     pub assembly: Assembly,
     /// The state at rest.
     pub state: State<Planar>,
-    /// The forces of that state.
+    /// The forces in the state at rest.
     pub scratch: Scratch<Planar>,
-    /// Settling to rest; `None` if the scenario starts without.
+    /// Result of settling; `None` if the scenario starts without settling.
     pub settled: Option<Settled>,
     /// The time step (s).
     pub step: f64,
 }
 
 impl Standing {
-    /// Returns the largest sinking (m) of a body as the stack came to rest.
+    /// Returns the largest distance (m) by which a body sank while the stack came to rest.
     pub fn deepest_sinking(&self) -> f64 {
         let sunk = self.assembly.model.bodies().iter().zip(&self.state.poses);
         sunk.map(|(body, now)| body.pose.position.z - now.position.z).fold(0.0, f64::max)
     }
 }
 
-/// The stack of a scenario, as built or at rest, or the error.
+/// The stack of a scenario, built or settled, or the error that prevented it.
 #[derive(Debug)]
 pub(crate) struct Stack<'a> {
     pub(crate) scenario: &'a Scenario,
@@ -81,18 +82,18 @@ impl<'a> Stack<'a> {
 /// Builds a stack for a run until a time (s) and settles it.
 ///
 /// # Errors
-/// If it cannot be built, or does not stand.
+/// If the stack cannot be built, or does not stand.
 pub fn stand(scenario: &Scenario, end_time: f64) -> Result<Standing, RunFailure> {
     let mut one = [Stack::built(scenario, end_time)];
-    // It is never stopped.
+    // Settling is never stopped here.
     let _ = stand_all(Width::Scalar, &mut one, &|| false);
     let [Stack { standing, .. }] = one;
     standing
 }
 
-/// Settles built stacks and installs their devices; returns `None` when stopped.
+/// Settles built stacks and installs their devices; `None` if stopped.
 ///
-/// Stacks of one topology settle side by side, each to the bits of settling alone.
+/// Stacks of one topology settle side by side, each with the same bits as if it settled alone.
 pub(crate) fn stand_all(
     width: Width,
     stacks: &mut [Stack<'_>],
@@ -108,7 +109,7 @@ pub(crate) fn stand_all(
             *standing = Err(AssembleError::from(error).into());
         }
     }
-    // Prestressed elements press the stack together.
+    // Prestressed elements compress the stack, so it has to settle again.
     rest(width, stacks, stop, |scenario, standing| {
         let strained = |element: &Element<Planar>| element.load(&standing.state).force != 0.0;
         scenario.run.settle && standing.assembly.model.elements().iter().any(strained)
@@ -123,7 +124,7 @@ pub(crate) fn stand_all(
     Some(())
 }
 
-/// Settles some of the stacks and replaces failures by errors; returns `None` when stopped.
+/// Settles the wanted stacks and replaces those that fail by errors; `None` if stopped.
 fn rest(
     width: Width,
     stacks: &mut [Stack<'_>],
@@ -134,7 +135,7 @@ fn rest(
     for stack in stacks {
         let Ok(standing) = &stack.standing else { continue };
         if wanted(stack.scenario, standing) {
-            // In scalar runs the topology does not matter.
+            // In scalar runs, the topology does not matter.
             let together = width != Width::Scalar;
             let topology = together.then(|| Topology::of(&standing.assembly.model));
             match groups.iter_mut().find(|(known, _)| *known == topology) {
@@ -166,7 +167,7 @@ fn rest(
     Some(())
 }
 
-/// Settles stacks of one topology.
+/// Task that settles stacks of one topology in lanes.
 struct Settling<'a> {
     stacks: Vec<settle::Stack<'a>>,
     stop: &'a dyn Fn() -> bool,

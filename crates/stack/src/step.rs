@@ -1,4 +1,4 @@
-//! Default time step: set by the seats, divided during impacts.
+//! Default time step, which seats determine and impacts divide.
 
 use barrelstack_dynamics::body::Motion;
 use barrelstack_dynamics::model::FORESEEN;
@@ -10,62 +10,73 @@ use barrelstack_dynamics::{
 use crate::assemble::Assembly;
 use crate::scenario::{FreeInterface, Method, Scenario, Scene};
 
-/// Fraction of the critical time step of seats: accuracy requires more than stability.
+/// Time step as a fraction of the critical time step of seats: accuracy requires a shorter step than stability.
 const SHARE: f64 = 0.3;
 
-/// Fraction of the time 1/γ in which dampers stop a body: beyond all of it, velocities predicted from the last step
-/// overshoot. With 0.7 some of a thousand random stacks that had come to rest (`tests/settling.rs`) drifted by
-/// millimeters.
+/// Largest time step as a fraction of the time 1/γ in which dampers stop a body.
+///
+/// With more than the whole time, velocities predicted from the last step overshoot. With 0.7, some of a thousand
+/// random stacks that had come to rest (`tests/settling.rs`) drifted by millimeters.
 const DAMPING_SHARE: f64 = 0.33;
 
 /// Penetration (m) at full scale at which nonlinear laws are linearized.
 const REFERENCE: f64 = 0.01;
 
-/// Fraction of the critical time step of impacts, applied while they last, some milliseconds. With it the energy
-/// balance of the paper's cases closes to 3e-5, and halving the step moves none of their falls by more than 0.3 ms
-/// (`tests/paper.rs`).
+/// Time step during impacts, which last some milliseconds, as a fraction of their critical time step.
+///
+/// With it, the energy balance of the paper's cases closes to 3e-5, and halving the step changes the time of no fall by
+/// more than 0.3 ms (`tests/paper.rs`).
 const IMPACT_SHARE: f64 = 0.4;
 
-/// Share of [`REFERENCE`] up to which impacts are followed with whole steps: resting contacts are below it. With it
-/// the energy residual of the demo along the barrels is 1.1e-5, with four times as much 2.4e-4.
+/// Penetration up to which impacts take whole steps, as a fraction of [`REFERENCE`]; resting contacts are below it.
+///
+/// With it, the energy residual of the demo along the barrels is 1.1e-5; with four times as much, it is 2.4e-4.
 const WHOLE_STEP: f64 = 0.05;
 
-/// Maximum fraction of the critical time step at that penetration, sticks included: bodies at rest require stability
-/// alone. At twice that penetration, to which a contact at rest is followed, it is 0.83 of the critical time step,
-/// since stiffness grows with the root of penetration.
+/// Largest time step as a fraction of the critical time step at the penetration [`WHOLE_STEP`], sticks included.
+///
+/// Bodies at rest require stability only. At twice that penetration, up to which a resting contact takes whole steps,
+/// the step is 0.83 of the critical one, since the stiffness grows with the root of the penetration.
 const WHOLE_STEP_SHARE: f64 = 0.7;
 
-/// Weights of the heaviest body that may rest on the lightest one through impact contacts. Their damping grows with
-/// the load: beyond [`LOADED_SHARE`] of the time in which they then stop that body, heaps of racks under barrels do
-/// not come to rest.
+/// Load on the lightest body through impact contacts, in weights of the heaviest body.
 const LOAD: f64 = 3.0;
+
+/// Largest time step as a fraction of the time in which impact contacts under [`LOAD`] stop the lightest body.
+///
+/// The damping of these contacts grows with the load; with longer steps, heaps of racks under barrels do not come to
+/// rest.
 const LOADED_SHARE: f64 = 1.4;
 
-/// Fraction of the critical time step of a contact that states a restitution, applied while it lasts: its damper engages
-/// at once, somewhere within a step, which is an error of first order. With it a restitution of 0.7 is kept to 0.002,
-/// of 0.3 to 0.003, besides the work of gravity during the contact.
+/// Time step during a contact with a stated restitution, as a fraction of its critical time step.
+///
+/// The damper of the contact engages abruptly within a step, which is an error of first order. With this fraction, a
+/// restitution of 0.7 is kept to 0.002, and one of 0.3 to 0.003, apart from the work of gravity during the contact.
 const RESTITUTION_SHARE: f64 = 0.005;
 
-/// Gap (m) at full scale within which such contacts are foreseen: so fast that 40 m/s are foreseen at steps of 1 ms.
+/// Gap (m) at full scale within which closing contacts with a stated restitution are foreseen: enough for 40 m/s at
+/// steps of 1 ms.
 const FORESEEN_REBOUND: f64 = 0.05;
 
-/// Radius (m) above which a round piece counts as nearly straight: for contacts whose constants are stated per seat,
-/// and for others. Levers of rounder ones are overestimated by up to four times; the paper's cases, whose staves are
-/// such, keep their steps.
+/// Radius (m) above which a round piece counts as nearly straight: for contacts with constants per seat, and for
+/// others.
+///
+/// The levers of rounder pieces, such as the staves of the paper's cases, are overestimated by up to four times.
 const NEARLY_STRAIGHT: (f64, f64) = (1.0, 4.0);
 
-/// Time stepping of a stack.
+/// Time step of a model and its division in impacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeStepping {
     /// Time step (s) outside of impacts, rounded down to few digits at full scale.
     pub step: f64,
-    /// Subdivision during impacts.
+    /// Division of the step during impacts.
     pub substepping: Substepping<f64>,
 }
 
 impl TimeStepping {
-    /// Computes the steps for the contacts of a model and its force elements, including `loose` ones that are not
-    /// installed yet; `time_scale` is that of similitude.
+    /// Computes the time stepping for the contacts and force elements of a model.
+    ///
+    /// `loose` are force elements that are not installed yet, and `time_scale` is the time scale of similitude.
     pub fn of<'a>(
         model: &'a Model<Planar>,
         loose: &(impl Iterator<Item = &'a Element<Planar>> + Clone),
@@ -86,7 +97,7 @@ impl TimeStepping {
         let full_scale = step / time_scale;
         let full_scale = if full_scale.is_finite() { round_down(full_scale) } else { 1e-3 };
         let step = full_scale * time_scale;
-        // Rounding must not divide a step that is as short as impacts require.
+        // Rounding must not divide a step that is already as short as impacts require.
         let substeps = (step / impact * (1.0 - 1e-9)).ceil().max(1.0);
         let mut substepping = Substepping {
             substeps,
@@ -107,8 +118,9 @@ impl TimeStepping {
     }
 }
 
-/// Largest tolerance with which the adaptive method, whose steps are not divided, keeps a restitution: within 1 % of the
-/// exact motion, where 1e-3 misses it by 4 %.
+/// Largest tolerance at which the adaptive method, whose steps are not divided, reproduces a stated restitution.
+///
+/// The motion is then within 1 % of the exact one; with 1e-3, the error is 4 %.
 const KEEPS_RESTITUTION: f64 = 1e-6;
 
 /// Returns a warning if the adaptive method is too inaccurate for the restitution that a free scene states.
@@ -123,14 +135,16 @@ pub fn restitution_warning(scenario: &Scenario) -> Option<String> {
     (states && tolerance > KEEPS_RESTITUTION).then(|| {
         format!(
             "run.tolerance = {tolerance:e}: the adaptive method may miss the restitution that this \
-             scene states by several percent; {KEEPS_RESTITUTION:e} keeps it"
+             scene states by several percent; {KEEPS_RESTITUTION:e} reproduces it"
         )
     })
 }
 
-/// Divides the steps (s) of a free scene while contacts that state a restitution are closed or about to close, so that
-/// they give it back; `critical` is the critical time step (s) of the contacts of an interface at a penetration (m), and
-/// `time_scale` that of similitude.
+/// Divides the steps of a free scene while contacts with a stated restitution are closed or about to close, so that
+/// they reproduce it.
+///
+/// `step` is the time step (s), `critical` returns the critical time step (s) of the contacts of an interface at a
+/// penetration (m), and `time_scale` is the time scale of similitude.
 pub fn keep_restitution<S: Space<Real = f64>>(
     model: &mut Model<S>,
     laws: &[FreeInterface],
@@ -150,12 +164,12 @@ pub fn keep_restitution<S: Space<Real = f64>>(
     model.set_substepping(substepping);
 }
 
-/// Returns the critical time step (s) of the contacts of an interface in the plane at a penetration (m).
+/// Returns the critical time step (s) of the contacts of an interface of a planar model at a penetration (m).
 pub(crate) fn critical_of_interface(model: &Model<Planar>, depth: f64, interface: usize) -> f64 {
     critical(model, 0.0, depth, &|pair| pair.interface == interface)
 }
 
-/// Returns `true` if a pair meets in impacts and carries little load between them.
+/// Returns `true` if a pair touches in impacts only, and carries little load between them.
 fn is_impact(model: &Model<Planar>, pair: &ContactPair) -> bool {
     let law = &model.interfaces()[pair.interface].normal;
     let nodes = &model.bodies()[pair.contactor].nodes[pair.nodes];
@@ -181,11 +195,11 @@ fn loaded(model: &Model<Planar>) -> f64 {
     })
 }
 
-/// Returns the critical time step (s) of an assembly, its impacts divided; infinite when nothing can touch.
+/// Returns the critical time step (s) of an assembly whose steps are divided in impacts; infinity if nothing can touch.
 ///
-/// For an explicit method it is 2/ω, with ω² = Σk/m for the stiffest body: the springs of all nodes of one of its
-/// boundaries that face one target, over its mass, and those of its force elements. Nonlinear laws are linearized at
-/// a penetration of 1 cm at full scale; `time_scale` is that of similitude.
+/// For an explicit method, it is 2/ω with ω² = Σk/m for the stiffest body. The sum is over the springs of all nodes of
+/// one of its boundaries that face one target, and of its force elements. Nonlinear laws are linearized at a
+/// penetration of 1 cm at full scale; `time_scale` is the time scale of similitude.
 pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     let model = &assembly.model;
     let depth = REFERENCE * time_scale * time_scale;
@@ -196,7 +210,8 @@ pub fn critical_time_step(assembly: &Assembly, time_scale: f64) -> f64 {
     seats.min(model.substepping().substeps * impacts)
 }
 
-/// Returns the critical time step of some pairs at a penetration (m); force elements add the rate `held` (1/s²).
+/// Returns the critical time step (s) of the pairs that `of` selects at a penetration (m); force elements add the rate
+/// `held` (1/s²).
 fn critical(
     model: &Model<Planar>,
     held: f64,
@@ -210,8 +225,10 @@ fn critical(
     2.0 / (rate + held).sqrt()
 }
 
-/// Returns the largest rate due to the force elements of any body: the sum of one of their constants over its mass,
-/// and over its inertia times the square of the arm.
+/// Returns the largest rate of any body due to its force elements.
+///
+/// It is the sum of `constant` × (1/mass + arm²/inertia) over the elements, where the constant is their stiffness or
+/// damping.
 fn of_elements<'a>(
     model: &'a Model<Planar>,
     loose: impl Iterator<Item = &'a Element<Planar>>,
@@ -220,7 +237,7 @@ fn of_elements<'a>(
     let mut rates = vec![0.0; model.bodies().len()];
     let place = |id: BodyId| model.bodies()[id].pose.position;
     for element in loose.chain(model.elements()) {
-        // Some act on both bodies at the point of the second one, which may be far from the first.
+        // Some elements act on both bodies at the point of the second one, which may be far from the first.
         let [first, second] = element.link().bodies;
         let apart = place(second) - place(first);
         for (id, point) in element.ends() {
@@ -232,12 +249,11 @@ fn of_elements<'a>(
             rates[id] += constant(element) * (1.0 / body.mass + arm.dot(arm) / body.inertia);
         }
     }
-    // The body at the other end may move against it, so each counts twice.
+    // The body at the other end may move in the opposite direction, so each element counts twice.
     2.0 * rates.into_iter().fold(0.0, f64::max)
 }
 
-/// Returns the largest rate over all pairs and their free bodies. A body may be held from below and above, so each
-/// counts twice.
+/// Returns twice the largest rate over all pairs and their free bodies, since a body may be held from below and above.
 fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> f64) -> f64 {
     let mut most = 0.0_f64;
     let bodies = model.bodies();
@@ -248,8 +264,8 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
         for id in contactors.iter().filter(free) {
             most = most.max(2.0 * rate(&met(*id, pair.target), &bodies[*id]));
         }
-        // The rate of a target grows with a figure of the contactor: of many, keep the two with the largest, since
-        // one may be the target itself.
+        // The rate of a target grows with that of the contactor on a common yardstick: of many contactors, the two
+        // with the largest rates suffice, since one of them may be the target itself.
         let yardstick = (contactors.len() > 1).then(|| bodies[pair.target].clone());
         let mut largest: [Option<(f64, BodyId)>; 2] = [None; 2];
         for id in contactors {
@@ -271,8 +287,9 @@ fn fastest(model: &Model<Planar>, rate: impl Fn(&ContactPair, &Body<Planar>) -> 
     most
 }
 
-/// Returns the rate (1/s²) of a body per N/m of its nodes that face a target at once: all nodes of a straight face, a
-/// quarter of those around the body.
+/// Returns the rate (1/s²) of a body per stiffness (N/m) of a node, from the nodes that face a target at the same time.
+///
+/// These are all nodes of a straight face, or a quarter of the nodes around a body.
 fn per_stiffness(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>) -> f64 {
     facing(model, pair, |nodes| if is_straight(nodes) { 1.0 } else { 0.25 }) / body.mass
 }
@@ -283,8 +300,9 @@ fn stiffness(model: &Model<Planar>, pair: &ContactPair, depth: f64) -> f64 {
     interface.normal.tangent_stiffness(depth).max(interface.friction.stick_stiffness())
 }
 
-/// Returns Σc/m, or Σc d²/I if larger (1/s), of the nodes that face a target at once: on a flat target half of those
-/// around a body, on a round one a quarter.
+/// Returns the rate Σc/m, or Σc d²/I if larger (1/s), from the nodes that face a target at the same time.
+///
+/// These are half of the nodes around a body on a flat target, and a quarter on a round one.
 fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, depth: f64) -> f64 {
     let damping = model.interfaces()[pair.interface].normal.tangent_damping(depth);
     let flat = match &model.bodies()[pair.target].surfaces[pair.surface].surface {
@@ -301,7 +319,8 @@ fn damping_rate(model: &Model<Planar>, pair: &ContactPair, body: &Body<Planar>, 
     facing(model, pair, |_| if flat { 0.5 } else { 0.25 }) * damping * turning.max(1.0 / body.mass)
 }
 
-/// Returns the number of nodes of a pair, or meters of boundary, in contact at once: a share of all, at least two.
+/// Returns the number of nodes of a pair, or meters of boundary, that are in contact at the same time: a share of all
+/// nodes, but at least two.
 fn facing(
     model: &Model<Planar>,
     pair: &ContactPair,
@@ -317,7 +336,7 @@ fn facing(
             let two: f64 = nodes.iter().take(2).map(|n| weight(n.tributary_length)).sum();
             (share(nodes) * total).max(two)
         }
-        // At most two round pieces of a convex boundary bear at once.
+        // At most two round pieces of a convex boundary are in contact at the same time.
         Nodes::Rounds(rounds) => {
             rounds.iter().take(2).map(|round| weight(round.tributary_length)).sum()
         }
@@ -334,8 +353,9 @@ fn is_straight(nodes: &[Node<Planar>]) -> bool {
     nodes.iter().all(|node| aside(node) <= 1e-9 * along.dot(along))
 }
 
-/// Returns the mean square lever (m²) of node forces about the center of mass. A rolling node turns a body by
-/// friction only, which the stick bounds.
+/// Returns the mean square lever (m²) of node forces about the center of mass.
+///
+/// It is zero for a rolling node, which turns a body by friction only, and friction is bounded by the stick.
 fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     match nodes {
         Nodes::Fixed(nodes) if !nodes.is_empty() => {
@@ -349,10 +369,10 @@ fn mean_square_arm(basis: Basis, nodes: &Nodes<Planar>) -> f64 {
     }
 }
 
-/// Returns a bound of the lever (m) of the force on a round piece: its normals pass through its center.
+/// Returns a bound of the lever (m) of the force on a round piece, whose normals pass through its center.
 ///
-/// The center of nearly straight staves is hundreds of meters away, but contact is limited to their ends: the limits
-/// there are perpendicular to the outermost normals.
+/// The center of nearly straight staves is hundreds of meters away, but their contacts stay between their ends, where
+/// the limits are perpendicular to the outermost normals.
 fn lever(basis: Basis, round: &Round<Planar>) -> f64 {
     let center = round.center;
     let is_bounded = round.limits.iter().all(|limit| limit.length() > 0.0);
@@ -371,7 +391,7 @@ fn mean_square(arms: impl ExactSizeIterator<Item = f64>) -> f64 {
     arms.map(|arm| arm * arm).sum::<f64>() / count
 }
 
-/// Rounds down to one of these digits times a power of ten.
+/// Rounds down to a number with one or two digits: one of a few factors times a power of ten.
 pub fn round_down(value: f64) -> f64 {
     const DIGITS: [f64; 10] = [1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0];
     let power = math::pow(10.0, math::log10(value).floor());

@@ -1,8 +1,8 @@
 //! Error of the elastic stick under reversing slip.
 //!
-//! A stick reverses its friction over twice its yield displacement, and not at once: every reversal of slip is
-//! delayed by √(4 yield / acceleration). For a block on oscillating ground this changed the slip by 0.3 to 2.7
-//! √(yield / amplitude) either way (`crates/dynamics/tests/reversal.rs`), so that root is reported.
+//! An elastic stick reverses its friction gradually, over twice its yield displacement, so every reversal of slip is
+//! delayed by √(4 yield / acceleration). For a block on oscillating ground, this changed the slip by 0.3 to 2.7 times
+//! √(yield / amplitude), up or down (`crates/dynamics/tests/reversal.rs`), so this root is reported as the error.
 
 use std::fmt;
 
@@ -11,23 +11,23 @@ use barrelstack_motion::GroundMotion;
 
 use crate::assemble::Assembly;
 
-/// Share of slip above which the error is reported.
+/// Relative error of slip above which it is reported.
 const REPORTED: f64 = 0.05;
 
-/// An interface whose stick is soft for the motion.
+/// An interface whose elastic stick is too soft for the ground motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SoftStick {
     interface: String,
     /// Displacement (m) at which the sticks of all its contacts at rest yield together.
     yields: f64,
-    /// Displacement of the ground (m).
+    /// Peak displacement of the ground (m).
     swing: f64,
     /// Relative error of slip.
     error: f64,
 }
 
 impl SoftStick {
-    /// Returns the soft sticks of a stack at rest, for a ground motion.
+    /// Returns the interfaces of a stack at rest whose sticks are too soft for a ground motion.
     pub(crate) fn of(
         assembly: &Assembly,
         rest: &Scratch<Planar>,
@@ -53,7 +53,7 @@ impl SoftStick {
         model.interfaces().iter().zip(sums).filter_map(soft).collect()
     }
 
-    /// Returns `true` if a slip (m) exceeds the elastic range.
+    /// Returns `true` if a slip (m) exceeds the elastic range of the stick.
     pub(crate) fn shows_in(&self, slip: f64) -> bool {
         slip > 2.0 * self.yields
     }
@@ -63,9 +63,9 @@ impl fmt::Display for SoftStick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}: the elastic stick yields after {:.2} mm, so slip that goes to and fro, on ground that \
-             moves by {:.0} mm, may be {:.0} % off that of rigid friction; {:.0} times its \
-             friction.tangential_stiffness_ratio makes that {:.0} %",
+            "{}: the elastic stick yields after {:.2} mm, so reversing slip on ground that moves by \
+             {:.0} mm may be {:.0} % off that of rigid friction; {:.0} times its \
+             friction.tangential_stiffness_ratio reduces this to {:.0} %",
             self.interface,
             1e3 * self.yields,
             1e3 * self.swing,

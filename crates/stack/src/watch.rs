@@ -1,4 +1,4 @@
-//! Run observers: frames, histories, stress envelopes, and body fates.
+//! Run observers: frames, histories, stress envelopes, and fates of bodies.
 
 mod elements;
 mod fate;
@@ -31,7 +31,7 @@ pub struct Watch<'a> {
     pub recording: Recording,
     /// Normal stress along every boundary.
     pub(crate) stresses: StressWatch,
-    /// Seats, falls, slips and tilts.
+    /// Losses of seats, falls, slips and tilts of all bodies.
     pub fates: Fates,
     /// Forces and failures of force elements.
     pub elements: ElementFates,
@@ -44,11 +44,11 @@ pub struct Watch<'a> {
     next_look: f64,
     /// Number of accepted states so far.
     states: u64,
-    /// Reason for the end; `None` while the run goes on, and if it reaches its end time.
+    /// Reason for the end of the run; `None` while it continues, and if it reaches its end time.
     pub ending: Option<Ending>,
 }
 
-/// State of a run passed to the callback.
+/// State of a run that is passed to the callback.
 #[derive(Clone, Copy)]
 pub struct Glance<'a> {
     /// Simulated time (s).
@@ -80,7 +80,7 @@ pub struct End<R: Real = f64> {
 }
 
 impl End {
-    /// Creates the criteria of a scenario.
+    /// Creates the stop criteria of a scenario.
     pub fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         Self {
             rest: Rest::new(scenario, assembly, ground),
@@ -89,10 +89,10 @@ impl End {
     }
 }
 
-/// Duration (s), at full size, after the first loss of a seat of a run that ends when its verdict is known.
+/// Duration (s), at full scale, that a run continues after the first loss of a seat if it ends with its verdict.
 pub const VERDICT: f64 = 2.0;
 
-/// Returns the duration (s) for which a run goes on after a collapse, at its scale of time; infinite for no limit.
+/// Returns the duration (s) that a run continues after a collapse, at its time scale; infinity for no limit.
 pub fn after_collapse(scenario: &Scenario) -> f64 {
     let run = &scenario.run;
     let by_verdict = (run.until == Until::Verdict).then_some(VERDICT);
@@ -100,9 +100,9 @@ pub fn after_collapse(scenario: &Scenario) -> f64 {
 }
 
 impl<R: Real> End<R> {
-    /// Returns the lanes whose run is over at an accepted state: after a collapse, and by rest.
+    /// Observes an accepted state, and returns the lanes whose run is over: after a collapse, and by rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn observe(
         &mut self,
         state: &State<Planar<R>>,
@@ -116,7 +116,7 @@ impl<R: Real> End<R> {
 lanewise!(struct End<R> { rest, after_collapse });
 
 impl End {
-    /// Returns the reason for the end at an accepted state; rest takes precedence, since nothing moves any more.
+    /// Returns the reason to end the run at an accepted state, if any; rest takes precedence over a collapse.
     pub(crate) fn why(&mut self, state: &State<Planar>, fates: &Fates) -> Option<Ending> {
         match self.observe(state, fates) {
             (_, true) => Some(Ending::Rest),
@@ -128,7 +128,7 @@ impl End {
 
 impl<'a> Watch<'a> {
     /// Creates the observer of a run that starts from the state at rest in `state`.
-    #[expect(clippy::too_many_arguments, reason = "the parts of a watch, named once")]
+    #[expect(clippy::too_many_arguments, reason = "every argument is a part of the observer")]
     pub fn new(
         assembly: &'a Assembly,
         ground: &'a Ground,
@@ -157,7 +157,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Simulated time (s) between two callbacks at the time interval.
+/// Simulated time (s) between two callbacks with [`Pace::Time`].
 pub const PROGRESS: f64 = 0.05;
 
 impl Observer<Planar> for Watch<'_> {

@@ -1,6 +1,6 @@
-//! Parts of the library of stacks by themselves.
+//! Tests of individual parts of the library.
 //!
-//! They stand here and not in the library, so that the test command compiles the lanes of the library once.
+//! They are here rather than in the library, so that the tests compile the lanes of the library only once.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,7 +38,7 @@ fn steps_are_round_numbers() {
     }
 }
 
-/// `[lib] test = false` would silently leave out tests in the sources.
+/// With `[lib] test = false`, tests in the sources would silently not run.
 #[test]
 fn no_test_stands_in_the_sources_of_the_library() {
     fn look(folder: &Path) {

@@ -1,4 +1,4 @@
-//! The parts list of a stack: bodies in order, each a compound of convex solids, scaled.
+//! Builder of a stack: collects its bodies, contact laws and force elements, all scaled by similitude.
 
 use barrelstack_dynamics::{
     Body, BodyId, ContactPair, Element, Interface, Nodes, Planar, Pose, Shape, Vec2,
@@ -19,35 +19,36 @@ pub(crate) struct Builder<'a> {
     pub(crate) parts: Vec<Part>,
     /// Moment of inertia (kg·m²) of an unmodified barrel.
     inertia: f64,
-    /// Contact data of the surfaces of every body, in body order.
+    /// Contact data of each surface of each body, in the order of the bodies.
     pub(super) touches: Vec<Vec<Touch>>,
     /// Index of the law between barrels and their cradles.
     pub(crate) cradle_law: usize,
     /// Contact laws of devices, numbered after those of the stack.
     pub(super) laws: Vec<Interface<Planar>>,
-    /// Contact pairs of devices, which use these laws.
+    /// Contact pairs of devices, which use the laws of devices.
     pub(crate) pairs: Vec<ContactPair>,
-    /// Elements without which the stack does not stand, each with its device.
+    /// Force elements that act from the start, because the stack does not stand without them, each with its device.
     pub(super) held: Vec<(Element<Planar>, &'static Words)>,
-    /// Elements that are installed once the stack has settled.
+    /// Force elements of devices that are installed after the stack has settled.
     pub(crate) loose: Vec<Loose>,
     /// Height (m) by which devices have raised the stack.
     pub(super) raised: f64,
 }
 
-/// A body as a view describes it: full-scale numbers in a frame of its own.
+/// Description of a body before it is added to the stack: full-scale values in a frame of the body.
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) kind: PartKind,
-    /// `None` for a body that belongs to no level.
+    /// Level of the body; `None` if it belongs to no level.
     pub(crate) level: Option<u32>,
     pub(crate) column: u32,
     /// Mass (kg).
     pub(crate) mass: f64,
-    /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass; `None` to compute
-    /// center and inertia from the solids, all of one density.
+    /// Moment of inertia (kg·m²) about the origin of the frame, which is then the center of mass.
+    ///
+    /// `None` to compute the center of mass and the inertia from the solids, all with the same density.
     pub(crate) inertia: Option<f64>,
-    /// Position of the frame (m).
+    /// Position of the frame of the body (m).
     pub(crate) position: Vec2,
     /// Characteristic size (m).
     pub(crate) size: f64,
@@ -57,7 +58,7 @@ pub(crate) struct Draft {
 }
 
 impl<'a> Builder<'a> {
-    /// Creates a stack that has only the ground.
+    /// Creates a builder with only the ground.
     pub(super) fn new(spec: &'a StackSpec, scale: Similitude) -> Self {
         let (bodies, parts) = (vec![Body::ground(0.0)], vec![Part::ground()]);
         let inertia = spec.barrel.inertia(spec.view);
@@ -77,8 +78,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the number of barrels that one body of the plane represents: along the barrels, the plane shows one
-    /// slice of those side by side in a rack.
+    /// Returns the number of slices, one barrel wide, into which the plane divides a rack: 1 across the barrels, and
+    /// the number of barrels side by side along them.
     pub(crate) fn side_by_side(&self) -> f64 {
         match self.spec.view {
             View::Transverse => 1.0,
@@ -86,12 +87,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a contact law of a device; returns its number.
+    /// Adds a contact law of a device and returns its index.
     pub(crate) fn add_law(&mut self, name: &str, law: &scenario::Interface) -> usize {
         self.add_bundle(name, law, Bundle::ONE)
     }
 
-    /// Adds a law for barrels in their cradles; returns its number.
+    /// Adds a contact law for barrels in their cradles and returns its index.
     pub(crate) fn add_cradle(&mut self, name: &str, law: &scenario::Interface) -> usize {
         let shown = Shown::Plane(self.spec.view);
         self.add_bundle(name, law, Bundle::of_cradle(law, self.spec, shown))
@@ -102,7 +103,7 @@ impl<'a> Builder<'a> {
         StackPair::ALL.len() + self.laws.len() - 1
     }
 
-    /// Adds an element without which the stack does not stand.
+    /// Adds a force element that acts from the start, because the stack does not stand without it.
     pub(crate) fn hold(&mut self, element: impl Into<Element<Planar>>, words: &'static Words) {
         self.held.push((element.into(), words));
     }
@@ -115,7 +116,7 @@ impl<'a> Builder<'a> {
         self.raised = height;
     }
 
-    /// Adds a body, scaled; returns its ID.
+    /// Scales a body, adds it to the stack, and returns its ID.
     pub(crate) fn add(&mut self, draft: Draft) -> BodyId {
         let length = self.scale.length;
         let (center, inertia) = if let Some(inertia) = draft.inertia {
@@ -151,7 +152,7 @@ impl<'a> Builder<'a> {
         self.bodies.len() - 1
     }
 
-    /// Returns name, mass (kg) and offset (m) of a rack after the scenario's overrides.
+    /// Returns the name, mass (kg) and offset (m) of a rack, with the overrides of the scenario applied.
     pub(super) fn rack_at(&self, level: u32, column: u32) -> (String, f64, f64) {
         let mut mass = self.spec.rack.mass;
         let mut offset = 0.0;
@@ -167,8 +168,10 @@ impl<'a> Builder<'a> {
         (name, mass, offset)
     }
 
-    /// Adds the barrels of one shape and size (m) that the rack of a column carries at positions along it (m),
-    /// counted from `origin` (m); returns their IDs.
+    /// Adds the barrels of a rack, all of the same shape and size (m), and returns their IDs.
+    ///
+    /// `places` are the positions of the barrels along the rack (m), relative to `origin` (m); the column is that of
+    /// the rack.
     pub(super) fn add_barrels(
         &mut self,
         carrier: BodyId,
@@ -211,7 +214,7 @@ impl<'a> Builder<'a> {
         let flip = |v: &mut Vec2| v.x = -v.x;
         for body in &mut self.bodies {
             flip(&mut body.pose.position);
-            // Zero stays +0, so that the bits do not change.
+            // Negating zero would give -0 and change the bits of the results.
             if body.pose.orientation != 0.0 {
                 body.pose.orientation = -body.pose.orientation;
             }
@@ -221,7 +224,7 @@ impl<'a> Builder<'a> {
             }
             for placed in &mut body.surfaces {
                 flip(&mut placed.offset);
-                // Every shape of a stack but a polygon is symmetric about its own frame.
+                // All shapes of a stack other than polygons are symmetric left to right.
                 if let Shape::Polygon(polygon) = &placed.surface {
                     placed.surface = Shape::Polygon(polygon.mirrored());
                 }

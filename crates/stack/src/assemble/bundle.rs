@@ -1,16 +1,16 @@
 //! Number of seats of a rack that one contact of the model represents.
 //!
-//! A plane shows seats that stand one behind the other as one. Where constants are stated per seat, a contact has
-//! those of all the seats that it represents, so the same stack is equally stiff, damped and rough in either plane
-//! and in space, however `stack.rack.contact` divides its seats.
+//! Seats that stand one behind the other coincide in a plane. Where constants are stated per seat, a contact has the
+//! constants of all the seats that it represents. The same stack is therefore equally stiff, damped and rough in
+//! either plane and in space, however `stack.rack.contact` divides its seats.
 //!
-//! | seat | across the barrels | along them | in space |
+//! | seat | a contact across the barrels | a contact along the barrels | a contact in space |
 //! |---|---|---|---|
-//! | a rail across a crown | both rails | each | each |
-//! | a support of a cradle | both rails | the pair of a rail, which wedges the barrel | each |
-//! | an end of a rail on the ground | both rails | the share of one barrel of both ends | each |
-//! | a foot on the ground | both rails; each corner half | as an end of a rail | – |
-//! | a post | two; each corner half | the share of one barrel of two; each corner half | – |
+//! | a rail on the crown of a barrel | both rails | one rail | one rail |
+//! | a support of a cradle | both rails | both supports on a rail, which wedge the barrel | one support |
+//! | an end of a rail on the ground | both rails | both ends, divided by the barrels side by side | one end |
+//! | a foot on the ground | both rails, half at each corner | as an end of a rail | – |
+//! | a post | two posts, half at each corner | the same, divided by the barrels side by side | – |
 
 use barrelstack_dynamics::math;
 
@@ -18,19 +18,19 @@ use super::longitudinal::has_rows;
 use crate::scenario::{Basis, Cradle, Friction, Interface, RackKind, SeatContact, StackPair};
 use crate::scenario::{StackSpec, View};
 
-/// Number of rails of a rack, one behind the other across the barrels; also of posts there.
+/// Number of rails of a rack, which stand one behind the other in the plane across the barrels; also that of posts.
 const RAILS: f64 = 2.0;
 
-/// Representation of a stack.
+/// Representation of a stack by a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shown {
-    /// One of its planes.
+    /// The plane across or along the barrels.
     Plane(View),
-    /// Space, where every seat is a contact.
+    /// Space, where every seat is a contact of its own.
     Space,
 }
 
-/// Seats that one contact represents, all with the same penetration.
+/// The seats that one contact represents, all with the same penetration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bundle {
     /// Number of seats.
@@ -47,7 +47,7 @@ impl Bundle {
         Self { count, cosine: 1.0 }
     }
 
-    /// Returns the bundle that a contact of a pair represents; `law` is the one in the scenario.
+    /// Returns the seats that a contact of a pair represents; `law` is the contact law as stated in the scenario.
     pub(super) fn at(pair: StackPair, law: &Interface, spec: &StackSpec, shown: Shown) -> Self {
         let Shown::Plane(view) = shown else { return Self::ONE };
         let rack = &spec.rack;
@@ -57,7 +57,7 @@ impl Bundle {
                 View::Longitudinal => 1.0,
             });
         }
-        // The plane along the barrels shows one slice of those side by side.
+        // The plane along the barrels is a slice one barrel wide.
         let behind = match view {
             View::Transverse => RAILS,
             View::Longitudinal => RAILS / f64::from(rack.barrels),
@@ -71,7 +71,7 @@ impl Bundle {
         let on_posts = rack.kind == RackKind::OnRacks;
         Self::of(match (pair, view) {
             (StackPair::BarrelRack, View::Longitudinal) => 1.0,
-            // A straight tube lies on its two ends.
+            // A foot is one seat with two corners; a straight tube has one seat at each of its ends.
             (StackPair::RackGround, View::Transverse) if rack.foot_height > 0.0 && !on_posts => {
                 behind * flat
             }
@@ -81,7 +81,7 @@ impl Bundle {
         })
     }
 
-    /// Returns the bundle that a contact of a barrel with its cradle represents.
+    /// Returns the seats that a contact of a barrel with its cradle represents.
     pub(super) fn of_cradle(law: &Interface, spec: &StackSpec, shown: Shown) -> Self {
         match (shown, spec.rack.cradle) {
             (Shown::Plane(View::Longitudinal), Cradle::Supports { angle })
@@ -98,8 +98,9 @@ impl Bundle {
         self.count * self.cosine * self.cosine
     }
 
-    /// Returns the friction of the bundle: a barrel in a wedge presses on it with more than its weight, and the
-    /// sticks of all seats act in full.
+    /// Returns the friction law of the bundle.
+    ///
+    /// A barrel presses on a wedge with more than its weight, and the tangential springs of all seats act in full.
     pub(super) fn friction(self, friction: Friction) -> Friction {
         if self.cosine == 1.0 {
             return friction;

@@ -1,9 +1,10 @@
 //! Sloshing wine in partly filled barrels.
 //!
-//! Across the barrels a wall presses toward the axis of the barrel, so the first wave is a pendulum on that axis,
-//! whatever the motion of the barrel; the rest of the wine moves with the axis.
-//! Along the barrels it is a mass on a spring, as in a rectangular tank of the same length and fill, at the depth
-//! that keeps the center of mass of the wine: an approximation.
+//! Across the barrels, the pressure between wall and wine acts through the axis of the barrel. The first wave is
+//! therefore a pendulum that hangs from the axis, whatever the motion of the barrel, and the rest of the wine moves
+//! with the axis.
+//! Along the barrels, the first wave is approximated by a mass on a spring, as in a rectangular tank of the same
+//! length and fill. The depth of the mass preserves the center of mass of the wine.
 
 use std::f64::consts::PI;
 
@@ -14,22 +15,23 @@ use crate::device::Words;
 use crate::scenario::{StackBody, View};
 use crate::slosh::Wave;
 
-/// The elements that hold the wine never break and appear in no report.
+/// Description of the elements that hold the wine, which never break and appear in no report.
 static WORDS: Words = Words::silent("wine");
 
-/// Damping ratio of a wave: an assumption; viscosity alone gives less in a smooth barrel, breaking waves give more.
+/// Damping ratio of a wave, an assumption: viscosity alone gives less in a smooth barrel, and breaking waves give more.
 const DAMPING_RATIO: f64 = 0.01;
 
-/// Natural frequency (rad/s), 15 Hz, of the support of the wave: far above that of waves, and no stiffer than seats.
+/// Natural frequency (rad/s) of the support of the wave mass, 15 Hz: far above that of waves, and no stiffer than
+/// seats.
 const HOLDING: f64 = 30.0 * PI;
 
-/// Damping ratio of that support: an assumption; wine that strikes the wall does not spring back.
+/// Damping ratio of the support of the wave mass, an assumption: wine that strikes the wall does not bounce back.
 const HOLDING_DAMPING: f64 = 0.2;
 
-/// Radius (m) of the bob that is drawn.
+/// Radius (m) of the disc that represents the wave mass in drawings.
 const BOB: f64 = 0.03;
 
-/// Adds the sloshing part of the wine to all partly filled barrels.
+/// Adds a sloshing mass to every partly filled barrel.
 pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     for body in 0..builder.bodies.len() {
         let part = &builder.parts[body];
@@ -47,7 +49,7 @@ pub(super) fn pour(builder: &mut Builder<'_>, gravity: f64) {
     }
 }
 
-/// Moves the mass of a wave out of a barrel with some wine (kg) and suspends it there.
+/// Takes the mass of a wave from a barrel that holds `wine` (kg), and suspends it in the barrel as a body.
 fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravity: f64) {
     let scale = builder.scale;
     let mass = wave.share * wine;
@@ -66,7 +68,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
         level: None,
         column: 1,
         mass,
-        // Every force passes through its center, so it never turns.
+        // Every force acts through the center of mass, so the body never rotates.
         inertia: Some(0.5 * mass * BOB * BOB),
         position: place,
         size: BOB,
@@ -83,7 +85,7 @@ fn add(builder: &mut Builder<'_>, body: usize, (wine, wave): (f64, Wave), gravit
     let damping = 2.0 * DAMPING_RATIO * mass * rate * scale.damping(false);
     let stiff = mass * HOLDING * HOLDING * scale.stiffness(1.0, false);
     let hard = 2.0 * HOLDING_DAMPING * mass * HOLDING * scale.damping(false);
-    // Static deflection of the support under the wine.
+    // Static deflection of the support under the weight of the wave mass.
     let sag = gravity / (HOLDING * HOLDING);
     let link = |what: &str| Link {
         name: format!("{name} {what}"),

@@ -1,4 +1,4 @@
-//! A free scene: any planar bodies on a ground.
+//! Assembly of a free scene: arbitrary planar bodies on a ground.
 
 use std::collections::HashMap;
 use std::mem::discriminant;
@@ -18,7 +18,7 @@ use crate::device::FREE;
 use crate::scenario::element::{ElementLaw, FreeElement};
 use crate::scenario::{self, FreeBody, FreeInterface, FreeScene};
 
-/// Builds a free scene.
+/// Builds the model of a free scene.
 pub(super) fn assemble(
     scene: &FreeScene,
     gravity: f64,
@@ -59,7 +59,7 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns a force element between two bodies, of its natural length where none is stated.
+/// Returns a force element between two bodies; without a stated length, it fits the distance between its ends.
 fn element(
     spec: &FreeElement,
     scene: &FreeScene,
@@ -68,7 +68,7 @@ fn element(
 ) -> Element<Planar> {
     let place = |name: &String, point: [f64; 2]| {
         let point = Vec2::new(point[0], point[1]) * scale.length;
-        // The ground precedes all bodies, and its frame is the origin.
+        // The ground is body 0, and its frame is that of the scene.
         match scene.bodies.iter().position(|body| body.name == *name) {
             Some(at) => {
                 let [x, z] = scene.bodies[at].center_of_mass;
@@ -118,14 +118,16 @@ fn element(
     element
 }
 
-/// Outer boundaries of a body.
+/// Group and outer boundaries of a body.
 struct Outer<'a> {
     group: Option<&'a str>,
     boundaries: Vec<Boundary<'a>>,
 }
 
-/// Surfaces and node sets of a body that are of one kind. The nodes and the surface of a part have the same place in
-/// both ranges; chosen nodes have no surface.
+/// The surfaces and node sets of a body that belong to one kind, as index ranges.
+///
+/// The surface and the nodes of a part have the same position in both ranges; nodes chosen one by one have no
+/// surface.
 struct Boundary<'a> {
     kind: &'a str,
     surfaces: Range<usize>,
@@ -133,19 +135,19 @@ struct Boundary<'a> {
 }
 
 impl Boundary<'_> {
-    /// Returns the node set of the part that has this surface.
+    /// Returns the node set of the part with this surface; `None` if nodes are chosen one by one.
     fn nodes_of(&self, surface: usize) -> Option<usize> {
         let at = self.nodes.start + surface - self.surfaces.start;
         (self.nodes.len() == self.surfaces.len()).then_some(at)
     }
 
-    /// Returns the surface of the part that has this node set.
+    /// Returns the surface of the part with this node set.
     fn surface_of(&self, nodes: usize) -> usize {
         self.surfaces.start + nodes - self.nodes.start
     }
 }
 
-/// Numbers bodies by kind: bodies of one kind have the same contact pairs with any other body.
+/// Returns the number of the kind of each body; bodies of one kind form the same contact pairs with any other body.
 fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec<usize> {
     let grouped = scene.interfaces.iter().any(|interface| !interface.within_groups);
     let mut known = HashMap::new();
@@ -167,8 +169,9 @@ fn kinds(scene: &FreeScene, bodies: &[Body<Planar>], outer: &[Outer<'_>]) -> Vec
 
 /// Returns the contact pairs of two bodies.
 ///
-/// Between bodies of one kind both carry nodes; of two that roll, one is enough. Convex boundaries without nodes are
-/// tested each against the other; against a round boundary its rolling node is enough.
+/// Two boundaries of the same kind are each tested against the other, except for two circles: the rolling node of one
+/// is enough. Two convex boundaries without nodes are also tested each against the other; of a convex boundary and a
+/// circle, only the rolling node of the circle is tested.
 fn pairs(
     scene: &FreeScene,
     between: [BodyId; 2],
@@ -306,7 +309,7 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     let refuse = |problem: String| AssembleError::Shape { body: body.to_owned(), problem };
     Ok(match shape {
         scenario::Shape::Compound { .. } => {
-            return Err(refuse("a part of a compound is a compound itself".into()));
+            return Err(refuse("a part of a compound must not be a compound itself".into()));
         }
         scenario::Shape::Rectangle { width, height, corner_radius } => Shape::Polygon(
             Polygon::rectangle(width * length, height * length, corner_radius * length)
@@ -333,7 +336,7 @@ fn shape(body: &str, shape: &scenario::Shape, length: f64) -> Result<Shape, Asse
     })
 }
 
-/// Returns the nodes of one part by a rule, in the body frame; `None` where they are chosen for the whole body.
+/// Returns the nodes of one part by a rule, in the body frame; `None` if the nodes of the body are chosen one by one.
 fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option<Nodes<Planar>> {
     let shape = &placed.surface;
     let boundary = match (rule, shape) {
@@ -350,7 +353,7 @@ fn nodes(rule: &scenario::Nodes, placed: &Placed<Planar>, length: f64) -> Option
             let around = std::f64::consts::TAU * circle.radius;
             shape.nodes(around / f64::from((*count).max(1)))
         }
-        // For curved shapes the count divides the whole boundary; without a count, 64 parts are fine enough.
+        // On curved shapes, the count divides the whole boundary; without a count, 64 parts resolve it.
         (scenario::Nodes::Count(count), _) => {
             shape.nodes(boundary_length(shape) / f64::from((*count).max(1)))
         }

@@ -1,4 +1,4 @@
-//! Converts the contact laws of a scenario to those of the model.
+//! Conversion of the contact laws of a scenario to those of the model.
 
 use barrelstack_dynamics::contact::{Exponent, restitution};
 use barrelstack_dynamics::{Basis, FrictionLaw, Interface, NormalLaw, Space};
@@ -7,14 +7,16 @@ use super::Similitude;
 use super::bundle::Bundle;
 use crate::scenario;
 
-/// Penetration (m) at which nonlinear laws provide the stiffness of the stick.
+/// Penetration (m) at which the tangent stiffness of a nonlinear normal law determines the stiffness of the stick.
 const STICK_REFERENCE: f64 = 2e-4;
 
-/// Damping ratio of the stick of a rebound law, for a mass (kg) on it.
+/// Damping ratio of the stick of a rebound law, for a contact that carries [`STICK_MASS`].
 const STICK_DAMPING_RATIO: f64 = 0.1;
+
+/// Mass (kg) for which the stick of a rebound law has the ratio [`STICK_DAMPING_RATIO`].
 const STICK_MASS: f64 = 50.0;
 
-/// Returns an interface of the model; each of its contacts represents a bundle of those that the law is stated for.
+/// Converts a contact law to an interface of the model, whose contacts each represent a bundle of seats.
 pub(super) fn interface<S: Space<Real = f64>>(
     name: &str,
     law: &scenario::Interface,
@@ -32,7 +34,7 @@ pub(super) fn interface<S: Space<Real = f64>>(
     Interface { name: name.to_owned(), normal, stop: None, rolling: None, friction, basis }
 }
 
-/// Returns the law of several elements that share one penetration.
+/// Returns the normal law of several equal elements that share one penetration.
 fn together(law: NormalLaw, elements: f64) -> NormalLaw {
     match law {
         NormalLaw::SpeedGap { stiffness, damping } => {
@@ -58,7 +60,7 @@ fn normal(law: &scenario::NormalLaw, basis: Basis, scale: Similitude) -> NormalL
         let full = match *damping {
             scenario::Damping::Coefficient(c) => c,
             scenario::Damping::Restitution { restitution: e, reference: mass } => {
-                // A restitution of exactly 1 has no damping; the scenario accepts only (0, 1].
+                // The scenario accepts only restitutions in (0, 1], and a restitution of 1 has no damping.
                 let ratio = invert(e).unwrap_or(0.0);
                 restitution::damping(k, ratio, mass)
             }
@@ -115,7 +117,7 @@ fn friction_of(
             let reference = STICK_REFERENCE * scale.length;
             let stiffness = normal.tangent_stiffness(reference);
             let damping = match normal {
-                // Its damping does not depend on the rate alone.
+                // The damping of a rebound law depends not only on the rate, so the stick has a damping ratio.
                 NormalLaw::Rebound { .. } => {
                     let mass =
                         STICK_MASS * scale.mass() / if per_length { scale.length } else { 1.0 };

@@ -1,9 +1,10 @@
-//! A stack along its barrels: barrel profiles on the rails of racks that stand on the profiles below or on the posts
-//! of the racks below.
+//! Assembly of a stack in the plane along its barrels.
 //!
-//! The model is a slice one barrel wide: a rack that carries several barrels side by side contributes its share of
-//! the mass to each. A rail is a tube whose upper side carries the barrel above and whose lower side lies on the
-//! barrel below or on the ground: with nodes, as in the paper, or exactly, with one contact element where they touch.
+//! Barrel profiles lie on the rails of racks, which stand on the profiles below or on the posts of the racks below.
+//! The model is a slice one barrel wide: a rack that carries several barrels side by side contributes a share of
+//! its mass to each slice. A rail is a tube: its upper side carries the barrel above, and its lower side lies on the
+//! barrel below or on the ground. Its contacts are tested at nodes, as in the paper, or exactly, with one contact
+//! element where rail and barrel touch.
 //! Posts stand beside the barrels, at the corners of a rack: they touch racks and the ground, but no barrel.
 
 use barrelstack_dynamics::shape::{BarrelProfile, Polygon, PolygonError};
@@ -18,12 +19,14 @@ use crate::scenario::{Basis, Posts, Rack, RackKind, SeatContact, StackSpec};
 /// Radius (m) of the rounding of a barrel's chime: an assumption.
 pub const CHIME_RADIUS: f64 = 0.01;
 
-/// Cosine of the angle (73°) to a rail's seat up to which the nodes of the seat bear; contacts further to the side,
-/// such as the chime of a barrel that has slid off, are tested exactly. Of cosines from 0 to 0.7 tried on seven
-/// stacks, the worst among them, this one gave the smallest residual of the energy balance: 8.3e-5 at most.
+/// Cosine of the largest angle (73°) from the normal of a rail's seat at which the nodes of the seat bear.
+///
+/// Contacts further to the side, such as the chime of a barrel that has slid off, are tested exactly. Among cosines
+/// from 0 to 0.7, tried on seven stacks that include the worst ones known, this one gave the smallest residual of the
+/// energy balance: 8.3e-5 at most.
 const WIDEST: f64 = 0.3;
 
-/// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
+/// Adds all levels, and returns the height of the stack (m) and the reach of a rack on its supports (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let (rack, barrel) = (&spec.rack, &spec.barrel);
@@ -78,8 +81,9 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     })
 }
 
-/// Returns the spacing (m) of racks for each barrel that one carries end to end: the length of a barrel, or that of
-/// the frame where it is longer.
+/// Returns the spacing (m) of racks, divided by the number of barrels that a rack carries end to end.
+///
+/// It follows from the length of the barrels, or from that of the frame if the frame is longer.
 fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     let pitch = barrel + gap;
     let deep = f64::from(rack.barrels_deep);
@@ -89,7 +93,7 @@ fn rack_pitch(rack: &Rack, barrel: f64, gap: f64) -> f64 {
     })
 }
 
-/// Adds one rack with its barrels end to end; returns its ID and those of the barrels.
+/// Adds one rack with its barrels end to end, and returns the ID of the rack and those of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     profile: &BarrelProfile,
@@ -114,12 +118,12 @@ fn add_rack(
         body: name.clone(),
         problem: problem.to_string(),
     };
-    // The rails meet the support of the frame at the end of the stroke of its seats.
+    // The rails lie above the underside of a frame with posts by the stroke of the seats, and bear when it is used up.
     let lift = rack.posts.map_or(0.0, |_| rack.seat_stroke.min(rack.beam_height));
     let on_barrels = rack.posts.is_none() && level > 1;
     let rail = |(barrel, place, side): (usize, f64, f64)| {
         let x = place + side * rack.rail_half_spacing;
-        // Rails on barrels follow their slope; the floor and posts are level.
+        // Rails on barrels follow the incline of the barrels; the floor and posts are level.
         let rise = side * seating.rise;
         let (bottom, top) = (if on_barrels { rise } else { lift }, rack.clearance + rise);
         let tube = Polygon::rectangle(rack.rail_width, top - bottom, corner_of(rack))?;
@@ -168,16 +172,18 @@ fn add_rack(
     Ok((rack_id, barrels))
 }
 
-/// Returns whether rails carry rows of nodes.
+/// Returns `true` if rails carry rows of nodes.
 ///
-/// A barrel lies on the round of a rail over some millimeters, and a rail on the ground with its two corners: with constants
-/// per seat each is one element, however finely wider seats are divided.
+/// A barrel touches the rounded edge of a rail over a few millimeters, and a rail on the ground rests on its two
+/// corners. With constants per seat, each of these contacts is one element, however finely wider seats are divided.
 pub(super) fn has_rows(spec: &StackSpec) -> bool {
     spec.rack.contact == SeatContact::Nodes && spec.interfaces.barrel_rack.basis != Basis::Seat
 }
 
-/// Returns the parts of a rack on posts beside its barrels: the tube from post to post, the posts, and the cups over
-/// those below. `outer` is the distance (m) of the outer barrels from the middle of the rack.
+/// Returns the parts of a rack with posts that stand beside the barrels: the tube from post to post, the posts, and
+/// the cups over the posts below.
+///
+/// `outer` is the distance (m) of the outer barrels from the middle of the rack.
 fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid>, PolygonError> {
     let spacing = outer + posts.half_spacing_along;
     let length = 2.0 * (spacing + posts::cup(rack));
@@ -191,8 +197,8 @@ fn frame(rack: &Rack, posts: &Posts, outer: f64, level: u32) -> Result<Vec<Solid
     Ok(solids.into_iter().map(|solid| Solid { out_of_plane: true, ..solid }).collect())
 }
 
-/// Returns the nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): along its flat part, and
-/// one in the middle of each rounded end.
+/// Returns the nodes of the lower or upper face of a rail about `x` (m) at height `z` (m): a row along the flat part,
+/// and one node in the middle of each rounded end.
 fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
     let corner = corner_of(rack);
     let half = 0.5 * rack.rail_width - corner;
@@ -207,24 +213,24 @@ fn noded_face(rack: &Rack, x: f64, z: f64, outward: f64) -> Vec<(Vec2, f64)> {
     nodes
 }
 
-/// Radius (m) of the corners of a rail.
+/// Returns the corner radius (m) of a rail.
 fn corner_of(rack: &Rack) -> f64 {
     TUBE_CORNER.min(0.25 * rack.rail_width)
 }
 
-/// Position of a barrel on its rails, which may raise its right end.
+/// Position of a barrel relative to its two rails, which may be inclined.
 struct Seating {
     /// Height (m) of the middle of the barrel above the mean top of its rails.
     seat: f64,
-    /// Height (m) of the right rail above that mean; the left one is as far below it.
+    /// Height (m) of the right rail above the mean of both; the left rail is as far below the mean.
     ///
-    /// The upper side of a barrel is its underside turned over, so a rack on inclined barrels has the same rise below
-    /// as above: its rails keep their height, and one sits a little further up than the other.
+    /// The upper side of a barrel mirrors its underside, so on inclined barrels the undersides of the rails rise as
+    /// much as their tops: both rails keep their height, and one sits a little higher than the other.
     rise: f64,
 }
 
 impl Seating {
-    /// Computes the seating; staves slope, so a rail touches with the rounding of its inner corner.
+    /// Computes the position of a barrel on its rails; staves slope, so a rail touches with its rounded inner corner.
     fn of(profile: &BarrelProfile, rack: &Rack) -> Result<Self, AssembleError> {
         let corner = corner_of(rack);
         let across = rack.rail_half_spacing - 0.5 * rack.rail_width + corner;

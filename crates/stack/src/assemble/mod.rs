@@ -1,4 +1,4 @@
-//! Builds the model of a scenario, and records what each of its bodies represents.
+//! Assembly of the model of a scenario, with a description of each of its bodies.
 
 mod builder;
 mod bundle;
@@ -28,7 +28,7 @@ pub use similitude::Similitude;
 pub(crate) use solid::{Seat, Solid};
 pub use transverse::{BAR_RADIUS, TUBE_CORNER};
 
-/// Kind of a body.
+/// Kind of a body of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartKind {
     /// The ground and everything fixed to it.
@@ -39,14 +39,14 @@ pub enum PartKind {
     Rack,
     /// A protective device.
     Device,
-    /// Sloshing wine in a barrel.
+    /// The mass of the sloshing wave in a barrel.
     Wine,
     /// A body of a free scene.
     Body,
 }
 
 impl PartKind {
-    /// Returns the word used in files and reports.
+    /// Returns the name of the kind in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ground => "ground",
@@ -59,45 +59,45 @@ impl PartKind {
     }
 }
 
-/// A chain of points (m) in the frame of a body, for drawing.
+/// A polyline in the frame of a body, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// The points (m), from the center of mass.
+    /// The points (m), relative to the center of mass.
     pub points: Vec<Vec2>,
-    /// `true` if the last point joins the first.
+    /// `true` if the last point is joined to the first.
     pub closed: bool,
 }
 
 /// Description of a body of the model.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// The name in results, equal to that of the body.
+    /// Name in results, the same as that of the body in the model.
     pub name: String,
     /// Kind of the body.
     pub kind: PartKind,
     /// Level, 1 at the bottom; `None` in a free scene.
     pub level: Option<u32>,
-    /// Column, 1 at the left: of barrels, or of racks for a rack.
+    /// Column, 1 at the left: racks count columns of racks, other bodies columns of barrels.
     pub column: Option<u32>,
-    /// For a barrel the rack that carries it, for wine its barrel, for a rack on an isolator its platform.
+    /// Body that carries this one: the rack of a barrel or tuned mass, the barrel of wine, or the platform of a rack.
     pub carrier: Option<BodyId>,
-    /// For a rack above the first level, the bodies it stands on.
+    /// Bodies on which a rack above the first level stands; empty for all other bodies.
     pub supports: Vec<BodyId>,
-    /// Characteristic size (m) of the body: for a barrel its radius.
+    /// Characteristic size (m) of the body; the radius of a barrel.
     pub size: f64,
-    /// Volume (m³) of the wine in a barrel as the scenario states it, at any length scale; 0 for all other bodies.
+    /// Volume (m³) of the wine in a barrel at full scale, whatever the length scale; 0 for all other bodies.
     pub wine: f64,
-    /// Height (m) of the center of mass above the underside of a rack.
+    /// Height (m) of the center of mass of a rack above its underside.
     pub foot: f64,
-    /// Lines to draw, in the body frame.
+    /// Outlines to draw, in the body frame.
     pub outlines: Vec<Outline>,
-    /// `true` for each surface that stands beside the barrels, out of the plane of the drawing: it never meets
-    /// barrels.
+    /// For each surface, `true` if it stands beside the barrels, out of the plane of the drawing, and so never touches
+    /// a barrel.
     pub out_of_plane: Vec<bool>,
 }
 
 impl Part {
-    /// Creates a part that belongs to no stack.
+    /// Creates a part that has no level, column, carrier or support.
     fn alone(name: &str, kind: PartKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -114,7 +114,7 @@ impl Part {
         }
     }
 
-    /// The ground, drawn as a line longer than any picture is wide.
+    /// Creates the part of the ground, drawn as a line longer than any picture is wide.
     fn ground() -> Self {
         let points = vec![Vec2::new(-100.0, 0.0), Vec2::new(100.0, 0.0)];
         let outlines = vec![Outline { points, closed: false }];
@@ -122,18 +122,18 @@ impl Part {
     }
 }
 
-/// A model and the description of its bodies.
+/// A model and the descriptions of its bodies.
 #[derive(Clone, Debug)]
 pub struct Assembly {
     /// The model.
     pub model: Model<Planar>,
     /// One part for every body, in the same order.
     pub parts: Vec<Part>,
-    /// Elements of devices that are installed once the stack stands.
+    /// Force elements of devices that are installed once the stack has settled.
     pub(crate) loose: Vec<Loose>,
-    /// Time step (s) that its contacts require; impacts divide it.
+    /// Time step (s) that the contacts require; impacts divide it further.
     pub step: f64,
-    /// The device of every force element of the model.
+    /// Description of the device of each force element, in the order of the model.
     pub devices: Vec<&'static Words>,
     /// Height (m) of the stack from the ground to the top of the highest barrel; zero for a free scene.
     pub height: f64,
@@ -141,10 +141,12 @@ pub struct Assembly {
     pub levels: u32,
     /// The plane of a stack; `None` for a free scene.
     pub view: Option<View>,
-    /// Force (N) between a barrel and a rack that the staves bear; infinite for a free scene.
+    /// Largest force (N) between a barrel and a rack that the staves can bear; infinite for a free scene.
     pub stave_capacity: f64,
-    /// Displacement (m) of a rack on the barrels below beyond which it is no longer supported: across the barrels
-    /// until friction can no longer hold it on the curved side of the barrel, along them until its rail passes the end.
+    /// Displacement (m) of a rack on the barrels below beyond which it is no longer supported.
+    ///
+    /// Across the barrels, friction no longer holds the rack on the round of the barrel; along the barrels, its rail
+    /// has passed their ends.
     pub rack_reach: f64,
 }
 
@@ -154,28 +156,28 @@ impl Assembly {
         self.parts.iter().enumerate().filter(move |(_, p)| p.kind == kind).map(|(i, _)| i)
     }
 
-    /// Returns its force elements, followed by those of devices that are not installed yet.
+    /// Returns the force elements of the model, followed by those of devices that are not installed yet.
     pub fn elements(&self) -> impl Iterator<Item = &Element<Planar>> {
         let loose = self.loose.iter().map(|loose| &loose.element);
         self.model.elements().iter().chain(loose)
     }
 
-    /// The body driven by the ground motion; every assembly has one.
+    /// ID of the ground, the body that follows the ground motion; every assembly has it.
     pub const GROUND: BodyId = 0;
 }
 
 /// Reason why a scenario cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AssembleError {
-    /// The bodies do not make a model.
+    /// The bodies do not form a valid model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A shape is invalid.
     #[error("body \"{body}\": {problem}")]
     Shape {
-        /// The body.
+        /// Name of the body.
         body: String,
-        /// The problem.
+        /// Description of the problem.
         problem: String,
     },
     /// Two bodies overlap.
@@ -184,44 +186,47 @@ pub enum AssembleError {
          let them touch without overlap"
     )]
     Overlap {
-        /// One body.
+        /// Name of one body.
         first: String,
-        /// The other.
+        /// Name of the other body.
         second: String,
         /// Depth of the overlap (m).
         depth: f64,
     },
-    /// A stack in space was requested in a plane.
+    /// An analysis in a plane was requested for a stack in space.
     #[error(
-        "this works in a plane, and the scenario looks at its stack in space: set stack.view to \"transverse\", across \
-         the barrels, to \"longitudinal\", along them, or to \"both\""
+        "this analysis works in a plane, but the scenario has its stack in space: set stack.view to \"transverse\" \
+         (across the barrels), to \"longitudinal\" (along them), or to \"both\""
     )]
     Space,
-    /// A free scene in space was requested in a plane.
+    /// An analysis in a plane was requested for a free scene in space.
     #[error(
-        "this works in a plane, and the bodies of the scenario are in space: state them in a plane, with kind = \"free\""
+        "this analysis works in a plane, but the bodies of the scenario are in space: state them in a plane, with \
+         kind = \"free\""
     )]
     FreeInSpace,
-    /// A feature that is not supported in space.
+    /// The scenario uses a feature that is not supported in space.
     #[error("{reason}")]
     NotInSpace {
-        /// The field.
+        /// Path of the field in the scenario.
         field: &'static str,
-        /// Value of the field, supported values, and the next move.
+        /// Message with the value of the field, the supported values, and what to change.
         reason: String,
     },
-    /// A stack that cannot stand as described.
+    /// The stack cannot be built as described.
     #[error("{0}")]
     Stack(String),
 }
 
-/// Largest step (s) of a free scene with force elements at full scale: a swing of 0.3 s loses 5e-5 with it.
+/// Largest time step (s) of a free scene with force elements, at full scale.
+///
+/// With this step, an oscillation with a period of 0.3 s loses a fraction of 5e-5.
 const SWINGING_STEP: f64 = 1e-3;
 
 /// Builds the model of a scenario.
 ///
 /// # Errors
-/// When shapes are impossible, bodies overlap, or names repeat.
+/// If a shape is invalid, bodies overlap, or names repeat.
 pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     let scale = Similitude::new(scenario.run.similitude);
     let mut assembly = match &scenario.scene {
@@ -235,7 +240,7 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     assembly.step = stepping.step;
     if let Scene::Free(scene) = &scenario.scene {
         if !assembly.model.elements().is_empty() {
-            // Springs between bodies are slow, and their oscillation is the result of interest.
+            // The oscillation on springs between bodies is the result of interest, although its period is long.
             assembly.step = assembly.step.min(SWINGING_STEP * scale.time());
         }
         let step = scenario.run.step.map(|step| step * scale.time());
@@ -246,13 +251,14 @@ pub fn assemble(scenario: &Scenario) -> Result<Assembly, AssembleError> {
     Ok(assembly)
 }
 
-/// Returns the contact laws of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL):
-/// those of the plane, where every element is a contact of its own.
+/// Returns the contact laws of a stack in space, in the order of [`StackPair::ALL`](crate::scenario::StackPair::ALL).
+///
+/// They are the laws of the plane, except that every seat is a contact of its own.
 pub fn laws_in_space(spec: &StackSpec) -> Vec<Interface<Spatial>> {
     stack::laws(spec, bundle::Shown::Space, Similitude::FULL)
 }
 
-/// Returns a contact law in space.
+/// Converts a contact law of a scenario to that of a model in space.
 pub fn law_in_space(name: &str, law: &scenario::Interface) -> Interface<Spatial> {
     interfaces::interface(name, law, bundle::Bundle::ONE, Similitude::FULL)
 }
@@ -263,7 +269,7 @@ pub fn laws_of_free(scene: &SpatialScene) -> Vec<Interface<Spatial>> {
     scene.interfaces.iter().map(law).collect()
 }
 
-/// Returns the outline of a shape at an offset on a body.
+/// Returns the outline of a shape in the frame of its body.
 fn outline_of(placed: &Placed<Planar>) -> Outline {
     let (points, closed) = placed.surface.outline();
     let at = |point| placed.offset + placed.rotation.apply(point);

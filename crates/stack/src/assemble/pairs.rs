@@ -1,11 +1,11 @@
-//! Contact pairs: which boundaries may meet, and by which law.
+//! Contact pairs of a stack: the boundaries that can touch, each pair with its contact law.
 //!
-//! Two bodies that the stack joins meet at a seat: the supports of a cradle under its barrel, the underside of a rack
-//! on its support. All their other boundaries, and any other two bodies, meet in impacts only.
-//! A round barrel is tested against the solids of others with its deepest point; solids with corners are tested each
-//! against the other, and every contact belongs to one round piece.
-//! A face with nodes is tested by its nodes while the body that it bears lies before it, and by the exact test once
-//! that body has moved beside it: so no contact is counted twice.
+//! A barrel and its rack touch at the supports of the cradle, and a rack and its support at the underside of the rack:
+//! these are the seats. All other boundaries of these bodies, and any other two bodies, touch in impacts only.
+//! A circular barrel is tested against other solids at its deepest point. Two solids with corners are each tested
+//! against the other, and every contact belongs to one round piece (a corner or an arc).
+//! A face with nodes is tested at its nodes while the body that it carries lies in front of the face. Once that body
+//! has moved beside the face, it is tested exactly, so that no contact counts twice.
 
 use barrelstack_dynamics::{BodyId, ContactPair, Counts, Nodes};
 
@@ -14,7 +14,7 @@ use super::solid::{NodedFace, Seat, Touch};
 use super::{Assembly, PartKind};
 use crate::scenario::{Basis, StackPair};
 
-/// Returns all boundary pairs that can meet, each with its interface.
+/// Returns all pairs of boundaries that can touch, each with its interface.
 pub(super) fn pairs(builder: &Builder<'_>) -> Vec<ContactPair> {
     let mut pairs = Pairs { builder, list: Vec::new() };
     let count = builder.bodies.len();
@@ -62,7 +62,7 @@ impl Pairs<'_> {
         0..self.builder.touches[body].len()
     }
 
-    /// Adds a node set of one body against a surface of another.
+    /// Adds the contact pair of a node set of one body and a surface of another.
     fn push(
         &mut self,
         (contactor, nodes): (BodyId, usize),
@@ -78,8 +78,9 @@ impl Pairs<'_> {
         self.list.push(ContactPair { contactor, nodes, target, surface, interface, counts });
     }
 
-    /// Adds two solids with exact tests, of the round one against the other or of each against the other; `counts`
-    /// gives the active side of each.
+    /// Adds the exact tests of two solids: a circle is tested against the other solid, other solids against each other.
+    ///
+    /// `counts` gives the active side of each test.
     fn exact(
         &mut self,
         (a, solid_a): (BodyId, usize),
@@ -98,8 +99,10 @@ impl Pairs<'_> {
         }
     }
 
-    /// Returns the nodes on which a solid stands on a floor. A tube from end to end of a rack has a seat at each end,
-    /// and no row of nodes where constants are stated per seat.
+    /// Returns the face with nodes on which a solid stands on a floor.
+    ///
+    /// A tube from end to end of a rack has a seat at each end; where constants are stated per seat, it has no row of
+    /// nodes.
     fn row_on_floor(&self, touch: &Touch) -> Option<NodedFace> {
         let per_seat = self.builder.spec.interfaces.rack_ground.basis == Basis::Seat;
         touch.below.filter(|_| !(per_seat && touch.seat == Seat::OnSupports))
@@ -162,7 +165,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds all solids of one body against all of another.
+    /// Adds the exact tests of all solids of one body against all solids of another.
     fn solids_of(&mut self, a: BodyId, b: BodyId, pair: StackPair) {
         for of_a in self.solids(a) {
             for of_b in self.solids(b) {
@@ -171,7 +174,7 @@ impl Pairs<'_> {
         }
     }
 
-    /// Adds a rack and a device; a rack stands on the platform of an isolator as on the ground.
+    /// Adds the tests of a rack against a device; a rack stands on the platform of an isolator as on the ground.
     fn rack_and_device(&mut self, rack: BodyId, device: BodyId) {
         let carried = self.builder.parts[rack].carrier == Some(device);
         for solid in self.solids(rack) {

@@ -1,4 +1,4 @@
-//! Posts that carry the next rack, and the cups that hold it in place.
+//! Posts of a rack that carry the next rack, and the cups that hold that rack in place.
 
 use barrelstack_dynamics::Shape;
 use barrelstack_dynamics::Vec2;
@@ -19,15 +19,17 @@ pub fn cup(rack: &Rack) -> f64 {
     0.5 * rack.rail_width + SPIGOT_PLAY + 2.0 * LIP_RADIUS
 }
 
-/// Returns the displacement (m) beyond which the foot of a rack is no longer supported, in the frame of the rack
-/// below, on posts at `spacing` (m) from its middle.
+/// Returns the displacement (m), relative to the rack below, beyond which the foot of a rack is no longer supported.
+///
+/// The posts stand at `spacing` (m) from the middle of the rack below.
 pub(super) fn reach(rack: &Rack, spacing: f64) -> f64 {
-    // A post stands on a post: displaced by its width, it is off.
+    // A foot stands on a post of its own width, so it is off the post once displaced by that width.
     rack.rail_width.min(spacing)
 }
 
-/// Returns the two posts at `spacing` (m) from the middle of a rack, and above the first level the cups over the
-/// posts below: lips that hold the rack in place until it is lifted off. On the floor there is nothing to hold.
+/// Returns the two posts at `spacing` (m) from the middle of a rack, and the cups of the rack over the posts below.
+///
+/// Cups are lips that hold a rack in place until it is lifted off; a rack on the floor has none.
 pub(super) fn posts_and_cups(
     rack: &Rack,
     posts: &Posts,

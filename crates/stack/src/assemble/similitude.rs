@@ -5,7 +5,7 @@ use barrelstack_dynamics::math;
 /// Scale factors from full-scale quantities to those at a length scale λ.
 ///
 /// Lengths scale by λ, times by √λ, masses by λ³; accelerations, friction coefficients, damping ratios and
-/// restitutions stay. With these factors the two trajectories are equal but for their units.
+/// restitutions stay. With these factors, the trajectories at both scales differ only in their units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similitude {
     /// λ: model length over full length.
@@ -26,28 +26,32 @@ impl Similitude {
         self.length.sqrt()
     }
 
-    /// Returns λ³.
+    /// Returns the factor of masses, λ³.
     pub fn mass(self) -> f64 {
         self.length * self.length * self.length
     }
 
-    /// Returns λ⁵.
+    /// Returns the factor of moments of inertia, λ⁵.
     pub fn inertia(self) -> f64 {
         self.mass() * self.length * self.length
     }
 
-    /// Returns the factor of a force, λ³.
+    /// Returns the factor of forces, λ³.
     pub fn force(self) -> f64 {
         self.mass()
     }
 
-    /// Returns the factor of a stiffness `force / lengthⁿ`; per length of boundary, it is divided by one more length.
+    /// Returns the factor of stiffnesses `force / lengthⁿ`, with n = `exponent`.
+    ///
+    /// With `per_length`, the factor of stiffnesses per length of boundary.
     pub fn stiffness(self, exponent: f64, per_length: bool) -> f64 {
         let divided = math::pow(self.length, exponent);
         self.force() / divided / if per_length { self.length } else { 1.0 }
     }
 
-    /// Returns the factor of a damping `force / velocity`, divided likewise.
+    /// Returns the factor of damping constants `force / velocity`.
+    ///
+    /// With `per_length`, the factor of damping constants per length of boundary.
     pub fn damping(self, per_length: bool) -> f64 {
         self.force() / self.time() / if per_length { self.length } else { 1.0 }
     }

@@ -5,44 +5,45 @@ use barrelstack_dynamics::{
     Body, Face, Linear as _, Node, Nodes, Placed, Planar, Round, Shape, Vec2,
 };
 
-/// A convex part of a body, full-scale, in the frame of its draft.
+/// A convex part of a body at full scale, in the frame of the draft of that body.
 pub(crate) struct Solid {
     pub(super) shape: Shape,
     /// Position of the frame of the shape (m).
     pub(super) offset: Vec2,
     pub(super) seat: Seat,
-    /// Nodes along its flat underside: positions (m) and tributary lengths (m); empty for exact contact all around.
+    /// Nodes along the flat underside: positions (m) and tributary lengths (m); empty if it is tested exactly.
     pub(super) below: Vec<(Vec2, f64)>,
-    /// Nodes along its flat top.
+    /// Nodes along the flat top; empty if it is tested exactly.
     pub(super) above: Vec<(Vec2, f64)>,
-    /// Cosine of the angle to its faces with nodes up to which a contact belongs to the face: see [`Face::widest`].
+    /// Cosine of the largest angle from the normal of a face with nodes at which a contact belongs to that face: see
+    /// [`Face::widest`].
     pub(super) widest: f64,
-    /// `true` if it has a share of the mass of its body.
+    /// `true` if the solid contributes to the mass of its body.
     pub(super) weighs: bool,
-    /// `true` if it stands beside the barrels, out of the plane of the drawing, and never meets one.
+    /// `true` if the solid stands beside the barrels, out of the plane of the drawing, and never touches a barrel.
     pub(super) out_of_plane: bool,
 }
 
-/// Bearing function of a solid.
+/// Role of a solid of a rack in supporting the rack, a barrel, or the next rack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seat {
-    /// None: it touches only loose bodies.
+    /// None: the solid touches other bodies in impacts only.
     None,
-    /// The rack stands on it, on the ground or on one of its supports.
+    /// The rack stands on this solid: on the ground, or on the support with this index.
     OnSupport(usize),
-    /// The rack stands on it, on the ground or on any of its supports.
+    /// The rack stands on this solid: on the ground, or on any of its supports.
     OnSupports,
-    /// It carries one of the rack's barrels.
+    /// The solid carries the barrel of the rack with this index.
     Barrel(usize),
-    /// Along the barrels: it carries one of the rack's barrels, and stands on the ground or on the
-    /// support below that barrel.
+    /// Along the barrels, the solid carries the barrel with this index, and stands on the ground or on the support
+    /// below that barrel.
     Along(usize),
-    /// The next rack stands on it.
+    /// The next rack stands on this solid.
     Rack,
 }
 
 impl Seat {
-    /// Returns `true` if the rack stands on it.
+    /// Returns `true` if the rack stands on the solid.
     pub(super) fn stands(self) -> bool {
         match self {
             Self::OnSupport(_) | Self::OnSupports | Self::Along(_) => true,
@@ -51,39 +52,40 @@ impl Seat {
     }
 }
 
-/// Contact data of a solid; its surface has the same index.
+/// Contact data of a solid, with the same index as its surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     pub(super) seat: Seat,
-    /// `true` if it never meets a barrel.
+    /// `true` if the solid never touches a barrel.
     pub(super) out_of_plane: bool,
-    /// The node set of its round pieces, which tests exactly; for a circle, of its rolling node.
+    /// Index of the node set for exact tests: the round pieces, or the rolling node of a circle.
     pub(super) exact: usize,
-    /// Its underside, if that carries nodes.
+    /// The underside, if it carries nodes.
     pub(super) below: Option<NodedFace>,
-    /// Its top, if that carries nodes.
+    /// The top, if it carries nodes.
     pub(super) above: Option<NodedFace>,
 }
 
 /// A flat face of a solid that carries nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodedFace {
-    /// The node set.
+    /// Index of the set of nodes along the face.
     pub(super) nodes: usize,
-    /// The node set of the round pieces that are not ends of the face.
+    /// Index of the set of round pieces that are not ends of the face.
     pub(super) others: usize,
-    /// The face.
+    /// Index of the face in its body.
     pub(super) face: usize,
 }
 
-/// Below any cosine: the face bears a round body, whose center alone decides.
+/// Value of [`Solid::widest`] below any cosine, for a face that carries a round body: the center of that body alone
+/// decides whether its contact belongs to the face.
 const ROUND: f64 = -2.0;
 
-/// Distance (m) from a face within which a round piece counts as an end of it.
+/// Distance (m) from a face within which a round piece counts as an end of the face.
 const AT_END: f64 = 1e-9;
 
 impl Solid {
-    /// Creates a solid that is tested exactly all around.
+    /// Creates a solid whose whole boundary is tested exactly.
     pub(crate) fn exact(shape: Shape, offset: Vec2, seat: Seat) -> Self {
         Self {
             shape,
@@ -97,7 +99,7 @@ impl Solid {
         }
     }
 
-    /// Adds the solid to a body whose center of mass is at `center` (m) of the draft, scaled by `length`.
+    /// Scales the solid by `length` and adds it to a body whose center of mass is at `center` (m) of the draft.
     pub(super) fn add_to(self, body: &mut Body<Planar>, center: Vec2, length: f64) -> Touch {
         let shape = scaled(self.shape, length);
         let offset = (self.offset - center) * length;
@@ -147,7 +149,7 @@ pub(super) fn row(spacing: f64, middle: f64, half: f64, z: f64) -> Vec<(Vec2, f6
         .collect()
 }
 
-/// Adds a node set to a body; returns its number.
+/// Adds a node set to a body and returns its index.
 fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
     body.nodes.push(nodes);
     body.nodes.len() - 1
@@ -156,7 +158,7 @@ fn add(body: &mut Body<Planar>, nodes: Nodes<Planar>) -> usize {
 /// Length (m) of boundary that a contact without nodes represents, at full scale.
 pub(super) const TRIBUTARY: f64 = 0.01;
 
-/// Returns the node set that tests the boundary of a part exactly, scaled by `length`.
+/// Returns the node set that tests the boundary of a part exactly, with its tributary length scaled by `length`.
 pub(super) fn boundary(placed: &Placed<Planar>, length: f64) -> Nodes<Planar> {
     let Placed { surface, offset, rotation } = placed;
     let tributary_length = TRIBUTARY * length;
@@ -200,7 +202,7 @@ pub(super) fn uniform(solids: &[Solid]) -> (Vec2, f64) {
     (center, sections().map(about).sum())
 }
 
-/// Returns a shape scaled by a length.
+/// Returns a shape scaled by a factor.
 fn scaled(shape: Shape, length: f64) -> Shape {
     if length == 1.0 {
         return shape;

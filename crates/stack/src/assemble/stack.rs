@@ -1,4 +1,4 @@
-//! A stack in one of its two views, with its laws of contact.
+//! Assembly of a stack in one of its two planes, and its contact laws.
 
 use barrelstack_dynamics::contact::{Rolling, Stop};
 use barrelstack_dynamics::{Interface, Model, Space, Vec2};
@@ -10,13 +10,14 @@ use super::solid::TRIBUTARY;
 use super::{AssembleError, Assembly, Similitude, content, longitudinal, pairs, transverse};
 use crate::scenario::{self, Basis, SeatContact, StackPair, StackSpec, View};
 
-/// Lever (m) of the rolling resistance of barrels on hoops, on floors, racks and each other: an assumption.
+/// Lever (m) of the rolling resistance of barrels, which roll on their hoops, on floors, racks and each other: an
+/// assumption.
 const ROLLING_LEVER: f64 = 0.01;
 
-/// Spin (rad/s) at which most of that resistance is reached.
+/// Angular velocity (rad/s) at which most of the rolling resistance is reached.
 const ROLLING_SPIN: f64 = 0.1;
 
-/// Builds a stack in its view.
+/// Builds the model of a stack in its plane.
 pub(super) fn assemble(
     spec: &StackSpec,
     gravity: f64,
@@ -24,8 +25,8 @@ pub(super) fn assemble(
 ) -> Result<Assembly, AssembleError> {
     if spec.columns_along.is_some() {
         return Err(AssembleError::Stack(
-            "the scenario looks at its stack in both planes, and this is about one: set stack.view to \
-             \"transverse\", across the barrels, or to \"longitudinal\", along them"
+            "the scenario has its stack in both planes, but this analysis works in one: set stack.view to \
+             \"transverse\" (across the barrels) or to \"longitudinal\" (along them)"
                 .into(),
         ));
     }
@@ -69,15 +70,15 @@ pub(super) fn assemble(
     })
 }
 
-/// Returns the contact laws, each at the index of its pair; a contact of a seat represents all seats shown in one
-/// place.
+/// Returns the contact laws of a stack, each at the index of its pair; the contact of a seat represents all seats that
+/// coincide in the model.
 pub(super) fn laws<S: Space<Real = f64>>(
     spec: &StackSpec,
     shown: Shown,
     scale: Similitude,
 ) -> Vec<Interface<S>> {
     let stroke = spec.rack.seat_stroke * scale.length;
-    // Where the constants of the seat are per meter, the weight of an element is its length.
+    // Length (m) of a contact element, which converts between constants per length and constants per element.
     let each = match spec.rack.contact {
         SeatContact::Nodes => spec.rack.node_spacing,
         SeatContact::Element | SeatContact::Rails => TRIBUTARY,
@@ -93,7 +94,7 @@ pub(super) fn laws<S: Space<Real = f64>>(
     };
     let laws = &spec.interfaces;
     let law = |pair: &StackPair| {
-        // At the end of its stroke a seat meets the impact law of the same bodies.
+        // At the end of its stroke, a seat also follows the impact law of the same bodies.
         let stop = match pair {
             StackPair::RackGround => &laws.fallen_rack_ground,
             StackPair::BarrelRack => &laws.fallen_barrel_rack,
@@ -104,7 +105,7 @@ pub(super) fn laws<S: Space<Real = f64>>(
             | StackPair::FallenRackGround
             | StackPair::FallenRackRack => {
                 return Interface {
-                    // Fallen bodies do not roll for ever.
+                    // Rolling resistance brings fallen bodies to rest.
                     rolling: Some(Rolling {
                         lever: ROLLING_LEVER * scale.length,
                         spin: ROLLING_SPIN / scale.time(),

@@ -1,4 +1,4 @@
-//! A stack across its barrels: circles in the cradles of racks that lie on the circles below.
+//! Assembly of a stack in the plane across its barrels: circles in the cradles of racks that lie on the circles below.
 //!
 //! ```text
 //!      ( B2.1 )   ( B2.2 )
@@ -10,7 +10,7 @@
 //!     ////////////////////     ground
 //! ```
 //!
-//! Every part of a rack is a convex solid that can touch all other bodies: beam, feet, bars and posts.
+//! The beam, feet, bars and posts of a rack are convex solids that can touch all other bodies.
 
 use barrelstack_dynamics::shape::{Circle, Polygon, PolygonError};
 use barrelstack_dynamics::{BodyId, Shape, Vec2, math};
@@ -24,11 +24,12 @@ use crate::scenario::{Cradle, Friction, Rack, RackKind, SeatContact};
 /// Half the thickness (m) of the bars of a cradle, whose ends are round: an assumption.
 pub const BAR_RADIUS: f64 = 0.015;
 
-/// Radius (m) of the corners of tubes: an assumption. Two of them exceed the stroke of a seat, so that the cores of
-/// tubes never meet.
+/// Corner radius (m) of tubes: an assumption.
+///
+/// Twice this radius exceeds the stroke of a seat, so that the cores of two tubes never touch.
 pub const TUBE_CORNER: f64 = 0.012;
 
-/// Builds all levels; returns the height of the stack and the reach of a rack on its barrels (m).
+/// Adds all levels, and returns the height of the stack (m) and the reach of a rack on its supports (m).
 pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleError> {
     let spec = builder.spec;
     let rack = &spec.rack;
@@ -56,9 +57,11 @@ pub(super) fn build(builder: &mut Builder<'_>) -> Result<(f64, f64), AssembleErr
     Ok((height, reach(rack, radius, &spec.interfaces.barrel_rack.friction)))
 }
 
-/// Returns the displacement across the barrels below beyond which a rack is no longer supported: with feet, until
-/// they stand beside the crowns and the beam rests on the round; without feet, until the end of the beam has passed
-/// the crown and stands on the falling side of the round, where friction holds it up to a slope of arctan μ.
+/// Returns the displacement (m) across the barrels below beyond which a rack is no longer supported.
+///
+/// A rack with feet is supported until the feet stand beside the crowns and the beam rests on the round of a barrel.
+/// A rack without feet is supported until the end of its beam has passed the crown and stands on the falling side of
+/// the round, where friction holds it up to a slope of arctan μ.
 fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     if let (RackKind::OnRacks, Some(posts)) = (rack.kind, &rack.posts) {
         return posts::reach(rack, posts.half_spacing);
@@ -69,7 +72,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
         Friction::Regularized { coefficient, .. } => coefficient,
     };
     if rack.foot_height > 0.0 {
-        // A foot bears on the falling side until its beam has come down on the round.
+        // A foot bears on the falling side of the round until the beam has come down on the barrel.
         let height = (radius - rack.foot_height).max(0.0);
         return rack.foot_half_length + (radius * radius - height * height).sqrt();
     }
@@ -78,7 +81,7 @@ fn reach(rack: &Rack, radius: f64, friction: &Friction) -> f64 {
     bearing + radius * sin
 }
 
-/// Adds one rack with its barrels; returns their IDs.
+/// Adds one rack with its barrels, and returns the ID of the rack and those of the barrels.
 fn add_rack(
     builder: &mut Builder<'_>,
     level: u32,
@@ -134,7 +137,7 @@ fn add_rack(
     Ok((rack_id, barrels))
 }
 
-/// Returns the solids of a rack, from the middle of its underside.
+/// Returns the solids of a rack, relative to the middle of its underside.
 fn rack_solids(
     rack: &Rack,
     places: &[f64],
@@ -181,8 +184,10 @@ fn rack_solids(
     Ok(solids)
 }
 
-/// Adds the cradle of a barrel whose lowest point is `clearance` above the underside: two bars that stand on the
-/// beam, or a trough of bars end to end.
+/// Adds the cradle of a barrel: two bars that stand on the beam, or a trough of bars end to end.
+///
+/// The lowest point of the barrel is `rack.clearance` above the underside of the rack; `top` is the height (m) of the
+/// top of the beam.
 fn cradle(
     solids: &mut Vec<Solid>,
     rack: &Rack,
@@ -192,7 +197,7 @@ fn cradle(
     seat: Seat,
 ) -> Result<(), PolygonError> {
     let mut bar = |from: Vec2, to: Vec2| -> Result<(), PolygonError> {
-        // A support that lies on the beam is reduced to its round end.
+        // Of a support that does not rise above the beam, only the round end is left.
         let shape = if (to - from).z.abs() + (to - from).x.abs() < 1e-3 {
             Shape::Circle(Circle { radius: BAR_RADIUS })
         } else {
@@ -214,7 +219,7 @@ fn cradle(
         }
         Cradle::Arc { radius: trough, half_angle } => {
             let center = Vec2::new(place, rack.clearance + trough);
-            // Each bar touches the trough with its middle.
+            // Each bar touches the circle of the trough at its middle.
             let length = 2.0 * half_angle * trough;
             let count = (length / TROUGH_BAR).ceil().max(2.0);
             let turn = 2.0 * half_angle / count;
@@ -237,7 +242,7 @@ fn cradle(
     Ok(())
 }
 
-/// Returns the chocks of a rack, on its beam: bars whose round ends keep their gap from the barrels.
+/// Returns the chocks of a rack: bars on its beam, whose round ends are a gap away from the barrels.
 fn chocks(
     rack: &Rack,
     chock: Chocks,
@@ -256,7 +261,7 @@ fn chocks(
             let middle = Vec2::new(end.x, 0.5 * (end.z + top));
             let bar = Polygon::bar(Vec2::new(end.x, top) - middle, end - middle, BAR_RADIUS)?;
             let horn = Solid::exact(Shape::Polygon(bar), middle, Seat::None);
-            // The mass of a rack does not include them.
+            // The stated mass of a rack does not include its chocks.
             solids.push(Solid { weighs: false, ..horn });
         }
     }

@@ -1,7 +1,7 @@
-//! Chocks beside the barrels: horns higher than the cradle that prevent rolling out.
+//! Chocks: horns beside the barrels, higher than the cradle, that keep the barrels from rolling out.
 //!
-//! A barrel that leans on a support at an angle φ from the vertical through its center rolls over it above a lateral
-//! acceleration of g tan φ, and over an energy barrier of m g r (1 − cos φ).
+//! A barrel that leans on a support at an angle φ from the vertical through its center rolls over the support at a
+//! lateral acceleration above g tan φ; the energy barrier is m g r (1 − cos φ).
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -34,9 +34,10 @@ section! {
     /// Chocks beside the barrels.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Chocks;
-    /// Chocks on the racks to both sides of their barrels, higher than the cradle; they do nothing along the barrels.
+    /// Chocks on the racks at both sides of every barrel, higher than the cradle; they have no effect along the
+    /// barrels.
     pub static SECTION = "chock";
-    /// Number of the highest levels that have chocks; 0 for none.
+    /// Number of levels with chocks, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
     /// Angle of the top of a chock from the vertical through the center of the barrel: an assumption.
     angle: f64 =
@@ -45,7 +46,7 @@ section! {
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 0.2)), Default::Value("\"5 mm\"");
 }
 
-/// Reads chocks.
+/// Reads the table of chocks.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Chocks, InputError> {
     let chocks = Chocks::read_fields(&reader)?;
     check_levels(&reader, chocks.levels, levels)?;
@@ -59,13 +60,13 @@ impl Chocks {
         self.levels > 0
     }
 
-    /// Returns `true` if a level of a number of them has chocks, which are solids of its racks.
+    /// Returns `true` if a level of a stack with `levels` levels has chocks.
     pub fn at(&self, level: u32, levels: u32) -> bool {
         level + self.levels > levels
     }
 
-    /// Does nothing: chocks come with the racks.
-    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as every device is put on")]
+    /// Does nothing, because chocks are solids of the racks.
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "the same for all devices")]
     pub(super) fn place(&self, _: &mut Builder<'_>) -> Result<(), String> {
         Ok(())
     }

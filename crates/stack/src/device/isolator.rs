@@ -1,9 +1,9 @@
 //! Isolators under the bottom racks: a platform on rollers, balls or sheets, flat or in dishes.
 //!
-//! A platform bears on the ground at two points. In a dish of radius `R` a stack swings as a pendulum of that length,
-//! `T = 2π √(R/g)`, whatever its mass; for balls between two dishes `R` is the sum of both radii less the diameter of
-//! the balls.
-//! The stroke ends at stops; a rack stands on its platform as on the ground.
+//! A platform bears on the ground at two points. In a dish of radius `R`, a stack swings as a pendulum of length `R`
+//! with the period `T = 2π √(R/g)`, whatever its mass. For balls between two dishes, `R` is the sum of both radii
+//! minus the diameter of the balls.
+//! The stroke ends at stops, and a rack stands on its platform as on the ground.
 
 use barrelstack_dynamics::shape::{Cradle, Polygon};
 use barrelstack_dynamics::space::Rotation2;
@@ -44,7 +44,7 @@ pub(super) static WORDS: Words = Words {
         Setting { name: "seized rollers", overrides: &["stack.isolator.friction=0.6"] },
         Setting { name: "rusty rollers", overrides: &["stack.isolator.friction=0.1"] },
     ],
-    // A platform is an additional body: only without it do the bits equal those of the stack.
+    // A platform is an additional body: results equal those of the bare stack bit for bit only without it.
     idle: &["stack.isolator.path=\"none\"", "stack.isolator.recentring=\"10 kN/m\""],
     cost: Cost {
         dollars: [800.0, 2500.0],
@@ -54,9 +54,9 @@ pub(super) static WORDS: Words = Words {
 };
 
 named! {
-    /// Path of the platform.
+    /// Shape of the path on which a platform moves.
     pub enum Path {
-        /// There is no isolator.
+        /// No path: the stack has no isolators.
         None = "none",
         /// A level path.
         Flat = "flat",
@@ -71,11 +71,11 @@ section! {
     pub struct Isolators;
     /// A platform under every bottom rack that rolls or slides on the ground, flat or in dishes, between stops.
     pub static SECTION = "isolator";
-    /// The path of the platform.
+    /// Shape of the path on which the platform moves.
     path: Path = Kind::Choice(names::<Path>), Default::Value("\"none\"");
-    /// Friction of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for sheets, 0.6 where they are seized.
+    /// Friction coefficient of the platform on its path: 0.005 to 0.02 for balls and rollers, 0.1 to 0.2 for sheets, 0.6 if seized.
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.01");
-    /// Radius of the dishes, which is the length of the pendulum; not used on a flat path. An assumption: 2 s.
+    /// Radius of the dishes, which is the length of the equivalent pendulum; not used on a flat path. The default is an assumption, with a period of 2 s.
     dish_radius: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.3, 100.0)), Default::Value("\"1 m\"");
     /// Stroke of the platform to either side before it meets a stop: an assumption.
@@ -87,10 +87,10 @@ section! {
     /// Damping of a stop, on approach only: an assumption.
     stop_damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
-    /// Stiffness of springs that pull the platform back to its place.
+    /// Stiffness of the springs that pull the platform back to its initial position.
     recentring: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGATIVE), Default::Value("\"0 N/m\"");
-    /// Stiffness of the bearings at one end of a platform: an assumption, that of steel balls on steel plate.
+    /// Stiffness of the bearings at one end of a platform: an assumption for steel balls on a steel plate.
     bearing_stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"10 MN/m\"");
     /// Mass of a platform: an assumption.
@@ -98,12 +98,12 @@ section! {
         Kind::Quantity(&[Dimension::MASS], Range::up_to(1e4)), Default::Value("\"60 kg\"");
 }
 
-/// Reads isolators.
+/// Reads the table of isolators.
 pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputError> {
     let isolators = Isolators::read_fields(&reader)?;
     if isolators.path == Path::Dish && isolators.stroke > STEEPEST * isolators.dish_radius {
         let message = format!(
-            "`{}` of {} m leads out of a dish of {} m; a dish goes up to {} m",
+            "`{}` of {} m leaves the dish, whose radius is {} m; the stroke may be {} m at most",
             reader.path_of("stroke"),
             isolators.stroke,
             isolators.dish_radius,
@@ -115,13 +115,13 @@ pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Isolators, InputE
     Ok(isolators)
 }
 
-/// Sine of the steepest slope of a dish at its stops.
+/// Largest sine of the slope of a dish at its stops.
 const STEEPEST: f64 = 0.5;
 
-/// Half of the angle (rad) that a dish spans, beyond its stops.
+/// Half of the angle (rad) that a dish spans, which extends beyond its stops.
 const DISH: f64 = 1.2;
 
-/// Damping of bearings over their stiffness (s), on approach only: an assumption.
+/// Ratio (s) of the damping of bearings, which acts on approach only, to their stiffness: an assumption.
 const BEARING_DAMPING: f64 = 5e-4;
 
 impl Isolators {
@@ -129,7 +129,7 @@ impl Isolators {
     pub const BEARING: f64 = 0.03;
     /// Thickness (m) of a platform: an assumption.
     pub const PLATE: f64 = 0.04;
-    /// Overhang (m) of a platform beyond the rack, an assumption; its bearings lie as far inside of its end.
+    /// Overhang (m) of a platform beyond the rack, an assumption; the bearings lie the same distance inside its ends.
     pub const MARGIN: f64 = 0.05;
 
     /// Returns `true` if the stack has isolators.
@@ -137,7 +137,8 @@ impl Isolators {
         self.path != Path::None
     }
 
-    /// Returns the law of a bearing, one of those under an end of a platform or of a share of it.
+    /// Returns the contact law of the bearings at one end of a platform; `share` is the fraction that a contact
+    /// represents.
     pub fn law(&self, share: f64) -> Interface {
         let stiffness = self.bearing_stiffness * share;
         Interface {
@@ -155,7 +156,8 @@ impl Isolators {
         }
     }
 
-    /// Returns a share of the springs and stops of a platform, along an axis of the ground.
+    /// Returns the springs and stops of a platform along an axis of the ground; `share` is the fraction of them that
+    /// the element represents.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -172,7 +174,7 @@ impl Isolators {
         }
     }
 
-    /// Raises the stack and puts a platform under every bottom rack.
+    /// Raises the stack and places a platform under every bottom rack.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if !self.is_on() {
             return Ok(());
@@ -224,7 +226,7 @@ impl Isolators {
         Ok(())
     }
 
-    /// Adds a bearing of a platform at `x + end` (m) of the ground, `center` (m) below its center of mass.
+    /// Adds a bearing at `x + end` (m) on the ground, `center` (m) below the center of mass of the platform.
     fn bear(
         &self,
         builder: &mut Builder<'_>,
@@ -237,7 +239,7 @@ impl Isolators {
         let surface = match self.path {
             Path::None | Path::Flat => 0,
             Path::Dish => {
-                // Drawn up to the stops; the surface continues beyond them, so that no impact leads out of it.
+                // The dish is drawn up to the stops; its surface continues beyond them, so that no impact leaves it.
                 let dish =
                     |half_angle| Shape::Cradle(Cradle::new(self.dish_radius * length, half_angle));
                 let offset = Vec2::new(x + end, self.dish_radius) * length;

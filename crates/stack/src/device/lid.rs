@@ -1,8 +1,8 @@
-//! Lids over the barrels of the highest levels: a cap rack or a bar that closes on them from above.
+//! Lids over the barrels of the top levels, such as a cap rack or bars above the barrels.
 //!
-//! A lid is fixed to the rack that carries the barrel, bears on the barrel without friction, and has no mass. A
-//! barrel that rolls out of its cradle has to rise first, which a lid prevents; once the barrel is out from under its
-//! lid, the lid no longer holds it.
+//! A lid is fixed to the rack that carries the barrel, touches the barrel without friction, and has no mass. A barrel
+//! has to rise before it can roll out of its cradle, which the lid prevents. Once the barrel has moved out from under
+//! the lid, the lid no longer holds it.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -37,19 +37,19 @@ section! {
     /// Lids over barrels.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Lids;
-    /// Lids over the barrels of the highest levels, such as a cap rack clamped to the rack below: they bound how far a barrel rises in its cradle, until it is out from under them by more than 0.6 of its radius to a side.
+    /// Lids over the barrels of the top levels, such as a cap rack clamped to the rack below; a lid limits the rise of a barrel until the barrel has moved sideways by more than 0.6 of its radius.
     pub static SECTION = "lid";
-    /// Number of the highest levels that have lids; 0 for none.
+    /// Number of levels with lids, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Rise of a barrel from its place at rest before it meets its lid: an assumption.
+    /// Rise of a barrel from its position at rest before it touches its lid: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"1 cm\"");
-    /// Force per displacement into one lid: an assumption.
+    /// Stiffness of one lid, force per displacement: an assumption.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Force per speed into one lid, on approach only: an assumption.
+    /// Damping of one lid, force per speed, on approach only: an assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
-    /// Force above which one lid breaks, for good; without it none does.
+    /// Force above which a lid breaks permanently; if not given, lids never break.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
@@ -57,7 +57,7 @@ section! {
 /// Reach of a lid to either side of its barrel, as a share of the barrel's radius: an assumption.
 const HALF_WIDTH: f64 = 0.6;
 
-/// Reads lids.
+/// Reads the table of lids.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Lids, InputError> {
     let lids = Lids::read_fields(&reader)?;
     check_levels(&reader, lids.levels, levels)?;
@@ -71,8 +71,9 @@ impl Lids {
         self.levels > 0
     }
 
-    /// Returns the lid on a rack, the first body of the link, over its barrel, the second, of a radius (m); `up` is
-    /// up in the frame of the rack.
+    /// Returns the lid of a barrel with a radius (m), as a guide from its rack to the barrel.
+    ///
+    /// The rack is the first body of the link; `up` is the upward direction in its frame.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -90,14 +91,14 @@ impl Lids {
         }
     }
 
-    /// Returns the reach (m) of a lid to either side of the middle of its barrel, of a radius (m), and its height (m)
-    /// above the center of the barrel.
+    /// Returns the half-width (m) of the lid of a barrel with a radius (m), and its height (m) above the center of the
+    /// barrel.
     pub fn drawn(&self, radius: f64, scale: Similitude) -> [f64; 2] {
         [HALF_WIDTH * radius, radius + self.gap * scale.length]
     }
 
-    /// Installs a lid over every barrel of its levels.
-    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    /// Installs a lid over every barrel of the levels that have lids.
+    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let lowest = lowest(self.levels, spec.levels);

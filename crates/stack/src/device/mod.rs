@@ -1,8 +1,8 @@
-//! Protective devices of a stack: one file each, and a line in the list below.
+//! Protective devices of a stack, each with a file of its own and a line in the list below.
 //!
-//! A device is a table of `[stack]`, the force elements, bodies and contact laws that it adds to a stack, and its
-//! description: words, candidate settings, degraded states, and price.
-//! Forces, energy and drawing of the elements are the same for all.
+//! A device has a table in `[stack]`, the force elements, bodies and contact laws that it adds to a stack, and a
+//! description: display strings, candidate settings, degraded states, and cost.
+//! Forces, energies and drawings of the elements are handled alike for all devices.
 
 mod chock;
 mod isolator;
@@ -31,10 +31,10 @@ pub use tie::{Anchor, AnchorTies, Side};
 pub use tuned_mass::{TunedMass, Tuning};
 pub use walking_stop::{Holds, WalkingStops};
 
-/// Declares the devices: a table of `[stack]` with its help, and the type that its file reads it into.
+/// Declares the devices: for each, its table in `[stack]` with the help text, and the type that holds the table.
 macro_rules! devices {
     ($(#[doc = $help:literal] $name:ident: $type:ty),* $(,)?) => {
-        /// The devices on a stack.
+        /// Settings of all devices of a stack, including those that are absent.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Devices {
             $(#[doc = $help] pub $name: $type),*
@@ -57,7 +57,7 @@ macro_rules! devices {
         })*
 
         impl Devices {
-            /// Reads the devices of a stack with a number of levels.
+            /// Reads the tables of the devices of a stack with `levels` levels.
             pub(crate) fn read(stack: &Reader<'_>, levels: u32) -> Result<Self, InputError> {
                 Ok(Self { $($name: $name::read(stack.section(stringify!($name))?, levels)?),* })
             }
@@ -67,22 +67,22 @@ macro_rules! devices {
                 $(stack.table(stringify!($name), self.$name.write());)*
             }
 
-            /// Installs them on a stack, one device after the other.
+            /// Installs the devices on a stack, one after the other.
             ///
             /// # Errors
-            /// If a device does not fit this stack, with the next move.
+            /// If a device does not fit the stack; the message says what to change.
             pub(crate) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
                 $(self.$name.place(builder)?;)*
                 Ok(())
             }
 
-            /// Returns the tables of the devices that are not on the stack.
+            /// Returns the names of the tables of the devices that the stack does not have.
             pub fn absent(&self) -> Vec<&'static str> {
                 let all = [$((stringify!($name), self.$name.is_on())),*];
                 all.into_iter().filter(|(_, on)| !on).map(|(name, _)| name).collect()
             }
 
-            /// Returns the descriptions of the devices on the stack.
+            /// Returns the descriptions of the devices that the stack has.
             pub fn present(&self) -> Vec<&'static Words> {
                 let all = [$((&$name::WORDS, self.$name.is_on())),*];
                 all.into_iter().filter(|(_, on)| *on).map(|(words, _)| words).collect()
@@ -92,13 +92,13 @@ macro_rules! devices {
 }
 
 devices! {
-    /// Straps on the highest levels.
+    /// Straps on the top levels.
     strap: Straps,
     /// Stops that keep racks from walking on the barrels below.
     walking_stop: WalkingStops,
-    /// Chocks beside the barrels, against rolling out.
+    /// Chocks beside the barrels that keep them from rolling out.
     chock: Chocks,
-    /// Lids over the barrels of the highest levels.
+    /// Lids over the barrels of the top levels.
     lid: Lids,
     /// Elastomer pads in the cradles.
     pad: Pads,
@@ -106,7 +106,7 @@ devices! {
     isolator: Isolators,
     /// Ties of racks to a wall, to the ceiling, or to their neighbors.
     tie: AnchorTies,
-    /// Masses on springs.
+    /// Masses on springs and dampers on the racks of one level.
     tuned_mass: TunedMass,
 }
 
@@ -116,25 +116,26 @@ pub static FREE: Words = Words { many: "elements", ..Words::silent("element") };
 /// Display strings, candidate settings and cost of a device.
 #[derive(Debug, PartialEq)]
 pub struct Words {
-    /// Singular of its elements.
+    /// Singular noun for its elements.
     pub one: &'static str,
-    /// Plural; with underscores also the key in the summary.
+    /// Plural noun; with underscores for spaces, also the key in the summary.
     pub many: &'static str,
-    /// Name of the force in one.
+    /// Name of the force in an element.
     pub force: &'static str,
-    /// Verb for the failure of one, ...
+    /// Verb for the failure of one element, such as "tears".
     pub breaks: &'static str,
-    /// ... of several, ...
+    /// Verb for the failure of several elements, such as "tear".
     pub break_all: &'static str,
-    /// ... and the state after it.
+    /// State of a failed element, such as "torn".
     pub broken: &'static str,
     /// Settings worth trying on any stack of at least three levels.
     pub candidates: &'static [Setting],
-    /// Degraded states in use, to be put [over](Setting::over) a candidate.
+    /// Settings of the device when badly kept or fitted, to be applied [over](Setting::over) a candidate.
     pub degraded: &'static [Setting],
-    /// Settings to be put [over](Setting::over) a candidate, with which it has no effect: out of reach, as slack or
-    /// as weak as can be. Such a stack equals the one without it, to the last bit, at the same time step and division of it
-    /// in impacts.
+    /// Settings, applied [over](Setting::over) a candidate, with which the device has no effect, because it is out of
+    /// reach or as slack or weak as possible.
+    ///
+    /// Results then equal those without the device bit for bit, given the same time step and its division in impacts.
     pub idle: &'static [&'static str],
     /// Cost of the device.
     pub cost: Cost,
@@ -143,20 +144,20 @@ pub struct Words {
 /// A setting of a device, in words and as overrides of the scenario.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// In words.
+    /// Description in words.
     pub name: &'static str,
-    /// Such as `stack.strap.levels=3`.
+    /// Overrides of the scenario, such as `stack.strap.levels=3`.
     pub overrides: &'static [&'static str],
 }
 
 impl Setting {
-    /// Returns the words and the overrides as owned strings.
+    /// Returns the description and the overrides as owned strings.
     pub fn to_candidate(&self) -> (String, Vec<String>) {
         let overrides = self.overrides.iter().map(|change| (*change).to_owned());
         (self.name.to_owned(), overrides.collect())
     }
 
-    /// Returns these settings in place of those of another one for the same fields, and the rest of its settings.
+    /// Returns the overrides of both settings; where both override a field, only that of `self` is kept.
     pub fn over(&self, other: &Self) -> Vec<&'static str> {
         let field = |setting: &&'static str| setting.split('=').next();
         let own: Vec<_> = self.overrides.iter().map(field).collect();
@@ -168,28 +169,28 @@ impl Setting {
 /// Cost of a device, bought and installed.
 #[derive(Debug, PartialEq)]
 pub struct Cost {
-    /// Lower and upper bound (US$ of 2024) ...
+    /// Lower and upper bound (US$ of 2024) per unit.
     pub dollars: [f64; 2],
-    /// ... for each of these.
+    /// Unit to which the bounds apply.
     pub each: Each,
     /// Source of the figures.
     pub source: &'static str,
 }
 
-/// Unit of a price.
+/// Unit to which a cost applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Each {
-    /// A stack.
+    /// The whole stack.
     Stack,
-    /// A level of a stack that has the device.
+    /// Each level that has the device.
     Level,
 }
 
 impl Words {
-    /// Returns candidate settings for a stack with a number of levels, each in words and as overrides of the
+    /// Returns the candidate settings for a stack with `levels` levels, each as a description and overrides of the
     /// scenario.
     ///
-    /// The scenario checks if one fits the stack.
+    /// Whether a setting fits the stack is checked when the scenario is read.
     pub fn settings(&self, levels: u32) -> Vec<(String, Vec<String>)> {
         let mut all: Vec<_> = self.candidates.iter().map(Setting::to_candidate).collect();
         if self == &strap::WORDS {
@@ -215,30 +216,30 @@ impl Words {
     }
 }
 
-/// A number of the highest levels; 0 for none.
+/// A number of levels, counted from the top; 0 for none.
 const LEVELS: Kind = Kind::Integer(0, 12);
 
-/// Returns the lowest level that has a device, which is on the `highest` levels of a number of levels.
+/// Returns the lowest level with a device that is on the top `highest` levels of a stack with `levels` levels.
 pub fn lowest(highest: u32, levels: u32) -> u32 {
     levels.saturating_sub(highest) + 1
 }
 
-/// Refuses a device on more levels than a stack has.
+/// Rejects a device on more levels than the stack has.
 fn check_levels(reader: &Reader<'_>, device: u32, stack: u32) -> Result<(), InputError> {
     if device <= stack {
         return Ok(());
     }
     let path = reader.path_of("levels");
-    let message = format!("`{path}` is {device}, but the stack has only {stack}");
+    let message = format!("`{path}` is {device}, but the stack has only {stack} levels");
     Err(reader.inconsistent("levels", message))
 }
 
-/// A force element that is not tightened yet.
+/// A force element of a device that is installed and tightened after the stack has settled.
 #[derive(Clone, Debug)]
 pub(crate) struct Loose {
-    /// The element as drawn, before the stack settles.
+    /// The element on the stack as drawn, before it settles.
     pub(crate) element: Element<Planar>,
-    /// Excess (m) of its length over the distance of its ends; negative under pretension.
+    /// Excess (m) of its length over the distance between its ends; negative under pretension.
     give: f64,
     words: &'static Words,
 }

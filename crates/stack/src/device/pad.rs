@@ -1,4 +1,4 @@
-//! Elastomer pads in the cradles: softer, more damped and less slippery than wood on steel.
+//! Elastomer pads in the cradles, which are softer, more damped and less slippery than wood on steel.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::field::{Default, Kind, Range};
@@ -22,7 +22,7 @@ pub(super) static WORDS: Words = Words {
             "stack.pad.friction=0.3",
         ],
     }],
-    // As stiff and as rough as the seats, where these are springs and dampers.
+    // Pads and seats get the same stiffness, damping and friction, so that pads change nothing.
     idle: &[
         "interface.barrel-rack.law=kelvin-voigt",
         "interface.barrel-rack.basis=seat",
@@ -46,20 +46,20 @@ section! {
     /// Pads between barrels and their cradles.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Pads;
-    /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still holds
-    /// for racks that lie on barrels.
+    /// Elastomer pads between all barrels and their cradles, in place of `interface.barrel-rack`, which still applies
+    /// to racks that lie on barrels.
     pub static SECTION = "pad";
-    /// Stiffness of the pad of one support of a cradle; without it there are none.
+    /// Stiffness of the pad on one support of a cradle; if not given, there are no pads.
     stiffness: Option<f64> =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Nothing;
-    /// Damping of the pad of one support, of rubber in both senses: an assumption.
+    /// Damping of the pad on one support, on approach and separation: an assumption for rubber.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"5 kN s/m\"");
-    /// Coefficient of friction of wood on pads: an assumption.
+    /// Friction coefficient of wood on pads: an assumption.
     friction: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.6");
 }
 
-/// Reads pads.
+/// Reads the table of pads.
 pub(super) fn read(reader: Reader<'_>, _levels: u32) -> Result<Pads, InputError> {
     Pads::read(reader)
 }
@@ -70,7 +70,7 @@ impl Pads {
         self.stiffness.is_some()
     }
 
-    /// Returns the law of the pad of one support, if the stack has pads.
+    /// Returns the contact law of the pad on one support, if the stack has pads.
     pub fn law(&self) -> Option<Interface> {
         self.stiffness.map(|stiffness| Interface {
             basis: Basis::Seat,
@@ -87,8 +87,8 @@ impl Pads {
         })
     }
 
-    /// Assigns the law to the cradles.
-    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    /// Replaces the contact law of the cradles by that of the pads.
+    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         if let Some(law) = self.law() {
             builder.cradle_law = builder.add_cradle("pad", &law);

@@ -1,8 +1,8 @@
-//! Straps that hold the top of a stack.
+//! Straps that hold the top levels of a stack.
 //!
-//! A strap over a barrel lies on its round without slipping, so it is attached where it leaves the barrel, at the
-//! ends of its horizontal diameter, and runs from there straight down to the rack. Along the barrels both of its ends
-//! appear on one line, through the middle of the barrel.
+//! A strap over a barrel does not slip on it. It is therefore attached where it leaves the barrel, at the ends of the
+//! horizontal diameter, and runs straight down to the rack from there. In the plane along the barrels, both runs
+//! coincide in one line through the middle of the barrel.
 
 use barrelstack_dynamics::{BodyId, Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -47,10 +47,10 @@ pub(super) static WORDS: Words = Words {
     },
 };
 
-/// Pretensions (kN) of straps around the whole stack; by hand a ratchet for webbing of 50 mm reaches 5 kN at most.
+/// Candidate pretensions (kN) of straps around the whole stack; a hand ratchet for 50 mm webbing reaches 5 kN at most.
 const PRETENSIONS: [u32; 2] = [1, 3];
 
-/// Returns settings with straps around all levels of a stack of more than one level.
+/// Returns candidate settings that strap all levels of a stack together; none for a stack of one level.
 pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String>)> {
     PRETENSIONS.into_iter().filter(move |_| levels > 1).map(move |pretension| {
         let fields = [
@@ -66,41 +66,42 @@ pub(super) fn about_all(levels: u32) -> impl Iterator<Item = (String, Vec<String
 named! {
     /// Bodies that straps tie together.
     pub enum Ties {
-        /// Every barrel to its own rack, down both of its sides.
+        /// Every barrel is tied to its own rack, on both sides.
         BarrelsToRacks = "barrels-to-racks",
-        /// The same, and every rack to the rack below it, so that the levels become one block.
+        /// In addition, every rack is tied to the rack below it, so that the levels become one block.
         LevelsTogether = "levels-together",
     }
 }
 
 section! {
-    /// Straps on the highest levels of a stack.
+    /// Straps on the top levels of a stack.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Straps;
-    /// Straps on the highest levels: they pull, never push, and have no mass.
+    /// Straps on the top levels, which pull but never push and have no mass.
     pub static SECTION = "strap";
-    /// Number of the highest levels that are strapped; 0 for no straps.
+    /// Number of levels that are strapped, counted from the top; 0 for no straps.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Every barrel to its rack, or besides every rack to the one below.
+    /// Bodies that are tied: every barrel to its rack, or in addition every rack to the rack below.
     ties: Ties = Kind::Choice(names::<Ties>), Default::Value("\"barrels-to-racks\"");
-    /// Force per elongation of one strap; that of a polyester strap is its strength over some 5 to 7 % of its length.
+    /// Stiffness of one strap, force per elongation; a polyester strap reaches its strength at some 5 to 7 % of its
+    /// length.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
-    /// Force per rate of elongation of one strap, while it is taut.
+    /// Damping of one strap, force per rate of elongation, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Slack of one strap on the stack at rest, before it pulls.
+    /// Slack of one strap on the stack at rest: the elongation before it pulls.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1.0)), Default::Value("\"0 m\"");
-    /// Force in one strap as it is put on; the stack gives under it, and a part of it is lost.
+    /// Force in one strap when it is tightened; the stack settles under it, so that a part of the force is lost.
     pretension: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::NOT_NEGATIVE), Default::Value("\"0 N\"");
-    /// Force above which one strap tears, for good; without it none does.
+    /// Force above which a strap tears permanently; if not given, straps never tear.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reads straps on a stack of a number of levels.
+/// Reads the table of straps of a stack with `levels` levels.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError> {
     let straps = Straps::read_fields(&reader)?;
     if straps.slack > 0.0 && straps.pretension > 0.0 {
@@ -109,7 +110,7 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
     }
     if let Some(strength) = straps.strength.filter(|strength| *strength <= straps.pretension) {
         let message = format!(
-            "`{}` of {} N is not below the strength of {strength} N",
+            "`{}` of {} N is not below the strength of {strength} N; lower it, or raise the strength",
             reader.path_of("pretension"),
             straps.pretension
         );
@@ -128,8 +129,10 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<Straps, InputError
 }
 
 impl Straps {
-    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the excess (m) of its length over
-    /// the distance of its ends once it is tightened on the stack at rest; negative under pretension.
+    /// Returns one strap over a vertical distance (m) on the stack as drawn, and the excess (m) of its length over the
+    /// distance between its ends once it is tightened on the stack at rest.
+    ///
+    /// The excess is negative under pretension.
     ///
     /// # Errors
     /// If the pretension would stretch it by more than its whole length.
@@ -161,7 +164,7 @@ impl Straps {
         Ok((strap, give))
     }
 
-    /// Installs the straps: from the ground up, those on the left first.
+    /// Installs the straps from the ground up, those on the left first.
     ///
     /// # Errors
     /// If the pretension would stretch a strap by more than its whole length.
@@ -178,7 +181,7 @@ impl Straps {
             let (strap, give) = self.strap(link, apart.z, scale)?;
             Ok::<_, String>(Loose { element: strap.into(), give, words: &WORDS })
         };
-        // Mirroring swaps left and right, and with them the order of summation.
+        // Mirroring swaps left and right, so the order of summation is reversed as well.
         let mut sides = [("left", -1.0), ("right", 1.0)];
         if spec.mirror {
             sides.reverse();

@@ -1,6 +1,6 @@
-//! Ties of racks to structures beside or above them: cables and rods that pull, may have slack, yield and tear.
+//! Ties of racks to structures beside or above them: cables and rods that pull, and may have slack, yield and tear.
 //!
-//! Walls and ceilings move with the ground; a real one moves more.
+//! Walls and ceilings are assumed to move with the ground; real ones move more.
 
 use barrelstack_dynamics::{Link, Space, Strap, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -54,13 +54,13 @@ named! {
 }
 
 named! {
-    /// On which sides.
+    /// Sides of a stack on which racks are tied.
     pub enum Side {
-        /// On the left.
+        /// The left side.
         Left = "left",
-        /// On the right.
+        /// The right side.
         Right = "right",
-        /// On both.
+        /// Both sides.
         Both = "both",
     }
 }
@@ -69,35 +69,36 @@ section! {
     /// Ties of racks.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct AnchorTies;
-    /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never push.
+    /// Cables or rods from the ends of racks to a wall, to the ceiling or to the neighboring racks: they pull, never
+    /// push.
     pub static SECTION = "tie";
-    /// Number of the highest levels that are tied; 0 for none.
+    /// Number of levels that are tied, counted from the top; 0 for none.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Anchor of the ties; walls and ceiling move as the ground does.
+    /// Anchor of the ties; walls and ceilings move with the ground.
     to: Anchor = Kind::Choice(names::<Anchor>), Default::Value("\"wall\"");
-    /// On which side there is a wall or a ceiling, before mirroring.
+    /// Side on which there is a wall or a ceiling, before mirroring.
     side: Side = Kind::Choice(names::<Side>), Default::Value("\"both\"");
-    /// From the end of a rack to the wall or the ceiling; to a wall the 18 in that a winery keeps (Press Democrat 2014).
+    /// Distance from the end of a rack to the wall or the ceiling; the default is the 18 in that one winery keeps from its walls (Press Democrat 2014).
     distance: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.01, 20.0)), Default::Value("\"45 cm\"");
-    /// Force per elongation of one tie; of a steel cable of 8 mm some 2 MN over its length in meters, softer with its anchors: an assumption.
+    /// Stiffness of one tie, force per elongation, an assumption: a steel cable of 8 mm has some 2 MN divided by its length, and anchors make it softer.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"500 kN/m\"");
-    /// Force per rate of elongation of one tie, while it is taut.
+    /// Damping of one tie, force per rate of elongation, while it is taut.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Slack of one tie on the stack at rest, before it pulls.
+    /// Slack of one tie on the stack at rest: the elongation before it pulls.
     slack: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"1 cm\"");
-    /// Force at which one tie yields: it becomes longer for good; without it none does.
+    /// Force at which a tie yields and becomes permanently longer; if not given, ties never yield.
     yields_at: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
-    /// Force above which one tie tears, for good; without it none does.
+    /// Force above which a tie tears permanently; if not given, ties never tear.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reads ties.
+/// Reads the table of ties.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<AnchorTies, InputError> {
     let ties = AnchorTies::read_fields(&reader)?;
     check_levels(&reader, ties.levels, levels)?;
@@ -121,7 +122,7 @@ impl AnchorTies {
         self.levels > 0
     }
 
-    /// Returns a share of one tie, before its slack.
+    /// Returns one tie before slack is added; `share` is the fraction of a tie that the element represents.
     pub fn tie<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -140,10 +141,10 @@ impl AnchorTies {
         }
     }
 
-    /// Ties the racks, from the ground up.
+    /// Installs the ties, from the ground up.
     ///
     /// # Errors
-    /// If racks have no neighbors to be tied to.
+    /// If racks are tied to neighbors that they do not have.
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         if !self.is_on() {
@@ -159,7 +160,7 @@ impl AnchorTies {
         }
         let lowest = lowest(self.levels, spec.levels);
         let far = self.distance * scale.length;
-        // Mirroring swaps left and right, and with them the order of summation.
+        // Mirroring swaps left and right, so the order of summation is reversed as well.
         let mut sides = [("left", -1.0, Side::Left), ("right", 1.0, Side::Right)];
         if spec.mirror {
             sides = [("left", 1.0, Side::Left), ("right", -1.0, Side::Right)];

@@ -1,4 +1,4 @@
-//! Tuned masses: a mass on a spring and a damper that swings against a rack.
+//! Tuned masses: masses that oscillate on a spring and a damper relative to a rack.
 
 use std::f64::consts::TAU;
 
@@ -32,7 +32,7 @@ pub(super) static WORDS: Words = Words {
         name: "a tuned mass without its damper",
         overrides: &["stack.tuned_mass.damping_ratio=0.01"],
     }],
-    // A mass is an additional body: with zero mass there is none.
+    // A tuned mass is an additional body; a mass of zero adds none.
     idle: &["stack.tuned_mass.mass=\"0 kg\"", "stack.tuned_mass.level=2"],
     cost: Cost {
         dollars: [400.0, 1500.0],
@@ -44,17 +44,17 @@ pub(super) static WORDS: Words = Words {
 /// Tuning of a mass to a structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
-    /// Natural frequency over that of the structure.
+    /// Natural frequency divided by that of the structure.
     pub frequency: f64,
-    /// Damping ratio at its own natural frequency.
+    /// Damping ratio of the mass at its own natural frequency.
     pub damping_ratio: f64,
 }
 
 impl Tuning {
-    /// Returns the tuning that minimizes the largest displacement of an undamped structure under a harmonic force,
-    /// for the ratio μ of the masses: the frequency `1/(1 + μ)` and the damping `√(3μ/8(1 + μ))` (Den Hartog 1956,
-    /// section 3.3).
-    /// A rocking stack is no such structure: the more it sways, the slower.
+    /// Returns the tuning that minimizes the largest displacement of an undamped structure under a harmonic force.
+    ///
+    /// `share` is the mass ratio μ. The frequency is `1/(1 + μ)` and the damping ratio `√(3μ/8(1 + μ))` (Den Hartog
+    /// 1956, section 3.3). A rocking stack is not such a structure: its period grows with the amplitude.
     ///
     /// ```
     /// let tuning = barrelstack_stack::device::Tuning::den_hartog(0.05);
@@ -73,19 +73,20 @@ section! {
     /// A mass on a spring and a damper on every rack of a level.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct TunedMass;
-    /// Masses that swing in the plane on springs and dampers against the racks of a level, without touching anything.
+    /// Masses that oscillate in the plane on springs and dampers on the racks of a level, without touching anything.
     pub static SECTION = "tuned_mass";
-    /// Mass of one, on one rack; 0 for none.
+    /// Mass on each rack of the level; 0 for no tuned masses.
     mass: f64 =
         Kind::Quantity(&[Dimension::MASS], Range::between(0.0, 1e4)), Default::Value("\"0 kg\"");
-    /// Level of the racks that carry one; 0 for the top level.
+    /// Level of the racks that carry a mass; 0 for the top level.
     level: u32 = LEVELS, Default::Value("0");
-    /// Its own period: for an undamped structure that of the structure times one more than the share of the mass (Den Hartog 1956).
+    /// Natural period of the mass; the optimum for an undamped structure with period T is (1 + μ) T for a mass ratio μ (Den Hartog 1956).
     period: f64 =
         Kind::Quantity(&[Dimension::TIME], Range::between(0.05, 20.0)), Default::Value("\"1 s\"");
-    /// Damping over the critical one: for a share μ of the mass √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog 1956).
+    /// Damping ratio of the mass; the optimum for a mass ratio μ is √(3μ/8(1 + μ)), which is 0.13 for 5 % (Den Hartog
+    /// 1956).
     damping_ratio: f64 = Kind::Number(Range::between(0.0, 2.0)), Default::Value("0.13");
-    /// Stroke to either side before it meets a stop: an assumption.
+    /// Stroke of the mass to either side before it meets a stop: an assumption.
     stroke: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::up_to(10.0)), Default::Value("\"30 cm\"");
     /// Stiffness of the stops: an assumption.
@@ -93,7 +94,7 @@ section! {
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"100 kN/m\"");
 }
 
-/// Reads a tuned mass.
+/// Reads the table of tuned masses.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputError> {
     let mass = TunedMass::read_fields(&reader)?;
     if mass.level > levels {
@@ -105,11 +106,11 @@ pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<TunedMass, InputEr
     Ok(mass)
 }
 
-/// Frequency (Hz) of its support: far above that of any stack, and no stiffer than seats.
+/// Natural frequency (Hz) of the support of a mass: far above that of any stack, and no stiffer than seats.
 const HOLDING: f64 = 15.0;
 
 impl TunedMass {
-    /// Half of its width and height (m) in drawings.
+    /// Half the width and half the height (m) of a mass in drawings.
     pub const HALF: [f64; 2] = [0.15, 0.03];
     /// Description of the support of a mass, which appears in no report.
     pub const SUPPORT: &'static Words = &Words::silent("support");
@@ -119,12 +120,14 @@ impl TunedMass {
         self.mass > 0.0
     }
 
-    /// Returns the level whose racks carry masses, in a stack with a number of levels.
+    /// Returns the level whose racks carry masses, in a stack with `levels` levels.
     pub fn level_of(&self, levels: u32) -> u32 {
         if self.level == 0 { levels } else { self.level }
     }
 
-    /// Returns the spring on which a share of a mass swings along an axis of the first body of a link.
+    /// Returns the spring, damper and stops of a mass along an axis of the first body of a link.
+    ///
+    /// `share` is the fraction of the mass that the model contains.
     pub fn swing<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -146,7 +149,9 @@ impl TunedMass {
         }
     }
 
-    /// Returns the support of a share of a mass along an axis of the first body of a link.
+    /// Returns the stiff support of a mass along an axis of the first body of a link.
+    ///
+    /// `share` is the fraction of the mass that the model contains.
     pub fn hold<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -160,7 +165,7 @@ impl TunedMass {
     }
 
     /// Installs a mass on every rack of its level, at the center of mass of the rack.
-    #[expect(clippy::unnecessary_wraps, reason = "as every device is put on")]
+    #[expect(clippy::unnecessary_wraps, reason = "the same for all devices")]
     pub(super) fn place(&self, builder: &mut Builder<'_>) -> Result<(), String> {
         let (spec, scale) = (builder.spec, builder.scale);
         let level = self.level_of(spec.levels);
@@ -179,7 +184,7 @@ impl TunedMass {
                 level: None,
                 column,
                 mass,
-                // Every force passes through its center, so it never turns.
+                // Every force acts through the center of mass, so the body never rotates.
                 inertia: Some(mass * Self::HALF[0] * Self::HALF[0]),
                 position: builder.bodies[rack].pose.position * (1.0 / scale.length),
                 size: Self::HALF[0],

@@ -1,6 +1,6 @@
 //! Stops that keep racks from walking on the barrels below: hooks over the ends of the barrels, or saddles.
 //!
-//! A rack that has been lifted above its lips is disengaged for good.
+//! A rack that has once been lifted above its lips stays disengaged.
 
 use barrelstack_dynamics::{Guide, Link, Space, Vec2};
 use barrelstack_input::declared::Declared as _;
@@ -46,13 +46,13 @@ pub(super) static WORDS: Words = Words {
 };
 
 named! {
-    /// In which plane they hold.
+    /// Direction in which stops hold racks.
     pub enum Holds {
         /// Along the barrels: a hook over the hoop or the end of a barrel.
         Along = "along",
-        /// Across the barrels: a saddle on its round, without friction.
+        /// Across the barrels: a saddle on the round of a barrel, without friction.
         Across = "across",
-        /// Both.
+        /// Both along and across the barrels.
         Both = "both",
     }
 }
@@ -61,28 +61,29 @@ section! {
     /// Stops between racks and the barrels below.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct WalkingStops;
-    /// Stops between racks and the barrels below: lips that a rack meets once it has walked through a gap.
+    /// Stops between racks and the barrels below: lips that a rack touches after it has walked through a gap.
     pub static SECTION = "walking_stop";
-    /// Number of the highest levels that have racks with stops, the bottom rack never; 12 for all, 0 for none.
+    /// Number of levels whose racks have stops, counted from the top; 12 for all, 0 for none. The bottom rack never has
+    /// stops.
     levels: u32 = LEVELS, Default::Value("0");
-    /// Direction in which they hold: along the barrels, across them, or both.
+    /// Direction in which the stops hold: along the barrels, across them, or both.
     holds: Holds = Kind::Choice(names::<Holds>), Default::Value("\"along\"");
-    /// Displacement of a rack from its place at rest, to either side, before it meets a lip: an assumption.
+    /// Displacement of a rack from its position at rest, to either side, before it meets a lip: an assumption.
     gap: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"2 cm\"");
-    /// Height of the lips: a rack that has risen by more is off them; an assumption.
+    /// Height of the lips, an assumption: a rack that has risen by more is disengaged.
     lip: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::up_to(1.0)), Default::Value("\"4 cm\"");
-    /// Force per displacement into the lips of one barrel; of bent steel plate, an assumption.
+    /// Stiffness of the lips at one barrel, force per displacement: an assumption for bent steel plate.
     stiffness: f64 =
         Kind::Quantity(&[Dimension::STIFFNESS], Range::POSITIVE), Default::Value("\"1 MN/m\"");
-    /// Force per speed into the lips of one barrel, on approach only; an assumption.
+    /// Damping of the lips at one barrel, force per speed, on approach only: an assumption.
     damping: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"2 kN s/m\"");
-    /// Force above which the lips of one barrel break, for good; without it they never do.
+    /// Force above which the lips at one barrel break permanently; if not given, lips never break.
     strength: Option<f64> =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Nothing;
 }
 
-/// Reads stops.
+/// Reads the table of walking stops.
 pub(super) fn read(reader: Reader<'_>, levels: u32) -> Result<WalkingStops, InputError> {
     let stops = WalkingStops::read_fields(&reader)?;
     if stops.levels < 12 {
@@ -98,8 +99,9 @@ impl WalkingStops {
         self.levels > 0
     }
 
-    /// Returns the stops between the bodies of a link, along an axis of the first one; they disengage above their
-    /// lip.
+    /// Returns the stops between the bodies of a link along an axis of the first body.
+    ///
+    /// The stops disengage once the rack has risen above the lips.
     pub fn guide<S: Space<Real = f64>>(
         &self,
         link: Link<S>,
@@ -128,7 +130,7 @@ impl WalkingStops {
         if spec.rack.kind == RackKind::OnRacks {
             return Err(format!(
                 "walking stops hold racks on the barrels below, but a `{}` rack stands on posts: set \
-                 stack.walking_stop.levels = 0, or take another rack; rack.post_spigot is what holds posts",
+                 stack.walking_stop.levels = 0, or take another rack; racks on posts are held by rack.post_spigot",
                 spec.rack.base
             ));
         }
@@ -146,7 +148,7 @@ impl WalkingStops {
             for barrel in part.supports.clone() {
                 let below = &builder.parts[barrel];
                 let (name, size) = (below.name.clone(), below.size);
-                // A saddle lies on a round that turns under it; a hook touches the top of its barrel.
+                // A saddle acts at the center of its barrel, which may turn under it; a hook acts at the top.
                 let (point, reach) = match spec.view {
                     View::Transverse => (Vec2::default(), 0.7 * size),
                     View::Longitudinal => {

@@ -1,4 +1,4 @@
-//! Runs in lanes: loading, observation and results.
+//! Cases that run in vector lanes: loading, observation and results.
 
 use barrelstack_dynamics::lanes::{self, Case, End, Lanewise as _, Task, Width, run_batch};
 use barrelstack_dynamics::real::{Mask, Real};
@@ -13,10 +13,10 @@ use crate::run::{Ended, conclude, thresholds};
 use crate::stand::{Stack, Standing};
 use crate::watch::{self, Ending, Fates, Joints, StressWatch};
 
-/// Number of steps between two polls whether to stop.
+/// Number of steps between two polls of the stop request.
 const PATIENCE: u32 = 1024;
 
-/// Runs a group of one topology and method in lanes, until it is stopped.
+/// Runs a group of cases with one topology and method in lanes; when stopped, returns the results so far.
 pub(super) fn run(
     width: Width,
     method: Method,
@@ -25,7 +25,7 @@ pub(super) fn run(
     audience: &mut Audience<'_>,
 ) -> Vec<(usize, CaseResult)> {
     let width = if width.is_here() { width } else { Width::Scalar };
-    // An available width always returns results.
+    // An available width never returns `None`.
     width.run(InLanes { method, group, stacks, audience }).unwrap_or_default()
 }
 
@@ -68,9 +68,9 @@ struct Batch<'a, 'b, R: Real> {
     group: &'a [Run<'a>],
     stacks: &'a [Stack<'a>],
     audience: &'a mut Audience<'b>,
-    /// The next run of the group.
+    /// Index of the next run of the group.
     next: usize,
-    /// The run of every lane.
+    /// Index of the run in every lane.
     runs: Vec<usize>,
     /// Fates of the bodies of every lane; `None` before the first run is loaded.
     fates: Option<Fates<R>>,
@@ -83,7 +83,7 @@ struct Batch<'a, 'b, R: Real> {
     /// Barrel positions of every lane, and the time (s) at which the next sample is due.
     trails: Vec<Trail>,
     due: R,
-    /// Work of every lane; `None` without a case.
+    /// Progress of the case in every lane; `None` without a case.
     shares: Vec<Option<Share>>,
     /// The lanes that had come to rest in the last step.
     rested: R::Mask,
@@ -140,7 +140,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
     }
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) -> R::Mask {
         self.steps += 1;
         if self.steps == PATIENCE {
@@ -172,7 +172,7 @@ impl<'a, R: Real> lanes::Batch<'a, R> for Batch<'a, '_, R> {
         let (collapsed, rested) = end.observe(state, fates);
         self.rested = rested;
         let ended = collapsed | rested;
-        // Lanes without a case have ended as well.
+        // Lanes without a case also count as ended, but their next sample is never due.
         let due = self.due.le(state.time) | (ended & self.due.lt(R::splat(f64::INFINITY)));
         if due.any() {
             for lane in (0..R::LANES).filter(|lane| due.lane(*lane)) {

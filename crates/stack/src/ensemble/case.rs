@@ -1,4 +1,4 @@
-//! A case of an ensemble, and its result.
+//! A case of an ensemble and its result.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::trail::Trail;
 pub struct Prepared {
     /// The scenario; its own motion is ignored.
     pub scenario: Arc<Scenario>,
-    /// Ground motion, shared by all cases of one motion and level.
+    /// Ground motion, shared by all cases with the same motion and intensity.
     pub ground: Arc<Ground>,
 }
 
@@ -41,42 +41,42 @@ pub struct CaseResult {
     pub first_fall: Option<f64>,
     /// Number of barrels.
     pub barrels: usize,
-    /// Time (s) at which each barrel had fallen, by name, in the order of the barrels; `None` if it stood.
+    /// Time (s) at which each barrel had fallen, by name, in the order of the barrels; `None` if it did not fall.
     pub falls: Vec<(String, Option<f64>)>,
     /// Largest drop (m) of each fallen barrel, in the order of the barrels.
     pub fall_heights: Vec<f64>,
-    /// Largest force (N) on each of them after it had fallen.
+    /// Largest force (N) on each fallen barrel after its fall.
     pub fall_forces: Vec<f64>,
-    /// Wine (m³) in each of them.
+    /// Volume of wine (m³) in each fallen barrel.
     pub fall_wine: Vec<f64>,
-    /// Wine (m³) in all barrels of the stack.
+    /// Volume of wine (m³) in all barrels of the stack.
     pub wine: f64,
-    /// Demands on the stack until the first loss of seat; all `None` if it could not run or broke down.
+    /// Demands on the stack until the first loss of seat; all `None` if the case could not run or is invalid.
     pub demands: Demands,
     /// Demands over the whole run.
     pub demands_whole_run: Demands,
-    /// Forces between bodies that lean on each other or have met, by name, at rest and at their largest; empty if it
-    /// could not run or broke down.
+    /// Forces between bodies that are supported by or have touched each other, by name, at rest and at their maximum;
+    /// empty if the case could not run or is invalid.
     pub joints: Vec<(String, Joint)>,
     /// Largest residual displacement (m) of a barrel relative to the ground: in a plane along x, in space horizontal.
     pub residual_displacement: Option<f64>,
     /// Reason for the end of the run.
     pub ending: Option<Ending>,
-    /// Remaining time (s) of the motion when it ended; zero if the run covered all of it.
+    /// Time (s) of the motion that remained when the run ended; zero if it ended at rest or covered all of the motion.
     pub cut: Option<f64>,
-    /// Time (s) that the run reached.
+    /// Simulated time (s) that the run reached.
     pub end_time: Option<f64>,
     /// Number of accepted steps.
     pub steps: Option<u64>,
-    /// Residual of the energy balance over the energy throughput.
+    /// Residual of the energy balance divided by the energy throughput.
     pub energy_residual_ratio: Option<f64>,
     /// Warnings for the reader of the result.
     pub warnings: Vec<String>,
-    /// Barrel positions over time; empty if it could not run or broke down.
+    /// Barrel positions over time; empty if the case could not run or is invalid.
     pub trail: Trail,
 }
 
-/// Observations of a case.
+/// Observations of a case from which its result is made.
 pub(super) struct Observed<'a> {
     pub(super) fates: &'a Fates,
     pub(super) stresses: &'a Stresses,
@@ -148,12 +148,11 @@ impl CaseResult {
         }
     }
 
-    /// Creates the result of a case whose stack falls under its own weight, before it is shaken: a collapse at the
-    /// start, of the lowest unsupported body (name and level) and of all levels from there up, whose barrels count as
-    /// fallen.
+    /// Creates the result of a case whose stack falls under its own weight before it is shaken.
     ///
-    /// `barrels` lists those of the whole stack, each with name, level, height (m) over the floor, which counts as
-    /// its drop, and wine (m³).
+    /// The result is a collapse at time zero, from the level of the lowest unsupported body (name and level) upward;
+    /// the barrels of these levels count as fallen. `barrels` lists all barrels of the stack, each with its name,
+    /// level, height (m) above the floor, which counts as its drop, and wine (m³).
     pub fn fallen_at_rest(
         (first, from_level): (&str, u32),
         levels: u32,
@@ -189,7 +188,7 @@ impl CaseResult {
         }
     }
 
-    /// Returns `true` if it collapsed; `None` without a verdict.
+    /// Returns whether the stack collapsed; `None` without a verdict.
     pub fn collapsed(&self) -> Option<bool> {
         match self.outcome {
             Ok(Outcome::Stable) => Some(false),
@@ -200,7 +199,7 @@ impl CaseResult {
         }
     }
 
-    /// Returns `true` if its stack fell under its own weight, before it was shaken.
+    /// Returns `true` if the stack fell under its own weight before it was shaken.
     pub fn fell_at_rest(&self) -> bool {
         self.outcome.as_ref().is_ok_and(Outcome::fell_at_rest)
     }

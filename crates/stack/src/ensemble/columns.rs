@@ -1,4 +1,4 @@
-//! Columns of a table of cases: one list, from which every such table is made.
+//! Columns of tables of cases, declared in one list for all such tables.
 
 use barrelstack_report::column::{Column, ColumnSpec, Role, Value, ValueKind, Values};
 
@@ -18,7 +18,7 @@ pub struct CaseColumn {
     pub role: Role,
     /// Description in a sentence.
     pub meaning: &'static str,
-    /// Returns the value of a case; `None` where it does not apply or is unknown.
+    /// Returns the value of a case; `None` if it does not apply or is unknown.
     pub get: Get,
 }
 
@@ -56,7 +56,7 @@ impl CaseColumn {
                 let whole = |case| get(case).and_then(|count| i64::try_from(count).ok());
                 Values::Integer(cases.map(whole).collect())
             }
-            // A NaN in a table would look like a value.
+            // A NaN is left out, because it would look like a value.
             Get::Number(get) => {
                 let number = |case| get(case).filter(|value| !value.is_nan());
                 Values::Number(cases.map(number).collect())
@@ -93,8 +93,9 @@ fn columns<'a>(cases: &(impl Iterator<Item = &'a CaseResult> + Clone)) -> Vec<Co
     CASE_COLUMNS.iter().map(column).collect()
 }
 
-/// Returns a table of a stack as stated, number 0, and its variants: their numbers, then the columns of
-/// [`CASE_COLUMNS`]. Cases that were interrupted have no row.
+/// Returns a table of the variants of a stack: the number of the variant, then the columns of [`CASE_COLUMNS`].
+///
+/// Number 0 is the stack as stated. Interrupted cases have no row.
 pub fn variants<'a>(cases: impl Iterator<Item = &'a CaseResult> + Clone) -> Vec<Column> {
     let ended = (0..).zip(cases).filter(|(_, case)| !case.is_interrupted());
     let spec = ColumnSpec::new(VARIANT.0, "", Role::Key, ValueKind::Integer);
@@ -113,7 +114,7 @@ pub fn meaning(name: &str) -> Option<&'static str> {
     known.chain([VARIANT]).find_map(|(known, meaning)| (known == name).then_some(meaning))
 }
 
-/// Each line: description, name, unit, role, and accessor.
+/// Declares the columns. Each line has a description, name, unit, role, and accessor.
 macro_rules! columns {
     ($(
         #[doc = $meaning:literal]
@@ -135,54 +136,54 @@ columns! {
     outcome "": Outcome Text |case| {
         Some(case.outcome.as_ref().map_or("error", Outcome::kind).to_owned())
     };
-    /// how it collapsed: ejection, rocking, rack-sliding, overturning, or gravity, which is before it was shaken
+    /// mode of the collapse: ejection, rocking, rack-sliding, overturning, or gravity, which is before the shaking
     mode "": Outcome Text |case| match &case.outcome {
         Ok(Outcome::Collapse { mode, .. }) => Some(mode.name().to_owned()),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
     };
-    /// when the first body left its seat; 0 where the stack fell under its own weight
+    /// time at which the first body left its seat; 0 if the stack fell under its own weight
     first_loss "s": Outcome Number |case| match &case.outcome {
         Ok(Outcome::Collapse { time, .. }) => Some(*time),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Invalid { .. }) | Err(_) => None,
     };
-    /// when the first barrel had fallen
+    /// time at which the first barrel had fallen
     first_fall "s": Outcome Number |case| case.first_fall;
-    /// barrels of the stack
+    /// number of barrels of the stack
     barrels "": Outcome Integer |case| case.outcome.is_ok().then_some(case.barrels);
-    /// barrels that had fallen when the case ended
+    /// number of barrels that had fallen when the case ended
     barrels_fallen "": Outcome Integer |case| {
         let judged = matches!(&case.outcome, Ok(Outcome::Stable | Outcome::Collapse { .. }));
         judged.then_some(case.fall_heights.len())
     };
-    /// largest drop of each barrel that fell (m), divided by semicolons
+    /// largest drop of each fallen barrel (m), separated by semicolons
     fall_heights "m": Outcome Text |case| Some(list(&case.fall_heights));
-    /// largest force on each of these barrels since it had fallen (N), divided by semicolons
+    /// largest force on each fallen barrel after its fall (N), separated by semicolons
     fall_forces "N": Outcome Text |case| Some(list(&case.fall_forces));
-    /// wine in each of these barrels (m³), divided by semicolons
+    /// wine in each fallen barrel (m³), separated by semicolons
     fall_wine "m3": Outcome Text |case| Some(list(&case.fall_wine));
     /// wine in all barrels of the stack
     stack_wine "m3": Outcome Number |case| case.outcome.is_ok().then_some(case.wine);
-    /// peak displacement of the top over its height, until the first loss of seat
+    /// peak displacement of the top divided by its height, until the first loss of seat
     top_drift_ratio "": Demand Number |case| case.demands.top_drift_ratio;
     /// largest slip of the bottom rack, until the first loss of seat
     base_slip_peak "m": Demand Number |case| case.demands.base_slip_peak;
-    /// slip of the bottom rack at the end
+    /// slip of the bottom rack at the end of the case
     base_slip_residual "m": Demand Number |case| case.demands.base_slip_residual;
     /// largest tilt of a rack, until the first loss of seat
     rack_tilt_peak "rad": Demand Number |case| case.demands.rack_tilt_peak;
-    /// largest walk of a rack on what it stands on, until the first loss of seat
+    /// largest displacement of a rack on its supports, until the first loss of seat
     rack_walk_peak "m": Demand Number |case| case.demands.rack_walk_peak;
-    /// largest normal stress on a bottom barrel over the largest at rest, until the first loss of seat
+    /// largest normal stress on a bottom barrel divided by the largest at rest, until the first loss of seat
     stress_amplification "": Demand Number |case| case.demands.stress_amplification;
-    /// the same, averaged over the boundary that is loaded at rest
+    /// ratio as in stress_amplification, but of stresses averaged over the part of the boundary that is loaded at rest
     mean_stress_amplification "": Demand Number |case| case.demands.mean_stress_amplification;
     /// largest vertical force between two bodies, until the first loss of seat
     vertical_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.vertical.0);
     /// largest horizontal force between two bodies, until the first loss of seat
     horizontal_force_peak "N": Demand Number |case| force(case, |joint| joint.until_loss.horizontal.0);
-    /// largest vertical force between a barrel and a rack, over what its staves bear, until the first loss of seat
+    /// largest vertical force between a barrel and a rack, divided by the capacity of its staves, until the first loss of seat
     stave_utilization "": Demand Number |case| case.demands.stave_utilization;
-    /// top_drift_ratio over the whole run, falls included
+    /// top_drift_ratio over the whole run, including falls
     top_drift_ratio_whole_run "": Outcome Number |case| case.demands_whole_run.top_drift_ratio;
     /// base_slip_peak over the whole run
     base_slip_peak_whole_run "m": Outcome Number |case| case.demands_whole_run.base_slip_peak;
@@ -202,21 +203,21 @@ columns! {
     horizontal_force_peak_whole_run "N": Outcome Number |case| force(case, |joint| joint.whole_run.horizontal.0);
     /// stave_utilization over the whole run
     stave_utilization_whole_run "": Outcome Number |case| case.demands_whole_run.stave_utilization;
-    /// largest displacement of a barrel at the end
+    /// largest displacement of a barrel at the end of the case
     residual_displacement "m": Demand Number |case| case.residual_displacement;
-    /// why the case ended: rest, after-collapse, duration, patience, broken or not-shaken
+    /// reason for the end of the case: rest, after-collapse, duration, patience, broken or not-shaken
     ended "": Run Text |case| case.ending.map(|ending| ending.name().to_owned());
-    /// time of the motion that was left when it ended
+    /// time of the motion that was left when the case ended
     motion_left "s": Run Number |case| case.cut;
-    /// simulated time that it reached
+    /// simulated time that the case reached
     end_time "s": Run Number |case| case.end_time;
-    /// accepted time steps
+    /// number of accepted time steps
     steps "": Run Integer |case| case.steps.and_then(|steps| usize::try_from(steps).ok());
-    /// error of the energy balance over the energy that went through
+    /// error of the energy balance divided by the energy throughput
     energy_residual_ratio "": Run Number |case| case.energy_residual_ratio;
     /// number of warnings
     warnings "": Run Integer |case| Some(case.warnings.len());
-    /// why there is no verdict
+    /// reason why there is no verdict
     error "": Run Text |case| match &case.outcome {
         Ok(Outcome::Invalid { reason }) | Err(reason) => Some(reason.clone()),
         Ok(Outcome::Stable | Outcome::NotJudged | Outcome::Interrupted | Outcome::Collapse { .. }) => None,

@@ -1,5 +1,6 @@
-//! Cases that are created on demand and of which only table rows are kept: memory holds those of one batch per core,
-//! however many there are.
+//! Tables of any number of cases, which are created on demand.
+//!
+//! Only table rows are kept, so memory holds no more than one batch of cases per core.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,18 +16,18 @@ use crate::scenario::{MeasuredOn, MotionSource, MotionSpec, Scale, Scenario};
 /// Number of cases that a core takes at once: as many as the first chunks of a study have.
 const BATCH: usize = 64;
 
-/// Minimum number of batches per core, so that none waits long for the last.
+/// Minimum number of batches per core, so that no core waits long for the last batch.
 const SHARE: usize = 4;
 
-/// Cache of unscaled motions, so that none is read for every case.
+/// Cache of unscaled ground motions, so that a record is not read again for every case.
 #[derive(Debug, Default)]
 pub struct Grounds(Mutex<Vec<(MotionSpec, Arc<Ground>)>>);
 
-/// Capacity of the cache.
+/// Maximum number of motions in the cache.
 const KEPT: usize = 64;
 
 impl Grounds {
-    /// Returns the ground of a scenario, with the bits of [`Scenario::ground`].
+    /// Returns the ground motion of a scenario, bit-identical to that of [`Scenario::ground`].
     ///
     /// # Errors
     /// As [`Scenario::ground`].
@@ -65,11 +66,11 @@ impl Grounds {
     }
 }
 
-/// Runs `count` cases, created by `make` from their number, on all cores; returns their table, one row each in the
-/// order of their numbers, or `None` when stopped. The observer is called for every case and may stop the run.
+/// Runs `count` cases on all cores and returns their table, one row per case; `None` if stopped.
 ///
-/// A case that cannot be created is a row with the reason as its error. Cases of one topology must have the same
-/// `kind`, so that they run together; that changes nothing about any of them.
+/// `make` creates a case from its number, and rows are in the order of these numbers. The observer is called for
+/// every case and may stop the run. A case that cannot be created has a row with the reason as its error. Cases of
+/// one topology must have the same `kind` to run together; results do not depend on it.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -136,7 +137,7 @@ pub fn rows(
     let parts: Option<Vec<Vec<Column>>> =
         pool::map(&batches, together, &|_| ()).into_iter().collect();
     let parts = parts?;
-    // Batch and row of each case.
+    // Batch of each case, and its row in that batch.
     let mut places = vec![(0, 0); count];
     for (at, number) in order.iter().enumerate() {
         places[*number] = (at / size, at % size);
@@ -144,7 +145,7 @@ pub fn rows(
     let column = |index: usize| {
         let mut column = Column::empty(CASE_COLUMNS[index].spec());
         for (part, row) in &places {
-            // Both come from one list, so every value has the kind of its column.
+            // Columns and values come from the same list, so every value has the kind of its column.
             let _ = column.values.push(parts[*part][index].values.get(*row));
         }
         column

@@ -1,4 +1,4 @@
-//! Runs with adaptive steps, one after the other, since they share no step.
+//! Cases with adaptive time steps, which run one after the other because they share no step.
 
 use std::ops::ControlFlow;
 
@@ -14,7 +14,7 @@ use crate::run::{Ended, conclude, method, thresholds};
 use crate::stand::Stack;
 use crate::watch::{End, Ending, Fates, Joints, StressWatch};
 
-/// Runs a group, until it is stopped.
+/// Runs a group of cases one after the other; when stopped, returns the results so far.
 pub(super) fn run(
     group: &[Run<'_>],
     stacks: &[Stack<'_>],
@@ -64,7 +64,7 @@ pub(super) fn run(
     results
 }
 
-/// Observes the fates of the bodies and the forces between them.
+/// Observer of a case: fates of the bodies, stresses, forces between bodies, and barrel positions.
 struct Watch<'a> {
     fates: Fates,
     stresses: StressWatch,
@@ -73,7 +73,7 @@ struct Watch<'a> {
     started: bool,
     end: End,
     stop: &'a dyn Fn() -> bool,
-    /// Next poll (s) whether to stop.
+    /// Simulated time (s) of the next poll of the stop request.
     next_ask: f64,
     share: Share,
     end_time: f64,

@@ -7,17 +7,18 @@ use crate::assemble::{Assembly, PartKind};
 /// Samples per second: enough to show how a barrel sways and falls.
 pub const RATE: f64 = 16.0;
 
-/// Barrel positions relative to the ground at whole multiples of `1/RATE` (s), each taken at the step that reached
-/// it; in single precision, since they are for display only.
+/// Barrel positions relative to the ground, sampled at multiples of `1/RATE` (s) for display.
+///
+/// Each sample is taken at the first step that reaches its time, and is stored in single precision.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trail {
     /// The barrels of the top level.
     pub top: Vec<BodyId>,
-    /// Path of each of them: `x` and `z` (m) relative to the ground.
+    /// Path of each barrel of the top level: `x` and `z` (m) relative to the ground.
     pub paths: Vec<Vec<[f32; 2]>>,
     /// All barrels.
     pub barrels: Vec<BodyId>,
-    /// Last position of each of them: `x`, `z` (m) relative to the ground and the angle (rad).
+    /// Last position of each barrel: `x` and `z` (m) relative to the ground, and the angle (rad).
     pub last: Vec<[f32; 3]>,
 }
 
@@ -34,12 +35,12 @@ impl Trail {
         }
     }
 
-    /// Returns the time (s) at which the next sample is due; infinite where no barrel is followed.
+    /// Returns the time (s) at which the next sample is due; infinity without barrels.
     pub(super) fn due(&self) -> f64 {
         self.paths.first().map_or(f64::INFINITY, |path| path.len() as f64 / RATE)
     }
 
-    /// Records all barrels by their poses, and extends their paths where a sample is due.
+    /// Records the positions of all barrels, and extends the paths of the top barrels if a sample is due.
     pub(super) fn see(&mut self, time: f64, pose: impl Fn(BodyId) -> Pose<Planar>) {
         let ground = pose(Assembly::GROUND).position;
         let due = self.due() <= time;
@@ -62,7 +63,7 @@ impl Trail {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "what is looked at needs no more digits")]
+#[expect(clippy::cast_possible_truncation, reason = "a display needs no more digits")]
 fn single(value: f64) -> f32 {
     value as f32
 }

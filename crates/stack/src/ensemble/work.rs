@@ -1,10 +1,10 @@
-//! Work done by all ensembles of this process, for estimates of the time to go.
+//! Work done by all ensembles of this process, for estimates of the remaining time.
 
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Millionths of a case.
+/// Number of parts of a case in which its progress is counted.
 const PARTS: f64 = 1e6;
 
 static DONE: AtomicU64 = AtomicU64::new(0);
@@ -14,23 +14,23 @@ static AT_REST: AtomicU64 = AtomicU64::new(0);
 static SETTLING: Clock = Clock::new();
 static SHAKING: Clock = Clock::new();
 
-/// Instant from which the clocks count.
+/// Instant from which the clocks measure time.
 static EPOCH: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// Simulated time in cases run by this process, each as a share of the longest that the case may take.
+/// Progress of the cases of this process, where each case counts by the simulated fraction of its longest duration.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Sum over all cases, finished or not, since the process began.
     pub done: f64,
-    /// Sum over the cases that run now.
+    /// Sum over the cases that are running.
     pub under_way: f64,
-    /// Number of cases that ended before their time, since the process began.
+    /// Number of cases that ended before their longest duration, since the process began.
     pub early: f64,
     /// Number of cases whose stack has been brought to rest, since the process began.
     pub at_rest: f64,
-    /// Time (s) that threads have spent on bringing stacks to rest, since the process began.
+    /// Time (s) that all threads have spent on bringing stacks to rest, since the process began.
     pub settling: f64,
-    /// Time (s) that threads have spent on shaking them, since the process began.
+    /// Time (s) that all threads have spent on shaking stacks, since the process began.
     pub shaking: f64,
 }
 
@@ -47,7 +47,7 @@ impl Work {
         }
     }
 
-    /// Returns the work since an earlier instant.
+    /// Returns the work done since an earlier state of it.
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {
@@ -61,11 +61,11 @@ impl Work {
     }
 }
 
-/// Sum of the times of all threads in one kind of work, including those that are in it now.
+/// Total time that all threads have spent in one kind of work, including the threads that are in it now.
 struct Clock {
-    /// Number of threads in it.
+    /// Number of threads that are in this kind of work now.
     threads: AtomicI64,
-    /// Sum of the ends less the sum of the begins (ns).
+    /// Sum of all end times minus the sum of all start times (ns).
     sum: AtomicI64,
 }
 
@@ -90,20 +90,22 @@ impl Clock {
     }
 }
 
-/// What a thread does with its cases, whose time counts until this is dropped.
+/// Guard that counts the time of a thread as settling or shaking until it is dropped.
 #[must_use]
 pub struct Stage {
     shaking: bool,
 }
 
 impl Stage {
-    /// Begins to bring stacks to rest.
+    /// Starts to count time as bringing stacks to rest.
     pub fn settling() -> Self {
         SETTLING.enter();
         Self { shaking: false }
     }
 
-    /// Begins to shake the stacks of a number of cases, which are at rest, unless they are shaken already.
+    /// Counts the stacks of a number of cases as brought to rest, and time from now on as shaking.
+    ///
+    /// Only the first call has an effect.
     pub fn shake(&mut self, cases: usize) {
         if !self.shaking {
             SETTLING.leave();
@@ -120,8 +122,8 @@ impl Drop for Stage {
     }
 }
 
-/// Returns the time since the epoch (ns); 0 in a page, where the standard library has no clock and nobody reads this
-/// one.
+/// Returns the time since [`EPOCH`] (ns); 0 on `wasm32`, where the standard library has no clock and the time is not
+/// used.
 fn now() -> i64 {
     if cfg!(target_family = "wasm") {
         return 0;
@@ -129,12 +131,12 @@ fn now() -> i64 {
     i64::try_from(EPOCH.elapsed().as_nanos()).unwrap_or(i64::MAX)
 }
 
-/// A case under way, which counts until it is dropped.
+/// Guard of a running case, whose progress counts as under way until it is dropped.
 #[derive(Debug, Default)]
 pub struct Share(u64);
 
 impl Share {
-    /// Reports the simulated share of the case, 0 to 1.
+    /// Reports the fraction of the case that has been simulated, 0 to 1.
     pub fn reached(&mut self, share: f64) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e6")]
         let now = ((share.clamp(0.0, 1.0) * PARTS) as u64).max(self.0);
@@ -143,7 +145,7 @@ impl Share {
         self.0 = now;
     }
 
-    /// Ends the case at this share, 0 to 1.
+    /// Ends the case after a simulated fraction, 0 to 1.
     pub fn end(mut self, share: f64) {
         self.reached(share);
         if share < 0.99 {

@@ -1,4 +1,4 @@
-//! Errors of a run, and the fields of the scenario that they concern.
+//! Errors of a run, with the fields of the scenario that they concern.
 
 use barrelstack_dynamics::Lack;
 
@@ -12,7 +12,7 @@ pub(super) const MOST_KEPT: f64 = 2e9;
 /// Error of a run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunFailure {
-    /// The motion is missing.
+    /// The ground motion cannot be read or generated.
     #[error(transparent)]
     Ground(#[from] GroundError),
     /// The stack cannot be built.
@@ -21,17 +21,17 @@ pub enum RunFailure {
     /// The stack does not stand by itself.
     #[error(transparent)]
     Settle(#[from] Restless),
-    /// The step is too long for the contacts.
+    /// The time step is too long for the contacts.
     #[error("run.step = {given} ms is too long: {reason}; try {instead} ms, or leave it out")]
     Step {
         /// The step requested (ms).
         given: f64,
-        /// The symptom.
+        /// Reason why the step is too long.
         reason: String,
         /// The default step (ms).
         instead: f64,
     },
-    /// The run would not end, or not begin.
+    /// The duration of the run is undefined or too long.
     #[error("{0}")]
     Duration(String),
     /// The results would take more memory than allowed.
@@ -56,7 +56,7 @@ pub enum RunFailure {
 }
 
 impl RunFailure {
-    /// Returns the fields of a scenario that it concerns, the likeliest first.
+    /// Returns the fields of the scenario that the error concerns, the most likely first.
     pub fn fields(&self) -> Vec<String> {
         let of = |fields: &[&str]| fields.iter().map(|field| (*field).to_owned()).collect();
         match self {

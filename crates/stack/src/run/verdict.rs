@@ -1,4 +1,4 @@
-//! Verdict at the end of a run, in a plane and in space.
+//! Verdict at the end of a run, in a plane or in space.
 
 use barrelstack_dynamics::simulate::RunTotals;
 use barrelstack_dynamics::space::Space;
@@ -10,10 +10,10 @@ use crate::watch::Ending;
 
 /// Ratio of the energy residual to the throughput above which a run is invalid.
 ///
-/// A hundred times the ratio that leads to a warning, and two thousand times that of a sound step.
+/// It is a hundred times the ratio that leads to a warning, and two thousand times that of an adequate time step.
 const BOOKS_BROKEN: f64 = 0.1;
 
-/// Ratio above which the reader is warned.
+/// Ratio of the energy residual to the throughput above which the reader is warned.
 const BOOKS_OPEN: f64 = 1e-3;
 
 /// Totals of a run that reached its end.
@@ -28,18 +28,18 @@ pub struct Ended {
 pub struct Verdict {
     /// The outcome.
     pub outcome: Outcome,
-    /// Energy balance at the end; `None` if numbers were lost.
+    /// Energy balance at the end; `None` after a numerical breakdown.
     pub energy: Option<EnergySummary>,
     /// Number of accepted steps.
     pub steps: u64,
     /// Warnings for the reader of the result, one sentence each.
     pub warnings: Vec<String>,
-    /// Reason for its end.
+    /// Reason for the end of the run.
     pub ending: Ending,
 }
 
 impl Verdict {
-    /// Judges a run that ended at a time (s) and whose motion ends at another (s), with warnings about its end.
+    /// Judges a run that ended at `time` (s), and adds warnings about its end; its motion ends at `motion_end` (s).
     pub fn of(
         ended: Result<Ended, RunError>,
         judge: impl FnOnce() -> Outcome,
@@ -79,11 +79,11 @@ impl Ended {
     }
 }
 
-/// Returns the reason why a run whose energy balance does not close has no outcome.
+/// Returns the message that a run is invalid because its energy balance does not close.
 fn broken_balance(energy: &EnergySummary) -> String {
     format!(
-        "the energy balance is off by {:.2e} times the energy that went through, so the steps follow no \
-         motion of these bodies: leave out run.step, or try a tenth of it",
+        "the energy balance is off by {:.2e} times the energy that went through, so the computed motion is \
+         meaningless: leave out run.step, or try a tenth of it",
         energy.residual_ratio()
     )
 }
@@ -99,30 +99,30 @@ fn energy_warning(energy: &EnergySummary) -> Option<String> {
     })
 }
 
-/// Returns the time (s) of the motion that is left where the stated duration ended a run; `None` where none is.
+/// Returns the time (s) of the motion that was left when the stated duration ended a run; `None` if none was left.
 pub(super) fn cut(ending: Ending, motion_end: f64, time: f64) -> Option<f64> {
     let left = motion_end - time;
     (ending == Ending::Duration && left > CUT).then_some(left)
 }
 
-/// Returns a warning about an end that leaves the outcome open.
+/// Returns a warning if the outcome is open because of how the run ended.
 fn ending_warning(ending: Ending, outcome: &Outcome, motion_end: f64, time: f64) -> Option<String> {
     match ending {
         Ending::Interrupted => Some(format!(
-            "the run was stopped at {time:.3} s, before its end: its numbers hold until then, and it has no outcome"
+            "the run was stopped at {time:.3} s, before its end: its results hold until then, and it has no outcome"
         )),
-        // A stack that stands in the middle of a motion has not survived it.
+        // A stack that still stands in the middle of a motion has not survived the motion yet.
         Ending::Duration
             if *outcome == Outcome::Stable && cut(ending, motion_end, time).is_some() =>
         {
             Some(format!(
-                "the run ends at {time:.1} s, the motion at {motion_end:.1} s: what the rest of it does is not \
-                 known; leave out run.duration to see all of it"
+                "the run ends at {time:.1} s, but the motion at {motion_end:.1} s: the effect of the rest of the motion \
+                 is not known; leave out run.duration to see all of it"
             ))
         }
         Ending::Patience => Some(format!(
-            "something still moved at {time:.1} s, when the run ended; a longer run.patience shows \
-             more"
+            "a body still moved at {time:.1} s, when the run ended; raise run.patience to see it come \
+             to rest"
         )),
         Ending::Duration
         | Ending::AfterCollapse

@@ -1,4 +1,4 @@
-//! A barrel: outer profile, wall, contents, mass and moments of inertia.
+//! A barrel in a scenario: outer profile, wall, contents, mass and moments of inertia.
 
 use std::f64::consts::PI;
 
@@ -17,22 +17,22 @@ use super::writer::Writer;
 use crate::slosh::{self, Wave};
 
 named! {
-    /// Contents of the barrel, and their rotation with it.
+    /// Contents of a barrel, and how they rotate with it.
     pub enum Fill {
-        /// Full, and the wine is an ideal fluid: it does not turn about the axis of the barrel, and
-        /// turns only in part about a transverse axis.
+        /// Full, with the wine as an ideal fluid: it does not rotate about the axis of the barrel, and only in
+        /// part about a transverse axis.
         FullFluid = "full-fluid",
-        /// Full, and the wine turns with the wood like a solid.
+        /// Full, with wine that rotates with the wood like a solid.
         FullFrozen = "full-frozen",
-        /// Filled in part, to [`Barrel::filled`]: waves go in it, and the wine does not turn with the wood.
+        /// Filled in part, to [`Barrel::filled`]: the wine sloshes and does not rotate with the wood.
         Part = "part",
-        /// Wood only.
+        /// Empty: wood only.
         Empty = "empty",
     }
 }
 
 impl Fill {
-    /// Returns the share of the capacity that is wine; `filled` is that of a partly filled barrel.
+    /// Returns the fraction of the capacity that is filled with wine; `filled` is that of a partly filled barrel.
     fn share(self, filled: f64) -> f64 {
         match self {
             Self::FullFrozen | Self::FullFluid => 1.0,
@@ -41,39 +41,40 @@ impl Fill {
         }
     }
 
-    /// Returns the mass (kg) of the contents of a barrel of a capacity (m³); `filled` as for `share`.
+    /// Returns the mass (kg) of the wine in a barrel with a capacity (m³); `filled` is the fraction for a partly filled
+    /// one.
     fn mass(self, capacity: f64, filled: f64) -> f64 {
         catalog::WINE_DENSITY * capacity * self.share(filled)
     }
 }
 
 known! {
-    /// A barrel, a body of revolution whose outer radius falls as a parabola from the bilge to the
+    /// A barrel: a body of revolution whose outer radius decreases as a parabola from the bilge to the
     /// heads.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Barrel {
-        /// Catalog name the barrel was made from.
+        /// Name of the catalog barrel on which the barrel is based.
         pub base: &'static str,
     }
     /// The fields of a barrel.
     const FIELDS, after {
-        /// Barrel of the catalog.
+        /// Barrel of the catalog on which the barrel is based.
         base = Kind::Choice(catalog::barrel_names), Default::Value("\"bordeaux-225\"");
     };
-    /// Contents, and whether they turn with the barrel.
+    /// Contents, and whether they rotate with the barrel.
     fill: Fill = Kind::Choice(names::<Fill>), Default::Value("\"full-fluid\"");
-    /// Share of the capacity that is filled, where `fill` is "part", of this barrel or of one that differs.
+    /// Fraction of the capacity that is filled, for barrels whose `fill` is "part", here or in an override.
     filled: f64 = Kind::Number(FILLED), Default::Value("0.9");
     /// Mass of wood and contents.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)),
-        Default::Derived("the empty mass, and what of the capacity is filled times 990 kg/m^3");
+        Default::Derived("the empty mass plus the filled part of the capacity times 990 kg/m^3");
     /// Mass of wood and hoops.
     empty_mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
     /// Length over the chimes.
     length: f64 = SIZE, CATALOG;
-    /// Outer diameter at the widest place.
+    /// Outer diameter at the bilge, the widest part.
     bilge_diameter: f64 = SIZE, CATALOG;
     /// Outer diameter at the heads.
     head_diameter: f64 = SIZE, CATALOG;
@@ -82,17 +83,17 @@ known! {
         Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-3, above: false, greatest: 1.0 }), CATALOG;
     /// Nominal volume.
     capacity: f64 = Kind::Quantity(&[Dimension::VOLUME], Range::up_to(100.0)), CATALOG;
-    /// Diameter of the circle that stands for the barrel in the transverse view.
+    /// Diameter of the circle that represents the barrel in the plane across the barrels.
     section_diameter: f64 = SIZE, Default::Derived("that of the barrel above the rails of the rack");
-    /// Force between a barrel and a rack that its staves bear without being crushed: an assumption, white oak crushed
-    /// across its grain at 4.3 MPa (Record 1914), 10 cm long under each of two rails of 5 cm.
+    /// Force between a barrel and a rack at which its staves are crushed: an assumption, from 4.3 MPa for white oak
+    /// across the grain (Record 1914) over 10 cm under each of two rails that are 5 cm wide.
     stave_capacity: f64 =
         Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE), Default::Value("\"43 kN\"");
 }
 
 impl Barrel {
-    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; constant beyond the
-    /// heads.
+    /// Returns the outer diameter (m) at a distance `offset` (m) from the bilge along the axis; it is constant beyond
+    /// the heads.
     pub fn diameter_at(&self, offset: f64) -> f64 {
         let u = (2.0 * offset / self.length).clamp(-1.0, 1.0);
         self.bilge_diameter - (self.bilge_diameter - self.head_diameter) * u * u
@@ -103,7 +104,7 @@ impl Barrel {
         self.capacity * self.fill.share(self.filled)
     }
 
-    /// Returns the barrel with another mass or other contents; a change of contents alone adjusts the mass.
+    /// Returns the barrel with another mass or other contents; if only the contents change, the mass is adjusted.
     #[must_use]
     pub fn altered(&self, mass: Option<f64>, fill: Option<Fill>) -> Self {
         let fill = fill.unwrap_or(self.fill);
@@ -120,9 +121,9 @@ impl Barrel {
     /// barrel in the transverse view, about a transverse axis in the longitudinal view.
     ///
     /// The wood is a shell of constant thickness with two heads, placed so that the volume between them is the
-    /// nominal one. The contents weigh `mass` less the wood. A frozen filling turns with the wood. An ideal fluid
-    /// does not turn about the axis, except for half a Stokes layer at 1 Hz, and about a transverse axis it turns
-    /// like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the
+    /// capacity. The mass of the contents is `mass` minus `empty_mass`. A frozen filling rotates with the wood. An
+    /// ideal fluid does not rotate about the axis, except for half a Stokes layer at 1 Hz. About a transverse axis, it
+    /// rotates like the fluid in a spheroid with the same moments, `(I_t - I_a)² / I_t` (Lamb, Hydrodynamics, on the
     /// ellipsoidal shell filled with liquid).
     pub fn inertia(&self, view: View) -> f64 {
         let moments = self.moments();
@@ -136,7 +137,7 @@ impl Barrel {
     pub fn wave(&self, view: View) -> Option<Wave> {
         (self.fill == Fill::Part).then(|| {
             let length = 2.0 * self.half_room();
-            // Radius of the cylinder of the same length and capacity.
+            // Radius of the cylinder with the same length and capacity.
             let radius = (self.capacity / (PI * length)).sqrt();
             match view {
                 View::Transverse => slosh::across(radius, self.filled),
@@ -172,7 +173,7 @@ impl Barrel {
             transverse: wine_density * wine.transverse,
         };
         let contents = match self.fill {
-            // A mass above that of the wood, given for an empty barrel, is distributed like the wood.
+            // Mass in excess of that of the wood, stated for an empty barrel, is distributed like the wood.
             Fill::Empty => {
                 let density = wine_mass / wood.volume;
                 Moments { axial: density * wood.axial, transverse: density * wood.transverse }
@@ -183,7 +184,7 @@ impl Barrel {
             }
             Fill::FullFluid | Fill::Part => {
                 let lag = frozen.transverse - frozen.axial;
-                // The wave is a separate mass; the rest turns as in a full barrel.
+                // The wave is a separate mass; the rest of the wine rotates as in a full barrel.
                 let rest = self.wave(View::Longitudinal).map_or(1.0, |wave| 1.0 - wave.share);
                 Moments {
                     axial: wine_density * stokes_layer(half_room, inner),
@@ -197,8 +198,8 @@ impl Barrel {
         }
     }
 
-    /// Returns half of the distance (m) between the heads at which the inside has the nominal volume, or the largest
-    /// possible one.
+    /// Returns half the distance (m) between the heads at which the interior has the nominal volume, or half the
+    /// largest possible distance if the interior is smaller.
     fn half_room(&self) -> f64 {
         let most = 0.5 * self.length - self.stave_thickness;
         let inner = |x: f64| (0.5 * self.diameter_at(x) - self.stave_thickness).max(0.0);
@@ -224,8 +225,8 @@ struct Moments {
     transverse: f64,
 }
 
-/// Volume (m³) and moments of volume (m⁵) of a body of revolution about its axis and a transverse
-/// axis at its middle.
+/// Volume (m³) of a body of revolution, and second moments of the volume (m⁵) about its axis and about a
+/// transverse axis through its middle.
 struct Solid {
     volume: f64,
     axial: f64,
@@ -233,7 +234,7 @@ struct Solid {
 }
 
 impl Solid {
-    /// Integrates the body between two radii over `-half..half`, by Simpson's rule.
+    /// Integrates the body between an outer and an inner radius over `-half..half`, by Simpson's rule.
     fn between(half: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> Self {
         const INTERVALS: u32 = 200;
         let step = half / f64::from(INTERVALS);
@@ -245,7 +246,7 @@ impl Solid {
                 _ if i % 2 == 1 => 4.0,
                 _ => 2.0,
             };
-            // Twice, for the two equal halves.
+            // The factor 2 is for the two equal halves.
             let slice = 2.0 * weight * step / 3.0;
             let (square_out, square_in) = (square(outer(x)), square(inner(x)));
             let area = PI * (square_out - square_in);
@@ -262,7 +263,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Returns the moment of volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
+/// Returns the second moment of the volume (m⁵) of half a Stokes layer of wine on the wall at 1 Hz.
 fn stokes_layer(half: f64, radius: impl Fn(f64) -> f64) -> f64 {
     /// Kinematic viscosity of wine (m²/s).
     const VISCOSITY: f64 = 1.6e-6;
@@ -277,13 +278,14 @@ const CATALOG: Default = Default::Derived("that of the catalog");
 const SIZE: Kind =
     Kind::Quantity(&[Dimension::LENGTH], Range { least: 0.01, above: false, greatest: 10.0 });
 
-/// Fuller, the surface is too small for a significant wave; emptier, the wine is a puddle.
+/// Range of the filled fraction: above it, the surface is too small for a significant wave; below it, the wine is a
+/// puddle.
 const FILLED: Range = Range::between(0.02, 0.995);
 
-/// A barrel.
+/// Definition of the table of a barrel.
 pub static BARREL: Section = Section {
     name: "barrel",
-    help: "A barrel of the catalog, with what differs.",
+    help: "A barrel of the catalog, with any changes.",
     fields: FIELDS,
     variants: None,
     exclusive: &[],

@@ -1,4 +1,4 @@
-//! Overrides of single bodies of a stack.
+//! Overrides of individual bodies of a stack.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::{named, section};
@@ -12,7 +12,7 @@ use super::stack::{COLUMNS, LEVELS, StackSpec};
 use super::tree::Table;
 
 named! {
-    /// The kind of body that an override changes.
+    /// Kind of body that an override changes.
     pub enum StackBody {
         /// A barrel; columns count barrels.
         Barrel = "barrel",
@@ -33,19 +33,19 @@ section! {
     body as "kind": StackBody = Kind::Choice(names::<StackBody>), Default::Value("\"barrel\"");
     /// Level, 1 at the bottom.
     level: u32 = LEVELS, Default::Required;
-    /// Column, 1 at the left before mirroring: of barrels, or of racks for a rack; across the barrels where the stack
-    /// is looked at in both planes or in space.
+    /// Column, 1 at the left before mirroring; racks count columns of racks, barrels columns of barrels. In both planes
+    /// or in space, columns count across the barrels.
     column: Option<u32> = COLUMNS, Default::Derived("every column of the level");
-    /// Row in space, 1 nearest: of barrels along the barrels, or of racks for a rack.
+    /// Row along the barrels in space, 1 nearest; racks count rows of racks, barrels rows of barrels.
     row: Option<u32> = COLUMNS, Default::Derived("every row");
-    /// Mass in place of the regular one.
+    /// Mass of the body, instead of the regular one.
     mass: Option<f64> = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), Default::Nothing;
-    /// Contents in place of the regular ones; barrels only.
+    /// Contents of the barrel, instead of the regular ones; for barrels only.
     fill: Option<Fill> = Kind::Choice(names::<Fill>), Default::Nothing;
-    /// Displacement from the regular place, positive to the right before mirroring.
+    /// Displacement from the regular position, positive to the right before mirroring.
     offset_x: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
-    /// Displacement from the regular place along the barrels, positive away, in space.
+    /// Displacement from the regular position along the barrels, positive away from the viewer; in space only.
     offset_y: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::between(-1.0, 1.0)), Default::Value("\"0 m\"");
 }
@@ -58,7 +58,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
     if let Some((name, _)) = only_in_space.iter().find(|(_, given)| *given && stack.space.is_none())
     {
         let message = format!(
-            "`{}` is for `stack.view = \"spatial\"`; a plane has one row, and moves nothing out of it",
+            "`{}` is for `stack.view = \"spatial\"`; a plane has only one row, and no displacement out of it",
             reader.path_of(name)
         );
         return Err(reader.inconsistent(name, message));
@@ -108,7 +108,7 @@ pub(super) fn read(reader: Reader<'_>, stack: &StackSpec) -> Result<BodyOverride
 /// Writes an override.
 pub(super) fn write(body: &BodyOverride) -> Table {
     let mut table = body.write();
-    // Omitted at its default, so that a plane scenario keeps its text and hash.
+    // The default is omitted, so that a planar scenario keeps its text and hash.
     if body.offset_y == 0.0 {
         table.remove("offset_y");
     }

@@ -1,4 +1,4 @@
-//! Named barrels and racks, with the source of every number.
+//! Catalog of barrels and racks, with the source of every number.
 //!
 //! Values without a source are marked as assumptions: measure and override them.
 
@@ -13,7 +13,7 @@ pub const WINE_DENSITY: f64 = 990.0;
 /// A barrel of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogBarrel {
-    /// Name.
+    /// Name in the catalog.
     pub name: &'static str,
     /// Length over the chimes (m).
     pub length: f64,
@@ -32,7 +32,7 @@ pub struct CatalogBarrel {
 }
 
 impl CatalogBarrel {
-    /// Returns the barrel without contents, and without the section on its rack.
+    /// Returns the barrel of a scenario, empty and without the values that depend on the rack.
     pub(super) const fn barrel(&self) -> Barrel {
         let Self { name, length, bilge_diameter, head_diameter, stave_thickness, .. } = *self;
         Barrel {
@@ -98,39 +98,46 @@ pub const BARRELS: &[CatalogBarrel] = &[
     },
 ];
 
-/// Constants of a seat: a place where a rack bears, or is borne.
+/// Contact constants of a seat: a place where a rack carries a barrel or rack, or is carried itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seat {
     /// Stiffness (N/m).
     pub stiffness: f64,
-    /// Ratio of the speeds after and before an impact of `mass`.
+    /// Ratio of the speeds after and before an impact of the mass `mass`.
     pub restitution: f64,
     /// Mass (kg) for which the restitution holds.
     pub mass: f64,
-    /// Tangential stiffness over the normal one.
+    /// Ratio of the tangential to the normal stiffness.
     pub stick: f64,
 }
 
-/// Staves bend under what presses on them and are loaded in their own surface by what drags along it, which is stiffer.
+/// Stick ratio of seats on barrels: staves bend under normal forces, and are stiffer against tangential forces, which
+/// act in their own surface.
 const STICK_ON_BARREL: f64 = 2.0;
 
-/// At the floor what gives way is the bending of tubes that lie hollow; what drags along them meets steel that bears,
-/// which is stiffer by far. Four is the most that costs no smaller time step; with it the floor of five levels yields
-/// early enough to reverse friction as rigid friction does.
+/// Stick ratio of seats on the floor: normal forces bend tubes that do not lie flat, while tangential forces act on
+/// steel in contact, which is far stiffer.
+///
+/// Four is the largest ratio that needs no smaller time step. With it, friction under five levels reverses early
+/// enough to act like rigid friction.
 const STICK_ON_FLOOR: f64 = 4.0;
 
-/// As at the floor, but the stick turns light racks by the height of their posts: with four, racks on posts along the
-/// barrels tremble at their time step (energy balance of 0.05 s open by 1.4e-3, with two by 2e-12).
+/// Stick ratio of seats on posts: smaller than on the floor, because tangential forces turn light racks with the height
+/// of the posts as lever.
+///
+/// With a ratio of four, racks on posts along the barrels vibrate at their time step: after 0.05 s, the energy balance
+/// is off by 1.4e-3, but by 2e-12 with a ratio of two.
 const STICK_ON_POST: f64 = 2.0;
 
-/// Seats of a rack: medians of the variants (derivations in `validation/seats.md`).
+/// Contact constants of the seats of a rack, which are the medians of those of the variants (derivations in
+/// `validation/seats.md`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seats {
-    /// One rail across the crown of a barrel below, and one support of a cradle under a barrel.
+    /// Seat of a rack on a barrel: one rail on the crown of a barrel below, or one support of a cradle under a barrel.
     pub barrel: Seat,
-    /// One end of a rail, or one foot, on the ground.
+    /// Seat of a rack on the ground: one end of a rail, or one foot.
     pub floor: Seat,
-    /// One post under the rack above.
+    /// Seat of a rack on a rack: one post under the rack above.
     pub post: Seat,
     /// Source of the numbers.
     pub source: &'static str,
@@ -144,24 +151,24 @@ impl Seat {
     }
 }
 
-/// Racks on barrels, whose rails carry each barrel right above the crowns on which they lie.
+/// Seats of racks on barrels, whose rails carry each barrel directly above the crowns on which they lie.
 const ON_BARRELS: Seats = Seats {
     barrel: Seat::new(3e6, 70.0, STICK_ON_BARREL),
     floor: Seat::new(1e7, 10.0, STICK_ON_FLOOR),
     post: Seat::new(1e7, 15.0, STICK_ON_POST),
-    source: "a shell of oak staves 27 mm thick under a point load beside a hoop, joints that open and the tube wall \
-             in series: 2.7 to 4.4 MN/m; the 0.89 MN/m that Candia, de la Llera and Almazán (2008) measured on local \
-             barrels and racks and the 12 MN/m of a stave clamped between hoops bound it; on floors, tubes that lie \
-             hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat, and of an empty rack on a floor: derived, \
-             nobody has measured these racks",
+    source: "a shell of oak staves 27 mm thick under a point load beside a hoop, in series with joints that open and \
+             with the tube wall: 2.7 to 4.4 MN/m, between the 0.89 MN/m that Candia, de la Llera and Almazán (2008) \
+             measured on local barrels and racks and the 12 MN/m of a stave clamped between hoops; on floors, tubes \
+             that lie hollow by a fraction of a millimeter; restitution for a quarter of a full barrel on one seat, \
+             and for an empty rack on a floor: derived, nobody has measured these racks",
 };
 
-/// Racks whose rails span from post to post and bend under their barrels.
+/// Seats of racks whose rails span from post to post and bend under their barrels.
 const ON_POSTS: Seats = Seats {
     barrel: Seat::new(6e5, 70.0, STICK_ON_BARREL),
-    source: "as racks on barrels, in series with a rail of 60 mm square tube that spans 1.54 m from post to post and \
-             bends under each barrel by 1.2 MN/m; steel posts on steel, on floors and on each other, by their play: \
-             derived, nobody has measured these racks",
+    source: "as for racks on barrels, in series with the 1.2 MN/m under each barrel of a rail of 60 mm square tube \
+             that spans 1.54 m from post to post; steel posts with play, on floors and on each other: derived, nobody \
+             has measured these racks",
     ..ON_BARRELS
 };
 
@@ -170,7 +177,7 @@ const ON_POSTS: Seats = Seats {
 pub struct CatalogRack {
     /// The rack.
     pub rack: Rack,
-    /// Its seats.
+    /// Contact constants of the seats of the rack.
     pub seats: Seats,
     /// Description in a sentence.
     pub help: &'static str,
@@ -178,7 +185,7 @@ pub struct CatalogRack {
     pub source: &'static str,
 }
 
-/// Two barrels side by side on two rails: racks of type 2 across the barrels and of type 1 along them.
+/// Rack for two barrels side by side on two rails: of type 2 across the barrels, and of type 1 along them.
 const TWO_BARREL: Rack = Rack {
     base: "two-barrel",
     kind: RackKind::OnBarrels,
@@ -207,7 +214,7 @@ pub const RACKS: &[CatalogRack] = &[
         rack: TWO_BARREL,
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes.",
-        source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which makes pitch and width (Wines & \
+        source: "portable steel rack for two barrels on a footprint of 38 in by 58 in, which gives pitch and width (Wines & \
              Vines 2016); clearance for the 7 in between the bilges of neighboring levels that make six levels 18 ft \
              high (UC Berkeley 2000); straight tubes without feet; mass, rails, tubes and cradle are assumptions",
     },
@@ -249,7 +256,7 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_POSTS,
         help: "Stands on the posts of the rack below.",
         source: "racks that carry load on posts at their four corners (Wines & Vines 2014, 2016); every number is an \
-                 assumption, the post height makes the usual level pitch, the posts stand clear of the barrels on both \
+                 assumption, the post height gives the usual level pitch, the posts stand clear of the barrels on both \
                  sides of them, and along the barrels within the 38 in on which racks for two barrels stand",
     },
     CatalogRack {
@@ -257,7 +264,7 @@ pub const RACKS: &[CatalogRack] = &[
         seats: ON_BARRELS,
         help: "Lies on the barrels below with straight tubes, and raises one end of every barrel.",
         source: "`two-barrel` with the tilt of 3.5° that kept pallets on the shelves of shaken racks (Sideris, \
-                 Filiatrault et al. 2010), across the shelf as here along the barrels; no maker of such a rack is \
+                 Filiatrault et al. 2010), there across the shelf, here along the barrels; no maker of such a rack is \
                  known: an assumption",
     },
     CatalogRack {
@@ -277,7 +284,7 @@ pub const RACKS: &[CatalogRack] = &[
             ..TWO_BARREL
         },
         seats: ON_BARRELS,
-        help: "The rack of the paper, reconstructed where its text leaves it open.",
+        help: "The rack of the paper, reconstructed where the paper gives no dimensions.",
         source: "rack of Candia, de la Llera and Almazán (2008), whose text gives no dimensions: a solid beam on feet, \
                  reconstructed so that one geometry shows the paper's modes, times, drift and stress amplification",
     },
@@ -297,12 +304,12 @@ pub(super) fn rack_names() -> Vec<&'static str> {
     RACKS.iter().map(|known| known.rack.base).collect()
 }
 
-/// Returns a barrel of the catalog.
+/// Returns the barrel of the catalog with the given name.
 pub fn barrel(name: &str) -> Option<&'static CatalogBarrel> {
     BARRELS.iter().find(|barrel| barrel.name == name)
 }
 
-/// Returns a rack of the catalog.
+/// Returns the rack of the catalog with the given name.
 pub fn rack(name: &str) -> Option<&'static CatalogRack> {
     RACKS.iter().find(|known| known.rack.base == name)
 }

@@ -22,15 +22,15 @@ section! {
     name: String = Kind::Text, Default::Required;
     /// Law of the element.
     kind: ElementLaw = Kind::Choice(ElementLaw::names), Default::Required;
-    /// The names of two bodies; the ground is called by its label.
+    /// Names of the two bodies; for the ground, its label.
     between: [String; 2] = Kind::Pair, Default::Required;
-    /// Where it is made fast to the first body, from the reference point of its shape.
+    /// Attachment point on the first body, relative to the reference point of its shape.
     at: [f64; 2] = POINT, Default::Value("[\"0 m\", \"0 m\"]");
-    /// Where it is made fast to the second body, from the reference point of its shape.
+    /// Attachment point on the second body, relative to the reference point of its shape.
     to: [f64; 2] = POINT, Default::Value("[\"0 m\", \"0 m\"]");
     /// Force per elongation.
     stiffness: f64 = STIFFNESS, Default::Required;
-    /// Force per rate of elongation; of a strap while it is taut.
+    /// Force per rate of elongation; a strap damps only while it is taut.
     damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
 }
 
@@ -40,40 +40,40 @@ choices! {
     /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub enum ElementLaw, among the fields of ELEMENT;
-    /// The laws.
+    /// The laws that a force element can have.
     static LAWS;
-    /// It pulls its bodies together, and never pushes them apart.
+    /// Pulls its bodies together and never pushes them apart.
     Strap = "strap" {
-        /// Distance of its points at which it bears nothing.
+        /// Distance between its points at which it carries no force.
         length: Option<f64> = LENGTH, AT_START;
-        /// Force at which it becomes longer for good; without it it never does.
+        /// Force at which it yields and becomes permanently longer; if not given, it never yields.
         yields_at: Option<f64> = FORCE, Default::Nothing;
-        /// Force above which it breaks, for good; without it it never does.
+        /// Force above which it breaks permanently; if not given, it never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
     }
-    /// It holds a distance, pulling and pushing; a pendulum hangs on one.
+    /// Holds a distance by pulling and pushing, such as the rod of a pendulum.
     Rod = "rod" {
-        /// Distance of its points at which it bears nothing.
+        /// Distance between its points at which it carries no force.
         length: Option<f64> = LENGTH, AT_START;
-        /// Force per velocity of its second point across it.
+        /// Damping force per velocity of its second point perpendicular to it.
         sway_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
     }
-    /// A spring, a damper and stops along an axis that turns with the first body; it bears nothing
-    /// where the second point is at the start.
+    /// A spring, a damper and stops along an axis that rotates with the first body; it carries no force
+    /// while the second point is at its initial position.
     Guide = "guide" {
         /// Inclination of the axis in the first body, counterclockwise.
         axis: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
-        /// Stroke to either side after which there are stops; without it there are none.
+        /// Stroke to either side before it meets a stop; if not given, there are no stops.
         gap: Option<f64> =
             Kind::Quantity(&[Dimension::LENGTH], Range::NOT_NEGATIVE), Default::Nothing;
         /// Stiffness of the stops.
         stop_stiffness: f64 = STIFFNESS, Default::Value("\"0 N/m\"");
         /// Damping of the stops, on approach only.
         stop_damping: f64 = DAMPING, Default::Value("\"0 N s/m\"");
-        /// Force above which it breaks, for good; without it it never does.
+        /// Force above which it breaks permanently; if not given, it never breaks.
         strength: Option<f64> = FORCE, Default::Nothing;
-        /// Distance from the axis beyond which it has let go, for good; without it it never does.
+        /// Distance from the axis beyond which it disengages permanently; if not given, it never does.
         reach: Option<f64> = LENGTH, Default::Nothing;
     }
 }
@@ -83,7 +83,7 @@ const LENGTH: Kind = Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE);
 const FORCE: Kind = Kind::Quantity(&[Dimension::FORCE], Range::POSITIVE);
 const STIFFNESS: Kind = Kind::Quantity(&[Dimension::STIFFNESS], Range::NOT_NEGATIVE);
 const DAMPING: Kind = Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE);
-const AT_START: Default = Default::Derived("the distance of its points at the start");
+const AT_START: Default = Default::Derived("the initial distance between its points");
 
 /// Reads the elements between bodies.
 pub(super) fn read(
@@ -104,18 +104,19 @@ pub(super) fn read(
                 let names = bodies.iter().map(|body| body.name.as_str()).take(20);
                 let names: Vec<&str> = names.chain([ground.kind.as_str()]).collect();
                 let message =
-                    format!("no body is called \"{body}\"; there are {}", names.join(", "));
+                    format!("no body is called \"{body}\"; the bodies are {}", names.join(", "));
                 return Err(reader.inconsistent("between", message));
             }
         }
         if between[0] == between[1] {
-            let message = format!("it ties \"{}\" to itself; name two bodies", between[0]);
+            let message = format!("the element ties \"{}\" to itself; name two bodies", between[0]);
             return Err(reader.inconsistent("between", message));
         }
         check_law(&reader, element.kind)?;
         let stops = matches!(element.kind, ElementLaw::Guide { gap: Some(_), .. });
         if *stiffness == 0.0 && !stops {
-            let message = "an element without stiffness holds nothing; give it one".to_owned();
+            let message =
+                "an element without stiffness carries no force; state its stiffness".to_owned();
             return Err(reader.inconsistent("stiffness", message));
         }
         elements.push(element);
@@ -140,7 +141,7 @@ fn check_law(reader: &Reader<'_>, law: ElementLaw) -> Result<(), ScenarioError> 
             if strength <= yields_at =>
         {
             let message = format!(
-                "it tears at {strength} N, before it would yield at {yields_at} N; leave `yields_at` out"
+                "the strap tears at {strength} N, before it would yield at {yields_at} N; leave `yields_at` out"
             );
             Err(reader.inconsistent("yields_at", message))
         }

@@ -1,4 +1,4 @@
-//! A free scene: any planar bodies on a ground, for verification and for teaching.
+//! A free scene: arbitrary planar bodies on a ground, for verification and teaching.
 
 use std::collections::BTreeSet;
 
@@ -30,20 +30,20 @@ section! {
     /// Slope, positive when it rises to the right.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
-    /// Label used by interfaces.
+    /// Name by which interfaces and elements refer to the ground.
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
 section! {
-    /// Viscous drag on a body, by its velocity relative to the ground before it was shaken.
+    /// Viscous drag on a body, proportional to its absolute velocity rather than that relative to the shaking ground.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Viscous;
     /// Viscous drag on the motion of a body (Candia, de la Llera and Almazán 2008, eq. 2.8).
     pub static VISCOUS = "viscous";
-    /// Force per velocity of the center of mass.
+    /// Drag force per velocity of the center of mass.
     linear: f64 =
         Kind::Quantity(&[Dimension::DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N s/m\"");
-    /// Moment per spin.
+    /// Drag moment per angular velocity.
     angular: f64 =
         Kind::Quantity(&[Dimension::ANGULAR_DAMPING], Range::NOT_NEGATIVE), Default::Value("\"0 N m s\"");
 }
@@ -53,15 +53,15 @@ section! {
 pub struct FreeBody {
     /// Unique name.
     pub name: String,
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it.
     pub kind: String,
-    /// Outline.
+    /// Outline of the body.
     pub shape: Shape,
     /// Mass (kg).
     pub mass: f64,
     /// Moment of inertia about the center of mass (kg·m²).
     pub inertia: f64,
-    /// Center of mass in local coordinates, from the reference point of the shape (m).
+    /// Center of mass in local coordinates, relative to the reference point of the shape (m).
     pub center_of_mass: [f64; 2],
     /// Initial position of the reference point `[x, z]` (m).
     pub position: [f64; 2],
@@ -69,13 +69,13 @@ pub struct FreeBody {
     pub angle: f64,
     /// Initial velocity of the center of mass (m/s).
     pub velocity: [f64; 2],
-    /// Initial spin, counterclockwise (rad/s).
+    /// Initial angular velocity, counterclockwise (rad/s).
     pub spin: f64,
     /// Contact nodes.
     pub nodes: Nodes,
-    /// Further boundaries.
+    /// Additional boundaries.
     pub boundaries: Vec<Boundary>,
-    /// Group; contacts within a group can be disabled.
+    /// Name of the group; interfaces can exclude contacts within a group.
     pub group: Option<String>,
     /// `true` if the body moves with the ground.
     pub fixed_to_ground: bool,
@@ -86,9 +86,9 @@ pub struct FreeBody {
 /// An additional massless boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Label used by interfaces.
+    /// Kind of the boundary, by which interfaces refer to it.
     pub kind: String,
-    /// Outline that others touch, about the reference point of the body's shape; `None` for nodes alone.
+    /// Outline that other bodies touch, relative to the reference point of the body's shape; `None` for nodes only.
     pub shape: Option<Shape>,
     /// Contact nodes.
     pub nodes: Nodes,
@@ -97,9 +97,9 @@ pub struct Boundary {
 /// The contact law between two kinds of a free scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeInterface {
-    /// The two kinds; the first carries the nodes (contactor), the second the surface (target).
+    /// The two kinds: the first has the nodes (contactor), the second the surface (target).
     pub between: [String; 2],
-    /// `true` if it applies between bodies of one group.
+    /// `true` if the interface also acts between bodies of the same group.
     pub within_groups: bool,
     /// The law.
     pub law: Interface,
@@ -119,7 +119,7 @@ pub struct FreeScene {
 }
 
 impl FreeBody {
-    /// Returns kind, shape and nodes of all its boundaries, that of its own shape first.
+    /// Returns the kind, shape and nodes of all boundaries of the body, beginning with its own shape.
     pub fn outer(&self) -> impl Iterator<Item = (&str, Option<&Shape>, &Nodes)> {
         let own = (self.kind.as_str(), Some(&self.shape), &self.nodes);
         let further = self.boundaries.iter().map(|b| (b.kind.as_str(), b.shape.as_ref(), &b.nodes));
@@ -134,12 +134,12 @@ const MOST_BODIES: usize = 5000;
 const MOST_NODES: f64 = 2e6;
 
 table! {
-    /// A boundary of a body beside that of its own shape; it weighs nothing.
+    /// An additional massless boundary of a body.
     pub static BOUNDARY = "boundary";
-    /// Label used by interfaces.
+    /// Kind of the boundary, by which interfaces refer to it.
     kind = Kind::Text, Default::Required;
-    /// Outline that others touch, from the reference point of the body's shape; without it the boundary is its
-    /// nodes.
+    /// Outline that other bodies touch, relative to the reference point of the body's shape; if not given, the boundary
+    /// consists of its nodes only.
     shape = Kind::Table(&SHAPE), Default::Nothing;
     /// Contact nodes.
     nodes = NODES_KIND, NODES_DEFAULT;
@@ -156,30 +156,30 @@ table! {
     pub static BODY = "body";
     /// Unique name.
     name = Kind::Text, Default::Required;
-    /// Label used by interfaces.
+    /// Kind of the body, by which interfaces refer to it; several bodies may be of one kind.
     kind = Kind::Text, Default::Derived("the name");
-    /// Outline.
+    /// Outline of the body.
     shape = Kind::Table(&SHAPE), Default::Required;
     /// Mass.
     mass = Kind::Quantity(&[Dimension::MASS], Range::POSITIVE), Default::Required;
     /// Moment of inertia about the center of mass.
     inertia = Kind::Quantity(&[Dimension::INERTIA], Range::POSITIVE),
-        Default::Derived("that of a uniform plate of this outline");
-    /// Center of mass, from the reference point of the shape.
+        Default::Derived("that of a uniform plate with this outline");
+    /// Center of mass, relative to the reference point of the shape.
     center_of_mass = Kind::Point(Dimension::LENGTH), Default::Derived("the centroid of the outline");
-    /// Place of the reference point of the shape at the start.
+    /// Initial position of the reference point of the shape.
     position = Kind::Point(Dimension::LENGTH), Default::Required;
-    /// Inclination at the start, counterclockwise.
+    /// Initial inclination, counterclockwise.
     angle = Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
-    /// Velocity of the center of mass at the start.
+    /// Initial velocity of the center of mass.
     velocity = Kind::Point(Dimension::VELOCITY), Default::Value("[\"0 m/s\", \"0 m/s\"]");
-    /// Spin at the start, counterclockwise.
+    /// Initial angular velocity, counterclockwise.
     spin = Kind::Quantity(&[Dimension::SPIN], Range::between(-1e4, 1e4)), Default::Value("\"0 rad/s\"");
     /// Contact nodes.
     nodes = NODES_KIND, NODES_DEFAULT;
-    /// Further boundaries, each of a kind of its own.
+    /// Additional boundaries, each with a kind of its own.
     boundary = Kind::Tables(&BOUNDARY), Default::Nothing;
-    /// Bodies of one group do not meet by an interface that says `within_groups = false`.
+    /// Group of the body: an interface with `within_groups = false` does not act between two bodies of the same group.
     group = Kind::Text, Default::Nothing;
     /// True if the body moves with the ground.
     fixed_to_ground = Kind::Flag, Default::Value("false");
@@ -187,11 +187,11 @@ table! {
     viscous = Kind::Table(&VISCOUS), Default::Nothing;
 }
 
-/// Says that the columns of a body would have the name of others.
+/// Returns the message that the columns of a body would have the same names as others.
 pub(super) fn clash(name: &str, column: &str) -> String {
     format!(
-        "the columns of \"{name}\" would be called {column}_…, as those of another body or of the ground are; give it \
-         another name"
+        "the columns of \"{name}\" would be called {column}_…, like those of another body or of the ground; give the \
+         body another name"
     )
 }
 
@@ -200,7 +200,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<FreeScene, ScenarioError> {
     let ground = Ground::read(root.section("ground")?)?;
     let mut bodies: Vec<FreeBody> = Vec::new();
     let (mut names, mut nodes) = (BTreeSet::new(), 0.0);
-    // Names of columns, of which some belong to the ground.
+    // Names of columns, including that of the ground.
     let mut columns = BTreeSet::from(["ground".to_owned()]);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
@@ -258,7 +258,7 @@ fn read_body(reader: Reader<'_>, name: String) -> Result<FreeBody, ScenarioError
     let uniform = shape.uniform();
     let center_of_mass = reader.optional_point("center_of_mass")?;
     let inertia = reader.optional_quantity("inertia")?;
-    // The inertia of a uniform plate holds about its centroid only.
+    // The default inertia, that of a uniform plate, holds about the centroid only.
     if inertia.is_none() && center_of_mass.is_some_and(|center| center != uniform.centroid) {
         let message = format!(
             "the center of mass is away from the centroid [{} m, {} m], so the body is not uniform; give `{}` too",
@@ -341,8 +341,8 @@ fn read_interfaces(
         let turned = |known: &FreeInterface| known.between.iter().rev().eq(&between);
         if between.iter().all(whole) && interfaces.iter().any(turned) {
             let message = format!(
-                "bodies with exact or rolling nodes meet once, whichever comes first, and \"{}\" with \"{}\" stands \
-                 above; keep one",
+                "the order of kinds with exact or rolling nodes does not matter, and \"{}\" with \"{}\" is already \
+                 stated above; keep one",
                 between[1], between[0]
             );
             return Err(reader.inconsistent("between", message));
@@ -354,7 +354,7 @@ fn read_interfaces(
     Ok(interfaces)
 }
 
-/// Returns kind, shape and nodes of the boundaries of a kind.
+/// Returns the kind, shape and nodes of all boundaries of a kind.
 fn of_kind<'a>(
     bodies: &'a [FreeBody],
     kind: &'a str,

@@ -1,9 +1,10 @@
-//! Types whose defaults are an entry of the catalog.
+//! Declaration of types whose default values are those of a catalog entry.
 
-/// Declares a type that is read over an entry of the catalog: first the members without a field, then each field as
-/// in [`section!`](barrelstack_input::section), with its key in files where that differs from the name of the member.
+/// Declares a type whose fields in a file override those of a catalog entry.
 ///
-/// A field that a file leaves out, and that has no default of its own then, takes the value of the catalog.
+/// Members without a field in files come first, followed by the fields as in [`section!`](barrelstack_input::section),
+/// each with its key in files if that differs from the name of the member. A field that a file leaves out takes the
+/// value of the catalog.
 macro_rules! known {
     (
         $(#[$about:meta])*
@@ -32,7 +33,7 @@ macro_rules! known {
         };
 
         impl $type {
-            /// Reads the fields over an entry of the catalog.
+            /// Reads the fields, with the values of a catalog entry as defaults.
             fn read_over(reader: &Reader<'_>, known: &Self) -> Result<Self, ScenarioError> {
                 Ok(Self {
                     $($own: Clone::clone(&known.$own),)*

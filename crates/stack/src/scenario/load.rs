@@ -1,4 +1,4 @@
-//! Loads a scenario from a file and overrides.
+//! Loading of scenarios from files, text or values, with overrides.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -13,23 +13,23 @@ use crate::system;
 /// Maximum size of a scenario file (bytes).
 const SIZE_LIMIT: usize = 1 << 20;
 
-/// Maximum size of a file that is read at all, to report its size (bytes).
+/// Maximum number of bytes that are read of a file, so that the size of one that is too large can be reported.
 const READ_LIMIT: usize = 256 << 20;
 
-/// Maximum length of a chain of `extends`.
+/// Maximum number of scenarios in a chain of `extends`.
 const CHAIN_LIMIT: usize = 8;
 
-/// Access of `extends` to files.
+/// Scenarios that `extends` may name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Access {
-    /// May name files.
+    /// Files and built-in scenarios.
     Files,
-    /// May name built-in scenarios only.
+    /// Built-in scenarios only.
     BuiltinOnly,
 }
 
 impl Scenario {
-    /// Reads a scenario from text; [`Scenario::parse`] accepts overrides as well, and a name for errors.
+    /// Reads a scenario from text; [`Scenario::parse`] also takes overrides and a name for error messages.
     ///
     /// ```
     /// use barrelstack_stack::Scenario;
@@ -42,12 +42,15 @@ impl Scenario {
     /// # Errors
     ///
     /// As [`Scenario::parse`].
-    #[expect(clippy::should_implement_trait, reason = "it does; this needs no import")]
+    #[expect(
+        clippy::should_implement_trait,
+        reason = "the trait is implemented, too, but this needs no import"
+    )]
     pub fn from_str(text: &str) -> Result<Self, ScenarioError> {
         Self::parse("scenario", text, &[])
     }
 
-    /// Reads a scenario file and the files it extends; [`Scenario::load`] accepts overrides as well.
+    /// Reads a scenario file and the files it extends; [`Scenario::load`] also takes overrides.
     ///
     /// # Errors
     ///
@@ -56,14 +59,14 @@ impl Scenario {
         Self::load(path.as_ref(), &[])
     }
 
-    /// Reads a scenario from text, without touching the file system.
+    /// Reads a scenario from text, without access to the file system.
     ///
     /// `source_name` is the path shown in errors; relative paths in the scenario are relative to
     /// its folder.
     ///
-    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is TOML, or
-    /// text when it is not TOML. List items are addressed by name (`body.block.mass`), interfaces by pair
-    /// (`interface.block-ground.stiffness`), or by number from 1. `extends` may name a built-in scenario only.
+    /// An override is `path=value`, such as `stack.levels=5` or `motion.scale.pgv=60 cm/s`. The value is TOML; anything
+    /// else is taken as text. List items are addressed by name (`body.block.mass`), interfaces by pair
+    /// (`interface.block-ground.stiffness`), and both by number from 1. `extends` may name a built-in scenario only.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -76,7 +79,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// The first problem found, at its place.
+    /// Returns the first problem found, with its place in the text.
     pub fn parse(
         source_name: &str,
         text: &str,
@@ -85,7 +88,7 @@ impl Scenario {
         read(source_name, text.as_bytes(), overrides, Access::BuiltinOnly)
     }
 
-    /// Reads a scenario as [`Scenario::parse`] does, from bytes that may not be text.
+    /// Reads a scenario as [`Scenario::parse`] does, from bytes that are expected to be UTF-8.
     ///
     /// # Errors
     ///
@@ -109,8 +112,9 @@ impl Scenario {
         read(&name, &bytes, overrides, Access::Files)
     }
 
-    /// Reads a scenario from values that come from no text, such as those of another program; relative paths are
-    /// relative to the current folder, and errors name the path of the value.
+    /// Reads a scenario from a tree of values, such as those of another program.
+    ///
+    /// Relative paths are relative to the current folder, and errors name the path of the value.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -145,10 +149,9 @@ impl Scenario {
         finished(sources, table)
     }
 
-    /// Returns the scenario with further values set, as by the overrides of [`Scenario::parse`]; values set again are
-    /// replaced.
+    /// Returns the scenario with further overrides as in [`Scenario::parse`], which replace earlier ones.
     ///
-    /// A record that was given as a value ([`Scenario::with_record`]) belongs to no text and is not kept.
+    /// A record in memory ([`Scenario::with_record`]) is not part of the text and is not kept.
     ///
     /// ```
     /// use barrelstack_stack::scenario::Scenario;
@@ -161,7 +164,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// The first problem found, at its place.
+    /// Returns the first problem found, with its place in the text.
     pub fn with(&self, overrides: &[String]) -> Result<Self, ScenarioError> {
         let Some((sources, table)) = self.written.0.as_deref() else {
             return Self::parse("scenario", &self.to_resolved_toml(), overrides);
@@ -177,7 +180,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// If there is none of that name, or an override has a problem.
+    /// If there is no scenario with this name, or an override is invalid.
     pub fn builtin(name: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
         let Some(text) = builtin::get(name) else {
             let place = Place::Whole { file: name.to_owned() };
@@ -207,7 +210,7 @@ fn unknown_builtin(field: &str, name: &str) -> Problem {
 
 pub(super) fn read_file(path: &Path, place: Place) -> Result<Vec<u8>, ScenarioError> {
     system::read(path, READ_LIMIT).map_err(|error| {
-        // The place of the error is in the extending file, so the path is added.
+        // The error is placed in the file that extends this one, so the path is added.
         let reason = match &place {
             Place::Whole { .. } => error,
             Place::File { .. } | Place::Override { .. } | Place::Unknown => {
@@ -232,13 +235,13 @@ fn read(
     finished(sources, table)
 }
 
-/// Builds the scenario of a table that includes all overrides.
+/// Builds the scenario from a table to which all overrides have been applied.
 fn finished(sources: Sources, mut table: Table) -> Result<Scenario, ScenarioError> {
     merge::expand_names(&mut table, &root::ROOT);
     let reader =
         Reader::open(&sources, &root::ROOT, String::new(), Some(&table), Origin::Whole(0))?;
     let mut scenario = root::read(reader, &stem(&sources.files[0].name))?;
-    // A title from another file, or from before a change, may be outdated.
+    // A title from an extended file, or from before an override, may be outdated.
     let parts = ["run.", "record.", "imperfections."];
     let kept = |change: &String| parts.iter().any(|part| change.starts_with(part));
     let unchanged = sources.overrides.iter().all(kept);
@@ -280,7 +283,7 @@ pub(super) fn add_source(
     Ok(())
 }
 
-/// Parses the first file and overlays it on what it extends.
+/// Parses the first file and overlays it on the scenario that it extends.
 fn chain(sources: &mut Sources, access: Access) -> Result<Table, ScenarioError> {
     let table = parsed(sources, 0)?;
     extend(sources, table, 0, access)
@@ -296,7 +299,7 @@ fn parsed(sources: &Sources, file: usize) -> Result<Table, ScenarioError> {
     Ok(table)
 }
 
-/// Overlays the table of a file on what it extends.
+/// Overlays the table of a file on the scenario that it extends.
 pub(super) fn extend(
     sources: &mut Sources,
     table: Table,

@@ -1,7 +1,7 @@
 //! Scenarios: bodies, ground motion and run settings.
 //!
-//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives plain data in SI units, fully
-//! checked, so that nothing downstream has to check again, or one error with its place.
+//! A scenario is a TOML text in which every quantity carries its unit. Reading it gives either plain data in SI units,
+//! fully checked, or one error with its place.
 //!
 //! ```
 //! use barrelstack_stack::scenario::{Scenario, View};
@@ -28,10 +28,10 @@
 //! # Ok::<(), barrelstack_stack::scenario::ScenarioError>(())
 //! ```
 //!
-//! Each field is defined once, in a table of [`field::Section`]s next to the type it fills; the reader, the writer of
+//! Each field is defined once, in a [`field::Section`] next to the type that holds it; the reader, the writer of
 //! resolved text, the [JSON Schema](schema) and the [reference](mod@reference) all use that definition. To add a
-//! field, add a line to that table, a field to the type, a line to its `read` and one to its `write`; omitting one
-//! fails the tests.
+//! field, add a line to that section, a field to the type, and a line each to its `read` and `write`; tests fail if one
+//! is missing.
 
 pub mod barrel;
 pub mod body_override;
@@ -89,7 +89,7 @@ pub use spatial::{SpatialGround, SpatialScene};
 pub use stack::{InSpace, StackSpec, View};
 pub use uniform::Uniform;
 
-/// Errors of a scenario: problem, place, and next move.
+/// Errors of a scenario, with the problem, its place, and what to change.
 pub mod error {
     pub use barrelstack_input::{InputError as ScenarioError, Place, Problem};
 }
@@ -120,7 +120,7 @@ pub struct Scenario {
     written: Written,
 }
 
-/// Places where the values of a scenario were written; ignored in comparisons.
+/// Sources of the values of a scenario, by which errors find their place; ignored in comparisons.
 #[derive(Clone, Default)]
 struct Written(Option<Arc<(tree::Sources, tree::Table)>>);
 
@@ -149,14 +149,14 @@ pub enum Scene {
         /// Differences between its variants.
         imperfections: Imperfections,
     },
-    /// Any planar bodies.
+    /// Arbitrary planar bodies.
     Free(FreeScene),
-    /// Any bodies in space.
+    /// Arbitrary bodies in space.
     Spatial(SpatialScene),
 }
 
 impl Scenario {
-    /// Replaces an outdated title by one made from bodies and motion.
+    /// Replaces an outdated title by one that is generated from bodies and motion.
     pub(crate) fn retitle(&mut self) {
         self.title = title::of(self);
     }
@@ -178,8 +178,10 @@ impl Scenario {
         }
     }
 
-    /// Returns the place of the first of these fields that the user wrote, in an override or in the file; failing
-    /// that, of the first one in an extended file. `None` if none was written.
+    /// Returns the place at which one of these fields was written; `None` if none was.
+    ///
+    /// Overrides take precedence over the file itself, and the file over the files that it extends; otherwise, earlier
+    /// fields take precedence.
     pub fn place_of(&self, fields: &[String]) -> Option<Place> {
         let (sources, table) = self.written.0.as_deref()?;
         let origin =
@@ -202,20 +204,22 @@ impl Scenario {
         }
     }
 
-    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` where it was not written
-    /// so.
+    /// Returns a quantity with its unit as the user wrote it, by the path of its setting; `None` if it was not written
+    /// as text.
     pub fn as_written(&self, path: &str) -> Option<&str> {
         if let tree::Value::Text(text) = &self.node(path)?.value { Some(text) } else { None }
     }
 
-    /// Returns the scenario as text that reads back equal: all defaults written out, all quantities in SI, paths
-    /// unchanged.
+    /// Returns the scenario as TOML text that reads back equal, with all defaults written out and all quantities in SI.
+    ///
+    /// Paths are unchanged.
     pub fn to_resolved_toml(&self) -> String {
         writer::to_toml(&root::write(self))
     }
 
-    /// Returns bodies and run settings as the table of a key in another file such as a study; without title and
-    /// motion, and with runs that end by themselves as given, since the stated end was chosen for its own motion.
+    /// Returns the scenario without title and motion as a table under a key, for another file such as a study.
+    ///
+    /// Runs end by the criterion `until`, because the end in the scenario was chosen for its own motion.
     pub fn to_toml_table(&self, key: &str, until: Until) -> String {
         let plain = |key: &str, value| tree::Entry {
             key: key.to_owned(),
@@ -238,25 +242,25 @@ impl Scenario {
         writer::to_toml(&tree::Table { entries: vec![plain(key, tree::Value::Table(own))] })
     }
 
-    /// Returns the fingerprint of everything but the title: FNV-1a, 64 bits, of the resolved text.
+    /// Returns the fingerprint of the scenario without its title: the 64-bit FNV-1a hash of the resolved text.
     ///
-    /// Two scenarios with the same fingerprint describe the same run, however they were written. Records count by
-    /// their bytes where these are in memory ([`Scenario::with_records`]; in every run they are), else by their path
-    /// as written.
+    /// Two scenarios with the same fingerprint describe the same run, however they were written. Records
+    /// enter with their bytes if these are in memory ([`Scenario::with_records`]), as in every run, and otherwise with
+    /// their path as written.
     pub fn fingerprint(&self) -> u64 {
         let motion = self.motion.by_content();
         let untitled = Self { title: "-".to_owned(), motion, ..self.clone() };
         fnv1a(untitled.to_resolved_toml().as_bytes())
     }
 
-    /// Returns every value but the title, in the order of the file with all defaults written out.
+    /// Returns all values except the title, defaults included, in the order of the resolved text.
     ///
-    /// List items are identified by name or by the pair they join, else by number from 1, as in overrides.
+    /// List items are identified as in overrides: by name or by the pair they join, otherwise by number from 1.
     pub fn settings(&self) -> Vec<Setting> {
         let mut settings = barrelstack_input::listing::settings(&root::write(self), &ROOT);
         settings.retain(|setting| !["title", "schema"].contains(&setting.path.as_str()));
         for setting in &mut settings {
-            // Of a value with a derived default only the file can say whether it was given.
+            // For a value with a derived default, only the file shows whether it was given.
             if matches!(setting.source, Source::Derived(_)) && self.node(&setting.path).is_some() {
                 setting.source = Source::Given;
             }

@@ -14,29 +14,29 @@ use super::writer::Writer;
 /// Placement of contact nodes on the boundary of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Nodes {
-    /// At the corners.
+    /// A node at each corner.
     Corners,
-    /// Along the boundary at most this far apart, corners included (m).
+    /// Nodes along the boundary, corners included, at most this far apart (m).
     Spacing(f64),
-    /// This number on each side, or around a curved shape.
+    /// This number of nodes on each side, or around a curved shape.
     Count(u32),
-    /// The deepest point of a circle in the target.
+    /// One node at the deepest point of a circle in the target.
     Rolling,
-    /// None: convex outlines touch each other with their deepest points, wherever these lie.
+    /// No nodes: convex outlines touch each other at their deepest points, wherever these lie.
     Exact,
-    /// At chosen places.
+    /// Nodes at chosen points.
     At(Vec<ChosenNode>),
 }
 
 section! {
-    /// A node at a chosen place.
+    /// A node at a chosen point.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct ChosenNode;
-    /// A contact node at a chosen place.
+    /// A contact node at a chosen point.
     static NODE = "node";
-    /// Place in the body, from the reference point of the shape.
+    /// Position in the body, relative to the reference point of the shape.
     at: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Required;
-    /// Length of boundary that it stands for, for laws per meter of boundary.
+    /// Length of boundary that the node represents, for laws per meter of boundary.
     tributary_length: f64 =
         Kind::Quantity(&[Dimension::LENGTH], Range::POSITIVE), Default::Value("\"1 cm\"");
 }
@@ -53,22 +53,22 @@ named! {
 const MOST_NODES: f64 = 20_000.0;
 
 table! {
-    /// Where the boundary carries contact nodes: one of the fields.
+    /// Contact nodes of a boundary, stated by one of the fields.
     pub static NODES = "nodes";
-    /// At the corners; at the one deepest point of a circle; or exact, where convex outlines touch each other
-    /// with their deepest points and both bodies say so.
+    /// Nodes at the corners; one node at the deepest point of a circle; or exact contact, where convex outlines touch
+    /// each other at their deepest points if both bodies state so.
     rule = Kind::Choice(names::<NodeRule>), Default::Nothing;
-    /// Greatest distance between nodes along the boundary.
+    /// Largest distance between nodes along the boundary.
     spacing = Kind::Quantity(&[Dimension::LENGTH], Range { least: 1e-4, above: false, greatest: 1e3 }),
         Default::Nothing;
-    /// Nodes on each side, or around a curved shape.
+    /// Number of nodes on each side, or around a curved shape.
     count = Kind::Integer(1, 2000), Default::Nothing;
-    /// Nodes at chosen places.
+    /// Nodes at chosen points.
     list = Kind::Tables(&NODE), Default::Nothing;
     at most one of &["rule", "spacing", "count", "list"];
 }
 
-/// Reads the nodes of a boundary; without a shape only chosen places are allowed.
+/// Reads the nodes of a boundary; without a shape, only nodes at chosen points are allowed.
 pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, ScenarioError> {
     let Some(nodes) = reader.optional_section("nodes")? else {
         let Some(shape) = shape else { return Err(reader.missing("nodes")) };
@@ -96,7 +96,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
         .ok_or_else(|| nodes.one_of(&["rule", "spacing", "count", "list"]))?;
     let Some(shape) = shape else {
         if !matches!(rule, Nodes::At(_)) {
-            let message = "a boundary without a shape has nodes at chosen places only; write \
+            let message = "a boundary without a shape has nodes at chosen points only; write \
                            `nodes = { list = [{ at = [\"0 m\", \"0 m\"] }] }`, or give it a shape";
             let found = ["rule", "spacing", "count"].into_iter().find(|field| nodes.has(field));
             return Err(nodes.inconsistent(found.unwrap_or("rule"), message.to_owned()));
@@ -123,7 +123,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
         }
         Nodes::Spacing(spacing) if shape.perimeter() / spacing > MOST_NODES => {
             let message = format!(
-                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider one",
+                "a spacing of {spacing} m puts more than {MOST_NODES} nodes on a boundary of {} m; take a wider spacing",
                 shape.perimeter()
             );
             return Err(nodes.inconsistent("spacing", message));
@@ -145,7 +145,7 @@ pub(super) fn read(reader: &Reader<'_>, shape: Option<&Shape>) -> Result<Nodes, 
     Ok(rule)
 }
 
-/// Returns the number of nodes of a boundary, to within a few at the corners.
+/// Returns the approximate number of nodes of a boundary, which may be off by a few at the corners.
 pub(super) fn number(nodes: &Nodes, shape: Option<&Shape>) -> f64 {
     let sides = |shape: &Shape| match shape {
         Shape::Polygon { vertices } => vertices.len() as f64,
@@ -165,7 +165,7 @@ pub(super) fn number(nodes: &Nodes, shape: Option<&Shape>) -> f64 {
     }
 }
 
-/// Writes the placement.
+/// Writes the nodes of a boundary.
 pub(super) fn write(nodes: &Nodes) -> Table {
     let mut writer = Writer::new(&NODES);
     match nodes {

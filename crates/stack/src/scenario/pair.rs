@@ -1,4 +1,4 @@
-//! Pairs of kinds of bodies that meet in a stack, each declared once with its contact law.
+//! Pairs of kinds of bodies that touch in a stack, each declared once with its contact law.
 
 use super::catalog::{Seat, Seats};
 use super::error::ScenarioError;
@@ -8,29 +8,33 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Impact stiffness (N/m^1.5): stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within
-/// 15 mm. An assumption: no measurement is known; in cellars barrels bounced clearly, burst and lost their bungs.
+/// Impact stiffness (N/m^1.5) of pairs with barrels, and of seats at the end of their stroke.
+///
+/// It stops a full barrel of 270 kg that falls from the top of six levels (9.3 m/s) within 15 mm. This is an
+/// assumption: no measurement is known; in cellars, barrels bounced clearly, burst and lost their bungs.
 const HEAVY: f64 = 1.2e9;
 
-/// Impact stiffness between racks and from a rack to the ground (N/m^1.5): stops a rack alone from the same height
-/// within 10 mm, and several of its contacts share the load of a barrel that lands on it.
+/// Impact stiffness (N/m^1.5) between racks and from a rack to the ground.
+///
+/// It stops a rack without barrels that falls from the top of six levels within 10 mm; several contacts of the rack
+/// share the load of a barrel that lands on it.
 const LIGHT: f64 = 5e8;
 
-/// Declares the pairs: variant, field and name in files; table, impact stiffness, default coefficient of friction,
-/// and the source of the coefficient.
+/// Declares the pairs: variant, field and name in files, then table, impact stiffness, default friction coefficient,
+/// and the source of that coefficient.
 macro_rules! pairs {
     ($(
         $(#[doc = $help:literal])+
         $pair:ident $field:ident $name:literal = $table:ident, $impact:ident, $coefficient:literal, $source:literal;
     )*) => {
-        /// Two kinds of bodies that meet in a stack.
+        /// Two kinds of bodies that touch in a stack.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum StackPair {
             $($(#[doc = $help])+ $pair),*
         }
 
         impl StackPair {
-            /// All pairs, each at the index of its number.
+            /// All pairs, each at the index that is its discriminant.
             pub const ALL: &[Self] = &[$(Self::$pair),*];
 
             /// Returns the name in files.
@@ -38,12 +42,12 @@ macro_rules! pairs {
                 match self { $(Self::$pair => $name),* }
             }
 
-            /// Returns the default coefficient of friction.
+            /// Returns the default friction coefficient.
             pub fn coefficient(self) -> f64 {
                 match self { $(Self::$pair => $coefficient),* }
             }
 
-            /// Returns the source of that coefficient.
+            /// Returns the source of the default friction coefficient.
             pub fn source(self) -> &'static str {
                 match self { $(Self::$pair => $source),* }
             }
@@ -72,10 +76,10 @@ macro_rules! pairs {
             }
         }
 
-        /// Contact laws of a stack.
+        /// Definition of the table of the contact laws of a stack.
         pub static INTERFACES: Section = Section {
             name: "interfaces",
-            help: "Laws of contact in a stack, by pair.",
+            help: "Contact laws of a stack, by pair.",
             fields: &[$(Field::new(
                 $name,
                 Kind::Table(&$table),
@@ -86,7 +90,7 @@ macro_rules! pairs {
             exclusive: &[],
         };
 
-        /// Reads the contact laws of a stack whose racks have these seats.
+        /// Reads the contact laws of a stack, with the constants of the seats of its racks as defaults.
         pub(super) fn read_interfaces(
             reader: Reader<'_>,
             seats: &Seats,
@@ -106,20 +110,20 @@ pairs! {
     RackGround rack_ground "rack-ground" = INTERFACE, HEAVY, 0.5,
         "benchmark of Candia, de la Llera and Almazán (2008); between the 0.4 of design and the 0.57 to 0.65 of tests \
          of steel on concrete";
-    /// Barrel in its cradle, and the rack above on the barrel.
+    /// Barrel in its cradle, and barrel under the rack above.
     BarrelRack barrel_rack "barrel-rack" = INTERFACE, HEAVY, 0.3,
         "between the 0.22 to which Candia, de la Llera and Almazán (2008) calibrated one test and the 0.37 to 0.45 of \
-         wood pallets on steel; wood on steel goes from 0.1 to 0.6 by moisture and finish";
+         wood pallets on steel; wood on steel ranges from 0.1 to 0.6 with moisture and finish";
     /// Rack that stands on the rack below.
     RackRack rack_rack "rack-rack" = INTERFACE, HEAVY, 0.3, "steel on steel, assumption";
     /// Barrel against barrel.
     BarrelBarrel barrel_barrel "barrel-barrel" = IMPACT, HEAVY, 0.4, "wood on wood, assumption";
     /// Barrel on the ground.
     BarrelGround barrel_ground "barrel-ground" = IMPACT, HEAVY, 0.4, "wood on concrete, assumption";
-    /// Barrel against a rack on which it has no seat, or beside its seat.
+    /// Barrel against a rack on which it has no seat, or off its seat.
     FallenBarrelRack fallen_barrel_rack "fallen-barrel-rack" = IMPACT, HEAVY, 0.3,
         "as barrel on rack";
-    /// Rack on the ground that has its seat elsewhere.
+    /// Rack on the ground, whose seat is elsewhere.
     FallenRackGround fallen_rack_ground "fallen-rack-ground" = IMPACT, LIGHT, 0.5,
         "as rack on ground";
     /// Rack against a rack on which it does not stand.
@@ -128,7 +132,7 @@ pairs! {
 }
 
 impl StackPair {
-    /// Returns the seat of a rack that the pair is; `None` for a pair that meets in impacts.
+    /// Returns the constants of the seat that the pair forms; `None` for a pair that touches in impacts only.
     fn seat(self, seats: &Seats) -> Option<Seat> {
         match self {
             Self::RackGround => Some(seats.floor),

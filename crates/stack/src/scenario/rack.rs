@@ -1,4 +1,4 @@
-//! Racks: the frame that carries the barrels of one level, in both views.
+//! Racks: the frames that carry the barrels of one level, as seen in either plane.
 
 use barrelstack_input::choices::Chosen;
 use barrelstack_input::declared::Held;
@@ -13,22 +13,22 @@ use super::reader::Reader;
 use super::tree::Table;
 use super::writer::Writer;
 
-/// Support of a rack.
+/// Support of a rack by the level below.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RackKind {
     /// Rack-on-barrel: the rack lies on the barrels of the level below.
     OnBarrels,
-    /// Rack-on-rack: posts carry the load to the rack below and no barrel carries another.
+    /// Rack-on-rack: posts carry the load to the rack below, and no barrel carries another.
     OnRacks,
 }
 
 choices! {
-    /// Support of a barrel by a rack in the transverse view.
+    /// Cradle of a barrel in the plane across the barrels.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub enum Cradle;
-    /// The kinds of cradle.
+    /// The kinds of cradles.
     static CRADLES;
     /// Two supports at equal angles from the lowest point of the barrel.
     Supports = "supports" {
@@ -39,27 +39,28 @@ choices! {
     Arc = "arc" {
         /// Radius of the trough.
         radius: f64 = size(0.01, 10.0), Default::Required;
-        /// Half of the angle the trough spans.
+        /// Half the angle that the trough spans.
         half_angle: f64 = CRADLE_ANGLE, Default::Required;
     }
 }
 
 named! {
-    /// Division of a seat into contact elements. Where the scenario states its constants per node, the division is
-    /// part of the physics; where it states them per seat, the elements share them.
+    /// Division of a seat into contact elements.
+    ///
+    /// With constants per node, the division affects the physics; with constants per seat, the elements share them.
     pub enum SeatContact {
-        /// Nodes along flat undersides, one at each support of a cradle, as in the paper.
+        /// Nodes along flat undersides, and one at each support of a cradle, as in the paper.
         Nodes = "nodes",
-        /// One element where two bodies touch.
+        /// One element at each place where two bodies touch.
         Element = "element",
-        /// One element for each of the two rails that a rack has across the barrels.
+        /// One element for each of the two rails of a rack, which coincide in the plane across the barrels.
         Rails = "rails",
     }
 }
 
 impl SeatContact {
-    /// Returns the number of elements, one behind the other, that one element of a transverse section represents,
-    /// each with the constants of a node.
+    /// Returns the number of elements with the constants of a node that one element in the plane across the barrels
+    /// represents, because they stand one behind the other.
     pub fn behind_each_other(self) -> f64 {
         match self {
             Self::Nodes | Self::Element => 1.0,
@@ -78,21 +79,21 @@ known! {
     const POSTS;
     /// Height from the foot of the post to the seat of the next rack.
     height as "post_height": f64 = size(0.01, 10.0), CATALOG;
-    /// Distance of each post from the middle of the rack, in the transverse view.
+    /// Distance of each post from the middle of the rack, across the barrels.
     half_spacing as "post_half_spacing": f64 = size(0.01, 100.0), CATALOG;
-    /// Distance of each post from the middle of the barrel beside it, in the longitudinal view.
+    /// Distance of each post from the middle of the barrel beside it, along the barrels.
     half_spacing_along as "post_half_spacing_along": f64 = size(0.01, 100.0), CATALOG;
-    /// Overlap of the foot of the next rack over the sides of the post.
+    /// Height by which the foot of the next rack overlaps the sides of the post.
     spigot as "post_spigot": f64 = size(0.01, 100.0), CATALOG;
 }
 
 known! {
-    /// A rack.
+    /// A rack with its dimensions, cradles and seats.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Rack {
-        /// Catalog name the rack was made from.
+        /// Name of the catalog rack on which the rack is based.
         pub base: &'static str,
         /// Support of the rack on the level below.
         pub kind: RackKind,
@@ -101,39 +102,39 @@ known! {
     }
     /// The fields of all racks.
     const FIELDS, after {
-        /// Rack of the catalog.
+        /// Rack of the catalog on which the rack is based.
         base = Kind::Choice(catalog::rack_names), Default::Value("\"two-barrel\"");
     };
     /// Mass of one rack.
     mass: f64 = Kind::Quantity(&[Dimension::MASS], Range::up_to(1e5)), CATALOG;
-    /// Barrels side by side on one rack, in the transverse view.
+    /// Number of barrels side by side on one rack, across the barrels.
     barrels: u32 = Kind::Integer(1, 40), CATALOG;
-    /// Barrels end to end on one rack, in the longitudinal view.
+    /// Number of barrels end to end on one rack, along the barrels.
     barrels_deep: u32 = Kind::Integer(1, 40), CATALOG;
     /// Distance between the axes of neighboring barrels.
     pitch: f64 = size(0.05, 10.0), CATALOG;
     /// Overall width across the barrels.
     width: f64 = size(0.05, 100.0), CATALOG;
-    /// Distance of each rail from the middle of a barrel, along its axis.
+    /// Distance of each rail from the middle of a barrel, along the axis of the barrel.
     rail_half_spacing: f64 = size(0.01, 10.0), CATALOG;
-    /// Width of one rail along the barrel axis.
+    /// Width of one rail, along the axis of the barrel.
     rail_width: f64 = size(1e-3, 1.0), CATALOG;
-    /// Angle by which the rails raise the right end of a barrel, in the longitudinal view.
+    /// Angle by which the rails raise the right end of a barrel, along the barrels.
     incline: f64 = Kind::Quantity(&[Dimension::ANGLE], Range::between(-0.2, 0.2)), CATALOG;
     /// Height of the lowest point of a carried barrel above the underside of the rack.
     clearance: f64 = size(1e-3, 10.0), CATALOG;
-    /// Height of the beams, above the feet where there are any.
+    /// Height of the beams, not including feet.
     beam_height: f64 = size(1e-3, 10.0), CATALOG;
     /// Height of the feet under the beams, one over each barrel below; 0 for straight tubes without feet.
     foot_height: f64 = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), CATALOG;
     /// Support of a barrel by the rack.
     cradle: Cradle = Kind::ChoiceOrTable(Cradle::names, "type", &CRADLE), CATALOG;
-    /// Half of the length of a foot.
+    /// Half the length of a foot.
     foot_half_length: f64 = size(1e-3, 10.0), CATALOG;
-    /// Division of a seat into contact elements: nodes along flat undersides, one element, or one for each of two
-    /// rails. Each has the constants that are stated per node; those that are stated per seat are divided among them.
+    /// Division of a seat into contact elements: nodes along flat undersides, one element, or one element for each of
+    /// two rails. Every element has the constants stated per node; constants stated per seat are divided among them.
     contact: SeatContact = Kind::Choice(names::<SeatContact>), CATALOG;
-    /// Penetration of a seat beyond which the solids themselves meet, by the law of impacts.
+    /// Penetration of a seat beyond which the impact law of the two bodies acts as well.
     seat_stroke: f64 = size(1e-4, 1.0), CATALOG;
     /// Distance between contact nodes on flat undersides.
     node_spacing: f64 = size(1e-3, 0.5), CATALOG;
@@ -148,17 +149,17 @@ const fn size(least: f64, greatest: f64) -> Kind {
 const CRADLE_ANGLE: Kind = Kind::Quantity(&[Dimension::ANGLE], Range::up_to(1.5));
 
 table! {
-    /// Support of a barrel by a rack in the transverse view.
+    /// Cradle of a barrel in the plane across the barrels.
     pub static CRADLE = "cradle";
     /// Two supports, or a circular trough.
     type = Kind::Choice(Cradle::names), Default::Value("\"supports\"");
     of CRADLES, by type;
 }
 
-/// A rack.
+/// Definition of the table of a rack.
 pub static RACK: Section = Section {
     name: "rack",
-    help: "A rack of the catalog, with what differs.",
+    help: "A rack of the catalog, with any changes.",
     fields: FIELDS,
     variants: Some(Variants { tag: "base", list: &BASES }),
     exclusive: &[],
@@ -177,7 +178,7 @@ static BASES: [Variant; catalog::RACKS.len()] = {
     bases
 };
 
-/// Returns the seats of the rack that a table names.
+/// Returns the seat constants of the catalog rack that a table names.
 pub(super) fn seats(reader: &Reader<'_>) -> Result<catalog::Seats, ScenarioError> {
     let known = catalog::rack(reader.chosen()?).ok_or_else(|| reader.missing("base"))?;
     Ok(known.seats)
@@ -250,7 +251,7 @@ pub(super) fn write(rack: &Rack) -> Table {
         posts.write_fields(&mut writer);
     }
     let mut table = writer.finish();
-    // Listings of stated values have the feet behind the cradle.
+    // In listings of stated values, the feet come after the cradle.
     if let Some(feet) = table.entries.iter().position(|entry| entry.key == "foot_height") {
         table.entries.swap(feet, feet + 1);
     }

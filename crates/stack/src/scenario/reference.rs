@@ -1,4 +1,4 @@
-//! The reference of the scenario language in Markdown, made from the definition of the fields.
+//! Reference of the scenario language in Markdown, generated from the definitions of the fields.
 
 use std::fmt::Write as _;
 
@@ -9,8 +9,9 @@ use super::pair::StackPair;
 use super::quantity::plain;
 use super::root::ROOT;
 
-/// Returns every table and field of a scenario file: kind, range, default and meaning; then the units and the
-/// catalog.
+/// Returns the reference of all tables and fields of a scenario file, followed by the units and the catalog.
+///
+/// Each field is listed with kind, range, default and meaning.
 pub fn markdown() -> String {
     let mut text = String::from("# Fields of a scenario file\n\n");
     text.push_str(&of::of_tables(&ROOT, &[], ""));

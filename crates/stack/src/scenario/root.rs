@@ -1,4 +1,4 @@
-//! The top of a scenario file.
+//! Top-level fields of a scenario file.
 
 use barrelstack_input::declared::Declared as _;
 use barrelstack_input::{named, table};
@@ -32,7 +32,7 @@ table! {
     schema = Kind::Integer(1, SCHEMA as i64), Default::Required;
     /// Title, in one line.
     title = Kind::Text, Default::Derived("name of the file");
-    /// Built-in scenario, or file ending in `.toml`, over which this one is laid.
+    /// Built-in scenario, or file ending in `.toml`, whose values this scenario overrides.
     extends = Kind::Text, Default::Nothing;
     /// Kind of the scene.
     kind = Kind::Choice(names::<SceneKind>), Default::Value("\"stack\"");
@@ -40,40 +40,40 @@ table! {
     motion = Kind::Table(&motion::MOTION), Default::Nothing;
     /// Settings of the run.
     run = Kind::Table(&run::RUN), Default::Nothing;
-    /// Recording.
+    /// Settings of the recording.
     record = Kind::Table(&run::RECORD), Default::Nothing;
     by kind {
         /// A stack of barrels on racks.
         "stack" {
             /// The stack.
             stack = Kind::Table(&stack::STACK), Default::Required;
-            /// Laws of contact by pair.
+            /// Contact laws by pair of bodies.
             interface = Kind::Table(&pair::INTERFACES), Default::Nothing;
             /// Thresholds that define a collapse.
             outcome = Kind::Table(&run::OUTCOME), Default::Nothing;
-            /// Differences of the variants of the stack from the stated values.
+            /// Random differences of the variants of the stack from the stated values.
             imperfections = Kind::Table(&imperfections::IMPERFECTIONS), Default::Nothing;
 
         }
-        /// Any planar bodies on a ground.
+        /// Arbitrary planar bodies on a ground.
         "free" {
             /// The ground.
             ground = Kind::Table(&free::GROUND), Default::Nothing;
             /// The bodies.
             body = Kind::Tables(&free::BODY), Default::Required;
-            /// Laws of contact between kinds of body.
+            /// Contact laws between kinds of bodies.
             interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
             /// Force elements between bodies.
             element = Kind::Tables(&element::ELEMENT), Default::Nothing;
 
         }
-        /// Any bodies in space on a ground.
+        /// Arbitrary bodies in space on a ground.
         "free-spatial" {
             /// The ground.
             ground = Kind::Table(&spatial::GROUND), Default::Nothing;
             /// The bodies.
             body = Kind::Tables(&barrelstack_bodies::BODY), Default::Required;
-            /// Laws of contact between kinds of body.
+            /// Contact laws between kinds of bodies.
             interface = Kind::Tables(&interface::FREE_INTERFACE), Default::Nothing;
 
         }
@@ -84,7 +84,7 @@ table! {
 pub(super) fn read(reader: Reader<'_>, fallback_title: &str) -> Result<Scenario, ScenarioError> {
     reader.integer("schema")?;
     let title = reader.optional_text("title")?.unwrap_or_else(|| fallback_title.to_owned());
-    // Resolved earlier; still present only if an override sets it.
+    // `extends` has been resolved already; it is present here only if an override sets it.
     if reader.optional_text("extends")?.is_some() {
         let message = "`extends` cannot be overridden; write it in the file".to_owned();
         return Err(reader.inconsistent("extends", message));

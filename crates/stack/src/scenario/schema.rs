@@ -1,4 +1,4 @@
-//! The JSON Schema of scenario files, made from the definition of the fields.
+//! JSON Schema of scenario files, generated from the definitions of the fields.
 
 use barrelstack_input::schema::of_file;
 use serde_json::Value;
@@ -7,8 +7,9 @@ use super::root::ROOT;
 
 /// Returns the schema (JSON Schema 2020-12) of a scenario file, for completion and checking in editors.
 ///
-/// It holds names, types, choices and ranges of plain numbers. It requires no field, since `extends` and overrides
-/// may supply any; ranges and dimensions of quantities, and combinations of fields, are checked by the reader alone.
+/// The schema has the names, types and choices of fields, and the ranges of plain numbers. It requires no field, since
+/// `extends` and overrides may supply any. Ranges and dimensions of quantities, and combinations of fields, are checked
+/// by the reader only.
 pub fn json_schema() -> Value {
     of_file("barrelstack scenario", &ROOT)
 }

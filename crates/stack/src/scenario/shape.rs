@@ -14,42 +14,42 @@ use super::uniform::{area, cross, sides};
 use super::writer::Writer;
 
 choices! {
-    /// Outline of a body, about its reference point.
+    /// Outline of a body, relative to its reference point.
     ///
     /// All numbers are in SI units.
     #[derive(Debug, Clone, PartialEq)]
     pub enum Shape;
-    /// The forms of outlines.
+    /// The shapes that an outline can have.
     static SHAPES;
-    /// The reference point is the middle.
+    /// A rectangle; the reference point is the middle.
     Rectangle = "rectangle" {
-        /// Along local x.
+        /// Length of the side along local x.
         width: f64 = SIZE, Default::Required;
-        /// Along local z.
+        /// Length of the side along local z.
         height: f64 = SIZE, Default::Required;
         /// Radius of the rounded corners.
         corner_radius: f64 =
             Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 1e4)), Default::Value("\"0 m\"");
     }
-    /// The reference point is the center.
+    /// A circle; the reference point is the center.
     Circle = "circle" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
     }
-    /// The reference point is the local origin.
+    /// A polygon; the reference point is the local origin.
     Polygon = "polygon" {
-        /// Corners in order; sides must not cross.
+        /// Corners in order around the polygon; sides must not cross.
         vertices: Vec<[f64; 2]> = Kind::Points(Dimension::LENGTH), Default::Required;
     }
     /// A circular trough open upward; the reference point is the center of the circle.
     Cradle = "cradle" {
         /// Radius.
         radius: f64 = SIZE, Default::Required;
-        /// Half of the angle spanned, from the lowest point.
+        /// Half the angle that the trough spans, from its lowest point.
         half_angle: f64 =
             Kind::Quantity(&[Dimension::ANGLE], Range::up_to(PI)), Default::Required;
     }
-    /// A barrel in side view, axis along local x; the reference point is the middle.
+    /// A barrel in side view with its axis along local x; the reference point is the middle.
     BarrelProfile = "barrel-profile" {
         /// Length.
         length: f64 = SIZE, Default::Required;
@@ -58,9 +58,9 @@ choices! {
         /// Diameter at the ends.
         head_diameter: f64 = SIZE, Default::Required;
     }
-    /// Several outlines that are one body; the reference point is the local origin.
+    /// Several outlines joined into one rigid body; the reference point is the local origin.
     Compound = "compound" {
-        /// The outlines; where they overlap, matter counts twice.
+        /// The outlines; where they overlap, the mass counts twice.
         parts: Vec<PartShape> = Kind::Tables(&PART), Default::Required;
     }
 }
@@ -68,7 +68,7 @@ choices! {
 /// Shapes that a part of a compound may have: all but the last, which is the compound itself.
 static OF_PARTS: &[Variant] = SHAPES.split_at(SHAPES.len() - 1).0;
 
-/// Returns their names.
+/// Returns the names of the shapes that a part of a compound may have.
 fn part_names() -> Vec<&'static str> {
     OF_PARTS.iter().map(|variant| variant.name).collect()
 }
@@ -80,37 +80,37 @@ const SIZE: Kind =
 const MOST_CORNERS: usize = 200;
 
 table! {
-    /// Outline of a body, about its reference point.
+    /// Outline of a body, relative to its reference point.
     pub static SHAPE = "shape";
-    /// Form of the outline.
+    /// Shape of the outline.
     type = Kind::Choice(Shape::names), Default::Required;
     of SHAPES, by type;
 }
 
 section! {
-    /// One outline of several that are one body.
+    /// One part of a compound.
     #[derive(Debug, Clone, PartialEq)]
     pub struct PartShape;
-    /// One outline of several that are one body.
+    /// One outline of a compound, with its placement in the body.
     static PART = "part";
-    /// Outline.
+    /// Outline of the part.
     shape: Shape = Kind::Table(&PART_SHAPE), Default::Required;
-    /// Place of its reference point in the body.
+    /// Position of the reference point of the part in the body.
     offset: [f64; 2] = Kind::Point(Dimension::LENGTH), Default::Value("[\"0 m\", \"0 m\"]");
-    /// Rotation in the body, counterclockwise.
+    /// Rotation of the part in the body, counterclockwise.
     turn: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-100.0, 100.0)), Default::Value("\"0 deg\"");
 }
 
 table! {
-    /// Outline of a part, about its reference point.
+    /// Outline of a part, relative to its reference point.
     static PART_SHAPE = "part-shape";
-    /// Form of the outline, no compound itself.
+    /// Shape of the outline; not a compound.
     type = Kind::Choice(part_names), Default::Required;
     of *OF_PARTS, by type;
 }
 
-/// An outline in a table of its own.
+/// Reads and writes an outline as a table.
 impl Held for Shape {
     fn read(reader: &Reader<'_>, name: &'static str) -> Result<Self, ScenarioError> {
         read(reader.section(name)?)

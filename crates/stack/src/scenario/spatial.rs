@@ -1,4 +1,4 @@
-//! A free scene in space: bodies on a ground, each of one solid or of several.
+//! A free scene in space: bodies on a ground, each made of one or more solids.
 
 use std::collections::BTreeSet;
 
@@ -16,15 +16,15 @@ use super::free::{FreeInterface, clash};
 use super::interface::{self, Basis};
 
 section! {
-    /// The ground of a free scene in space: all below a plane through the origin.
+    /// The ground of a free scene in space: everything below a plane through the origin.
     #[derive(Debug, Clone, PartialEq)]
     pub struct SpatialGround;
-    /// The ground: all below a plane through the origin.
+    /// The ground: everything below a plane through the origin.
     pub static GROUND = "ground-in-space";
-    /// Slope, positive when it rises to the right, along x.
+    /// Slope, positive if it rises to the right, along x.
     slope: f64 =
         Kind::Quantity(&[Dimension::ANGLE], Range::between(-1.5, 1.5)), Default::Value("\"0 deg\"");
-    /// Label used by interfaces.
+    /// Name by which interfaces refer to the ground.
     kind: String = Kind::Text, Default::Value("\"ground\"");
 }
 
@@ -39,7 +39,7 @@ pub struct SpatialScene {
     pub interfaces: Vec<FreeInterface>,
 }
 
-/// Maximum number of bodies of a free scene in space, whose pairs are listed one by one.
+/// Maximum number of bodies of a free scene in space, because all pairs of bodies are listed.
 const MOST_BODIES: usize = 500;
 
 /// Maximum number of pairs of solids of a free scene in space, whether an interface names them or not.
@@ -54,7 +54,7 @@ fn solids(body: &SpatialBody) -> usize {
 pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
     let ground = SpatialGround::read(root.section("ground")?)?;
     let mut bodies: Vec<SpatialBody> = Vec::new();
-    // Pairs so far, and solids before the next body; the ground is one.
+    // Number of pairs so far, and number of solids before the next body, including the ground.
     let (mut pairs, mut before) = (0_usize, 1_usize);
     for reader in root.sections("body")? {
         if bodies.len() == MOST_BODIES {
@@ -62,7 +62,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
             return Err(reader.inconsistent("name", message));
         }
         let name = reader.text("name")?;
-        // The model uses this name for the ground.
+        // The name "ground" is that of the ground in the model.
         if name == "ground" || bodies.iter().any(|body| body.name == name) {
             let message = format!("two bodies are called \"{name}\"; give each its own name");
             return Err(reader.inconsistent("name", message));
@@ -71,7 +71,7 @@ pub(super) fn read(root: &Reader<'_>) -> Result<SpatialScene, ScenarioError> {
         if column == "ground" || bodies.iter().any(|body| column_name(&body.name) == column) {
             return Err(reader.inconsistent("name", clash(&name, &column)));
         }
-        // Kept for an error at its place; the body takes the reader.
+        // The error is prepared here, because reading the body consumes the reader.
         let refuse = reader.inconsistent(
             "solid",
             format!(
@@ -110,7 +110,7 @@ fn read_interfaces(
                 format!("no body is of the kind \"{kind}\"; the kinds are {}", kinds.join(", "));
             return Err(reader.inconsistent("between", message));
         }
-        // Two solids meet once, in either order.
+        // Two solids form one contact pair, whatever their order.
         let same = |other: &FreeInterface| {
             other.between == between || other.between.iter().rev().eq(&between)
         };

@@ -1,4 +1,4 @@
-//! A stack of barrels on racks.
+//! A stack of barrels on racks, as stated in a scenario.
 
 use barrelstack_input::{fields, named};
 
@@ -31,18 +31,21 @@ pub enum View {
 pub struct StackSpec {
     /// Plane of the model.
     pub view: View,
-    /// Levels of barrels, 1 at the bottom.
+    /// Number of levels of barrels.
     pub levels: u32,
-    /// Barrels per level in this view.
+    /// Number of barrels per level in this plane.
     pub columns: u32,
-    /// Barrels per level along the barrels, if both planes are requested; `view` is then the transverse one. `None`
-    /// for a single plane.
+    /// Number of barrels per level along the barrels, if both planes are requested; `None` for a single plane.
+    ///
+    /// With both planes, `view` is the transverse one.
     pub columns_along: Option<u32>,
-    /// Position in space, if the stack is modeled there; `view` is then the transverse one. `None` for a plane.
+    /// Properties of the stack in space, if it is modeled there; `None` for a plane.
+    ///
+    /// In space, `view` is the transverse plane.
     pub space: Option<InSpace>,
-    /// The barrel used everywhere unless overridden.
+    /// The barrel that is used everywhere unless overridden.
     pub barrel: Barrel,
-    /// The rack used everywhere unless overridden.
+    /// The rack that is used everywhere unless overridden.
     pub rack: Rack,
     /// `true` if the whole stack is mirrored left to right.
     pub mirror: bool,
@@ -50,14 +53,14 @@ pub struct StackSpec {
     pub gap: f64,
     /// Protective devices.
     pub devices: Devices,
-    /// Overrides of single bodies, in the order of the file.
+    /// Overrides of individual bodies, in the order of the file.
     pub overrides: Vec<BodyOverride>,
     /// Contact laws.
     pub interfaces: StackInterfaces,
 }
 
 impl StackSpec {
-    /// Returns the number of barrels that one rack carries in this view.
+    /// Returns the number of barrels that one rack carries in this plane.
     pub fn barrels_per_rack(&self) -> u32 {
         match self.view {
             View::Transverse => self.rack.barrels,
@@ -65,7 +68,7 @@ impl StackSpec {
         }
     }
 
-    /// Returns the overrides of one place, later entries last.
+    /// Returns the overrides of a kind of body at a level and column, later entries last.
     pub fn changes_of(
         &self,
         body: StackBody,
@@ -77,8 +80,9 @@ impl StackSpec {
         })
     }
 
-    /// Returns a stack in space as a plane shows it; of its overrides, those of all rows, and along the barrels those
-    /// of whole levels.
+    /// Returns the stack as a planar model of a stack in space.
+    ///
+    /// Overrides of single rows are dropped, and in the plane along the barrels those of single columns as well.
     #[must_use]
     pub fn in_plane(&self, view: View) -> Self {
         let mut plane = Self { view, space: None, ..self.clone() };
@@ -90,13 +94,14 @@ impl StackSpec {
         plane
     }
 
-    /// Returns the stack in the transverse plane alone, if both planes are requested.
+    /// Returns the stack in the transverse plane only, if both planes are requested.
     pub fn across(&self) -> Option<Self> {
         self.columns_along.map(|_| Self { columns_along: None, ..self.clone() })
     }
 
-    /// Returns the stack in the longitudinal plane, if both planes are requested; of its overrides, those of whole
-    /// levels, since columns count barrels across.
+    /// Returns the stack in the longitudinal plane only, if both planes are requested.
+    ///
+    /// Overrides of single columns are dropped, since columns count across the barrels.
     pub fn along(&self) -> Option<Self> {
         let columns = self.columns_along?;
         let mut along =
@@ -105,32 +110,32 @@ impl StackSpec {
         Some(along)
     }
 
-    /// Returns the number of racks one behind the other on one level in space; 1 in a plane.
+    /// Returns the number of racks along the barrels on one level in space; 1 in a plane.
     pub fn racks_along(&self) -> u32 {
         self.space.map_or(1, |space| space.columns_along / self.rack.barrels_deep.max(1))
     }
 
-    /// Returns the number of racks side by side on one level in this view.
+    /// Returns the number of racks side by side on one level in this plane.
     pub fn racks_per_level(&self) -> u32 {
         self.columns / self.barrels_per_rack().max(1)
     }
 }
 
-/// Position of a stack in space.
+/// Properties of a stack that is modeled in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InSpace {
-    /// Barrels per level along the barrels.
+    /// Number of barrels per level along the barrels.
     pub columns_along: u32,
-    /// Angle (rad) of the stack, counterclockwise from above; at zero the component of the scenario acts across its
-    /// barrels.
+    /// Angle (rad) by which the stack is turned, counterclockwise as seen from above; at zero, the component of the
+    /// scenario acts across the barrels.
     pub azimuth: f64,
 }
 
 impl View {
-    /// Both views.
+    /// Both planes.
     pub const ALL: [Self; 2] = [Self::Transverse, Self::Longitudinal];
 
-    /// Returns the word used in files and results.
+    /// Returns the name of the plane in files and results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Transverse => "transverse",
@@ -138,7 +143,7 @@ impl View {
         }
     }
 
-    /// Returns the direction as a phrase: "along the barrels".
+    /// Returns the direction as a phrase, such as "along the barrels".
     pub fn words(self) -> &'static str {
         match self {
             Self::Transverse => "across the barrels",
@@ -148,7 +153,7 @@ impl View {
 }
 
 named! {
-    /// In which planes a stack is looked at, as files say it.
+    /// Planes in which a stack is modeled, as stated in files.
     enum Planes {
         Transverse = "transverse",
         Longitudinal = "longitudinal",
@@ -157,35 +162,36 @@ named! {
     }
 }
 
-/// Ranges of the numbers of levels and columns of a stack.
+/// Range of the number of levels of a stack.
 pub(super) const LEVELS: Kind = Kind::Integer(1, 12);
+/// Range of the number of columns of a stack.
 pub(super) const COLUMNS: Kind = Kind::Integer(1, 40);
 
-/// A whole turn (rad).
+/// A full turn (rad).
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 /// Fields of the stack other than devices and overrides.
 const OWN: [Field; 9] = fields! {
-    /// Plane of the model: across the barrels, along them, or one after the other, each with a horizontal component
-    /// of the record; or "spatial", the stack in space under all components at once.
+    /// Model of the stack: in the plane across the barrels, in the plane along them, in both planes one after the
+    /// other, each under a horizontal component of the record, or in space ("spatial") under all components at once.
     view = Kind::Choice(names::<Planes>), Default::Value("\"transverse\"");
-    /// Levels of barrels.
+    /// Number of levels of barrels.
     levels = LEVELS, Default::Required;
-    /// Barrels per level in this view, a multiple of those that one rack carries; across the barrels where it is
-    /// looked at in both planes or in space.
+    /// Number of barrels per level in the plane of the model, a multiple of the number that one rack carries; counted
+    /// across the barrels if the model is in both planes or in space.
     columns = COLUMNS, Default::Required;
-    /// Barrels per level along the barrels, where the stack is looked at in both planes or in space.
+    /// Number of barrels per level along the barrels, if the model is in both planes or in space.
     columns_along = COLUMNS,
-        Default::Derived("in both planes and in space, those that one rack carries; must not be given otherwise");
-    /// Angle by which the stack is turned, counterclockwise in the view from above, from where `motion.component` shakes
-    /// it across its barrels and the other horizontal component along them.
+        Default::Derived("in both planes and in space, the number that one rack carries; must not be given otherwise");
+    /// Angle by which the stack is turned, counterclockwise as seen from above; at zero, `motion.component` shakes it
+    /// across its barrels and the other horizontal component along them.
     azimuth = Kind::Quantity(&[Dimension::ANGLE], Range::between(-TURN, TURN)),
         Default::Derived("in space, 0 deg; must not be given otherwise");
     /// The barrel.
     barrel = Kind::ChoiceOrTable(catalog::barrel_names, "base", &BARREL), Default::Derived("bordeaux-225");
     /// The rack.
     rack = Kind::ChoiceOrTable(catalog::rack_names, "base", &RACK), Default::Derived("two-barrel");
-    /// True if left and right change places.
+    /// True to mirror the stack left to right.
     mirror = Kind::Flag, Default::Value("false");
     /// Free distance between racks side by side.
     gap = Kind::Quantity(&[Dimension::LENGTH], Range::between(0.0, 10.0)), Default::Value("\"0.05 m\"");
@@ -198,7 +204,7 @@ const OVERRIDES: Field = Field::new(
     "Bodies that differ from the others.",
 );
 
-/// Concatenates lists of fields.
+/// Concatenates three lists of fields.
 const fn joined<const ALL: usize>(lists: [&[Field]; 3]) -> [Field; ALL] {
     let mut all = [OVERRIDES; ALL];
     let (mut list, mut next) = (0, 0);
@@ -213,7 +219,7 @@ const fn joined<const ALL: usize>(lists: [&[Field]; 3]) -> [Field; ALL] {
     all
 }
 
-/// A stack.
+/// Definition of the table of a stack.
 pub static STACK: Section = Section {
     name: "stack",
     help: "A stack of barrels on racks.",
@@ -238,7 +244,7 @@ pub(super) fn read(
     let along = reader.optional_integer("columns_along")?;
     let azimuth = reader.optional_quantity("azimuth")?;
     if planes != Planes::Spatial && azimuth.is_some() {
-        let message = "`stack.azimuth` is for `stack.view = \"spatial\"`; in a plane `motion.component` says what \
+        let message = "`stack.azimuth` is for `stack.view = \"spatial\"`; in a plane, `motion.component` states what \
                        shakes the stack, and \"az:30\" is the component in a direction"
             .to_owned();
         return Err(reader.inconsistent("azimuth", message));
@@ -251,8 +257,8 @@ pub(super) fn read(
         }
         (Planes::Transverse | Planes::Longitudinal, None) => (None, None),
         (Planes::Transverse | Planes::Longitudinal, Some(_)) => {
-            let message = "`stack.columns_along` is for `stack.view = \"both\"` and \"spatial\"; in one plane \
-                           `stack.columns` says how many barrels stand side by side"
+            let message = "`stack.columns_along` is for `stack.view = \"both\"` and \"spatial\"; in one plane, \
+                           `stack.columns` states how many barrels stand side by side"
                 .to_owned();
             return Err(reader.inconsistent("columns_along", message));
         }
@@ -295,7 +301,7 @@ fn check_geometry(
         let below = (columns / per_rack) * per_rack;
         let nearest = if below == 0 { per_rack } else { below };
         let message = format!(
-            "`stack.{field}` is {columns}, but one `{}` rack carries {per_rack} barrels in this view; take {nearest} \
+            "`stack.{field}` is {columns}, but one `{}` rack carries {per_rack} barrels in this plane; take {nearest} \
              columns or set `stack.rack.{}`",
             rack.base,
             match stack.view {

@@ -1,4 +1,4 @@
-//! Scenario templates: scenarios with values still to be set, such as the base of a study.
+//! Scenario templates: scenarios in which some values are still to be set, such as the base of a study.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use super::{MotionSpec, Scenario, merge, root};
 
 /// A scenario that is read repeatedly with different values.
 ///
-/// Values carry their place, so that an invalid one is reported there.
+/// Values carry the place where they were written, so that an error can name it.
 #[derive(Debug)]
 pub struct Template {
     sources: Sources,
@@ -19,11 +19,11 @@ pub struct Template {
     title: String,
 }
 
-/// A file that contains a scenario among other tables: sources, table, and access to files.
+/// A parsed file that contains a scenario among other tables, such as a study.
 pub struct Opened {
     /// The file and those that it extends.
     pub sources: Sources,
-    /// Its whole content.
+    /// The whole content of the file.
     pub table: Table,
     access: Access,
 }
@@ -32,17 +32,17 @@ impl Opened {
     /// Reads and parses a file.
     ///
     /// # Errors
-    /// If it cannot be read or is not TOML.
+    /// If the file cannot be read or is not TOML.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let name = path.display().to_string();
         let bytes = load::read_file(path, Place::Whole { file: name.clone() })?;
         Self::new(&name, &bytes, Access::Files)
     }
 
-    /// Parses a text that may name built-in scenarios only.
+    /// Parses a text in which `extends` may name built-in scenarios only.
     ///
     /// # Errors
-    /// If it is not TOML.
+    /// If the text is not TOML.
     pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
         Self::new(name, text.as_bytes(), Access::BuiltinOnly)
     }
@@ -65,8 +65,9 @@ impl Opened {
         &self.sources.files[0].folder
     }
 
-    /// Returns the scenario in the table of a key, overlaid on what it extends; `motion` is `true` if it needs a
-    /// motion of its own.
+    /// Returns the scenario in the table with the given key, overlaid on the scenario that it extends.
+    ///
+    /// `motion` is `true` if the scenario states its motion; otherwise, it gets none.
     ///
     /// # Errors
     /// If an extended scenario cannot be read.
@@ -119,7 +120,7 @@ impl Template {
         merge::field_at(Some(&self.table), &root::ROOT, &keys)
     }
 
-    /// Returns the most similar valid path.
+    /// Returns the valid path that is most similar to a misspelled one.
     pub fn nearest(&self, path: &str) -> Option<String> {
         let mut keys: Vec<String> = path.split('.').map(|key| key.trim().to_owned()).collect();
         for at in 0..keys.len() {
@@ -140,7 +141,7 @@ impl Template {
     /// Returns the scenario with values set at paths.
     ///
     /// # Errors
-    /// The first problem found, where the value was written.
+    /// Returns the first problem found, with the place where the value was written.
     pub fn with<'a>(
         &self,
         changes: impl IntoIterator<Item = (&'a str, &'a Node)>,
@@ -163,7 +164,7 @@ impl Template {
         root::read(reader, &self.title)
     }
 
-    /// Returns the value at a path of a scenario, every default written out; `None` if it has none.
+    /// Returns the value at a path of a scenario, defaults included; `None` if there is none.
     pub fn value_in(scenario: &Scenario, path: &str) -> Option<Value> {
         let mut table = root::write(scenario);
         let mut keys = path.split('.').map(str::trim).peekable();
@@ -194,7 +195,7 @@ impl Template {
         None
     }
 
-    /// Returns all texts that the scenario was read from, in order.
+    /// Returns the texts of all files from which the scenario was read, in the order of reading.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.files.iter().map(|file| file.text.as_str())
     }
@@ -203,7 +204,7 @@ impl Template {
 /// Reads the motion in a table whose entries come from the given sources.
 ///
 /// # Errors
-/// The first problem found, at its place.
+/// Returns the first problem found, with its place.
 pub fn motion(
     sources: &Sources,
     path: &str,

@@ -12,8 +12,8 @@ const WORDS: [&str; 13] = [
     "twelve",
 ];
 
-/// Returns bodies and motion, such as "Six barrels on three levels, elCentro.AT2"; for a free scene the old title
-/// with ", changed".
+/// Returns a title from bodies and motion, such as "Six barrels on three levels, elCentro.AT2"; for a free scene, the
+/// old title with ", changed" appended.
 pub(super) fn of(scenario: &Scenario) -> String {
     let Scene::Stack { stack, .. } = &scenario.scene else {
         return format!("{}, changed", scenario.title);
@@ -22,7 +22,8 @@ pub(super) fn of(scenario: &Scenario) -> String {
 }
 
 impl Scenario {
-    /// Adds the event of the record to a generated title; this reads the file.
+    /// Returns the scenario with the event of its record in the title, if the title is generated; reads the record
+    /// file.
     ///
     /// # Errors
     /// If the record cannot be read.
@@ -61,7 +62,7 @@ fn stands(stack: &StackSpec) -> String {
     format!("{barrels} on {levels}{straps}{others}{view}")
 }
 
-/// Returns the motion and its scale: a record by its event, if known.
+/// Returns a description of the motion and its scale; a record is named by its event, if known.
 pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     let motion = &scenario.motion.source;
     let scaled = match scenario.motion.scale {
@@ -93,12 +94,12 @@ pub fn shakes(scenario: &Scenario, event: Option<&str>) -> String {
     name + &scaled
 }
 
-/// Returns a number in words, if these are short.
+/// Returns a number in words up to twelve, and in digits above.
 pub fn number(count: u32) -> String {
     WORDS.get(count as usize).map_or_else(|| count.to_string(), ToString::to_string)
 }
 
-/// Returns a number of things in words.
+/// Returns a count in words with its noun, in the plural if needed.
 pub fn counted(count: u32, one: &str) -> String {
     format!("{} {one}{}", number(count), if count == 1 { "" } else { "s" })
 }

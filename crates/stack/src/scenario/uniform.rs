@@ -1,4 +1,4 @@
-//! Mass properties of outlines.
+//! Mass properties and sizes of outlines.
 
 use std::f64::consts::PI;
 
@@ -7,14 +7,14 @@ use super::shape::{PartShape, Shape};
 /// Mass properties of a uniform plate, or of a uniform arc for a cradle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Uniform {
-    /// Center of mass, from the reference point (m).
+    /// Center of mass, relative to the reference point (m).
     pub centroid: [f64; 2],
-    /// Moment of inertia about the center of mass over the mass (m²).
+    /// Moment of inertia about the center of mass divided by the mass (m²).
     pub square_radius: f64,
 }
 
 impl Shape {
-    /// Returns the outlines that form it: itself, unless it is a compound.
+    /// Returns the outlines that form the shape: the parts of a compound, or the shape itself.
     pub fn parts(&self) -> Vec<PartShape> {
         match self {
             Self::Compound { parts } => parts.clone(),
@@ -28,8 +28,9 @@ impl Shape {
         }
     }
 
-    /// Returns the mass properties of a uniform plate of this outline; of a uniform arc for a cradle. Overlaps of the
-    /// parts of a compound count twice; its cradles, which have no area, do not count.
+    /// Returns the mass properties of a uniform plate with this outline, or of a uniform arc for a cradle.
+    ///
+    /// In a compound, overlaps of parts count twice, and cradles do not count, because they have no area.
     pub fn uniform(&self) -> Uniform {
         match self {
             Self::Rectangle { width, height, corner_radius } => Uniform {
@@ -68,7 +69,7 @@ impl Shape {
         }
     }
 
-    /// Returns the length of the boundary (m); that of the enclosing box for a barrel profile.
+    /// Returns the length of the boundary (m); for a barrel profile, that of the enclosing box.
     pub fn perimeter(&self) -> f64 {
         match self {
             Self::Rectangle { width, height, corner_radius } => {
@@ -86,7 +87,7 @@ impl Shape {
     }
 }
 
-/// Combines parts of one density, each shifted from its own centroid.
+/// Returns the mass properties of the parts of a compound, all with the same density.
 fn compound(parts: &[PartShape]) -> Uniform {
     let placed = || {
         parts.iter().map(|part| {
@@ -107,10 +108,10 @@ fn compound(parts: &[PartShape]) -> Uniform {
     Uniform { centroid, square_radius: placed().map(about).sum() }
 }
 
-/// Returns the polar moment over the area of a rectangle with rounded corners (m²).
+/// Returns the polar moment of a rectangle with rounded corners divided by its area (m²).
 fn rounded_rectangle(w: f64, h: f64, r: f64) -> f64 {
     let (square, quarter) = (r * r, 0.25 * PI * r * r);
-    // Replaces a square corner by a quarter of a disk, each shifted from its own centroid.
+    // Each square corner is replaced by a quarter of a disk; the moments of both are shifted from their own centroids.
     let (u, v) = (0.5 * (w - r), 0.5 * (h - r));
     let corner = square * (square / 6.0 + u * u + v * v);
     let offset = 4.0 * r / (3.0 * PI);
@@ -129,7 +130,7 @@ pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Returns the area (m²), positive when counterclockwise.
+/// Returns the area of a polygon (m²), positive if its corners are in counterclockwise order.
 pub(super) fn area(vertices: &[[f64; 2]]) -> f64 {
     0.5 * sides(vertices).map(|(a, b)| cross(a, b)).sum::<f64>()
 }
@@ -149,9 +150,9 @@ fn polygon(vertices: &[[f64; 2]]) -> Uniform {
     Uniform { centroid, square_radius: second / area - shift }
 }
 
-/// Returns area (m²) and polar moment of area (m⁴) between `±r(x)`, with `r` the parabola of the barrel.
+/// Returns the area (m²) and the polar moment of area (m⁴) between `±r(x)`, where `r` is the parabola of the barrel.
 fn barrel_profile(length: f64, bilge: f64, head: f64) -> (f64, f64) {
-    // r = b - s u², x = L u / 2, integrated over u from 0 to 1 and doubled.
+    // With r = b - s u² and x = L u / 2, integrated over u from 0 to 1 and doubled.
     let (b, s, half) = (0.5 * bilge, 0.5 * (bilge - head), 0.5 * length);
     let mean = b - s / 3.0;
     let mean_with_square = b / 3.0 - s / 5.0;

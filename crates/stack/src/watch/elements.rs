@@ -2,14 +2,14 @@
 
 use barrelstack_dynamics::{Scratch, Space, State};
 
-/// Fate of one force element.
+/// Largest forces of one force element, and its failure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElementFate {
     /// Force (N) of the largest magnitude until the first loss of seat, and its time (s).
     pub peak: (f64, f64),
-    /// Largest force, and its time, over the whole run.
+    /// Force (N) of the largest magnitude over the whole run, and its time (s).
     pub peak_whole_run: (f64, f64),
-    /// Time (s) at which it broke.
+    /// Time (s) at which the element broke; `None` if it did not break.
     pub broken_at: Option<f64>,
 }
 

@@ -7,14 +7,14 @@ use barrelstack_dynamics::{BodyId, Linear, Planar, Scratch, State, Vec2, lanewis
 use crate::assemble::{Assembly, Part, PartKind};
 use crate::scenario::OutcomeSpec;
 
-/// Thresholds beyond which a body has left its seat, or has fallen.
+/// Thresholds beyond which a body counts as off its seat, or as fallen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// Displacement of a barrel from its place in the rack, in radii, beyond which it has left its seat.
+    /// Displacement of a barrel from its position in the rack, in barrel radii, beyond which it has left its seat.
     pub seat_loss_ratio: f64,
-    /// Drop (m) below its place at rest beyond which a body has fallen.
+    /// Drop (m) below its position at rest beyond which a body has fallen.
     pub fall_drop: f64,
-    /// Displacement of a rack on the barrels below, over its reach, beyond which it has left its seat.
+    /// Displacement of a rack on the barrels below, as a fraction of its reach, beyond which it has left its seat.
     pub rack_slide_ratio: f64,
     /// Tilt (rad) of a rack relative to the rack below beyond which it has left its seat by rocking.
     pub rocking_angle: f64,
@@ -38,48 +38,48 @@ impl Thresholds {
 /// Kind of a loss of seat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
-    /// A barrel moved too far from its place in the rack.
+    /// A barrel moved too far from its position in the rack.
     Displaced,
     /// A rack moved too far along its support.
     Slid,
     /// A rack tilted too far.
     Tilted,
-    /// A body dropped without any of these.
+    /// A body dropped without being displaced, sliding or tilting too far.
     Dropped,
 }
 
-/// Fate of one body.
+/// Outcome of a run for one body: loss of seat, fall, and largest motions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fate {
-    /// Time (s) and kind of its loss of seat.
+    /// Time (s) and kind of the loss of seat; `None` if the body kept its seat.
     pub left_seat: Option<(f64, Loss)>,
-    /// Time (s) at which it had fallen by the threshold.
+    /// Time (s) at which its drop exceeded the threshold of a fall; `None` if it did not fall.
     pub fell_at: Option<f64>,
     /// Time (s) at which it landed: the first time after the fall at which it moved down at less than half of its
     /// largest speed.
     pub landed_at: Option<f64>,
     /// Largest downward speed (m/s) between fall and landing.
     pub landing_speed: Option<f64>,
-    /// Largest force (N) on it after it had fallen.
+    /// Largest force (N) on the body after it had fallen.
     pub fall_force: Option<f64>,
-    /// Largest drop (m) below its place at rest.
+    /// Largest drop (m) below its position at rest.
     pub drop: f64,
     /// Largest displacement (m) along `x` relative to the ground, before the collapse.
     pub peak_displacement: f64,
-    /// Residual displacement (m) along `x` relative to the ground.
+    /// Displacement (m) along `x` relative to the ground, at the end.
     pub residual_displacement: f64,
     /// Displacement (m) along `x` relative to the ground at the collapse; at the end if there was none.
     pub displacement_at_collapse: f64,
-    /// Largest displacement (m) relative to the support, before the collapse: the walk of a rack, the displacement of
-    /// a barrel in its cradle.
+    /// Largest displacement (m) relative to the support, before the collapse: of a rack on the barrels below, or of a
+    /// barrel in its cradle.
     pub peak_slip: f64,
     /// Displacement (m) relative to the support, at the end.
     pub residual_slip: f64,
     /// Largest tilt (rad) of a rack, before the collapse.
     pub peak_tilt: f64,
-    /// Largest rise (m) of a body above its place at rest, before the collapse.
+    /// Largest rise (m) of a body above its position at rest, before the collapse.
     pub peak_uplift: f64,
-    /// Peaks over the whole run.
+    /// Largest motions over the whole run.
     pub whole_run: PeakMotion,
 }
 
@@ -104,15 +104,15 @@ impl Fate {
     }
 }
 
-/// Follows all bodies of a run, or of one run per lane; needs every accepted step.
+/// Observer of the fates of all bodies, of one run or of one run per lane; it must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Fates<R: Real = f64> {
-    /// Drop (m) at which a body has fallen.
+    /// Drop (m) beyond which a body has fallen.
     fall_drop: R,
     bodies: Vec<Followed<R>>,
     /// Time (s) at which the first body left its seat; infinite before.
     collapse: R,
-    /// The first body to leave its seat.
+    /// The first body that left its seat.
     first: PerLane<Option<BodyId>>,
     /// Time (s) at which the first barrel had fallen; infinite before.
     first_fall: R,
@@ -126,7 +126,7 @@ struct Place {
     supports: Vec<BodyId>,
     /// Rack below, relative to which the tilt of a rack is measured.
     below: Option<BodyId>,
-    /// For a rack that stands on that rack: height (m) of its center over its foot.
+    /// Height (m) of the center of mass of a rack above its foot, if it stands on a rack; `None` otherwise.
     foot: Option<f64>,
 }
 
@@ -138,7 +138,7 @@ lanewise!(struct Followed<R> {
 });
 lanewise!(struct Fates<R> { fall_drop, bodies, collapse, first, first_fall });
 
-/// A body, its limits, and its fate so far.
+/// A body with its limits and its fate so far.
 #[derive(Clone, Debug)]
 struct Followed<R: Real> {
     place: Place,
@@ -150,13 +150,13 @@ struct Followed<R: Real> {
     most_tilt: R,
     /// Time (s) of its loss of seat; infinite before.
     left_seat: R,
-    /// Kind of that loss.
+    /// Kind of the loss of seat.
     loss: PerLane<Loss>,
     /// Time (s) of its fall; infinite before.
     fell_at: R,
     /// Time (s) of its landing; infinite before.
     landed_at: R,
-    /// Largest downward speed (m/s) between the two.
+    /// Largest downward speed (m/s) between fall and landing.
     landing_speed: R,
     /// Largest force (N) after its fall.
     fall_force: R,
@@ -269,7 +269,7 @@ impl Fates {
     }
 }
 
-/// Returns a time (s) if it is finite.
+/// Returns a time (s) if it is finite; `None` otherwise.
 fn known(time: f64) -> Option<f64> {
     time.is_finite().then_some(time)
 }
@@ -282,14 +282,14 @@ impl<R: Real> Fates<R> {
 
     /// Returns the lanes in which no body has left its seat.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn stands(&self) -> R::Mask {
         !self.collapse.lt(R::splat(f64::INFINITY))
     }
 
     /// Records an accepted state.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn observe(&mut self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>) {
         let ground = state.poses[Assembly::GROUND].position;
         let standing = self.stands();
@@ -345,7 +345,7 @@ impl<R: Real> Fates<R> {
 
     /// Records whether a body has left its seat, and the kind of the loss.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn seat(&mut self, state: &State<Planar<R>>, i: BodyId, slip: Vec2<R>) {
         let never = R::splat(f64::INFINITY);
         let body = &self.bodies[i];
@@ -384,11 +384,12 @@ impl<R: Real> Fates<R> {
         self.collapse = R::select(collapses, state.time, self.collapse);
     }
 
-    /// Returns the displacement (m) of a body relative to its support: a barrel in the frame of its rack, the foot of
-    /// a rack in the frame of the rack whose posts carry it, a rack relative to the mean of the barrels below, other
-    /// bodies relative to the ground.
+    /// Returns the displacement (m) of a body relative to its support.
+    ///
+    /// It is measured for a barrel in the frame of its rack, for the foot of a rack on posts in the frame of the rack
+    /// below, for a rack on barrels relative to the mean of these barrels, and for other bodies relative to the ground.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn slip(&self, state: &State<Planar<R>>, scratch: &Scratch<Planar<R>>, i: BodyId) -> Vec2<R> {
         let body = &self.bodies[i];
         let here = state.poses[i].position;
@@ -400,7 +401,7 @@ impl<R: Real> Fates<R> {
             return here - state.poses[Assembly::GROUND].position - body.rest;
         }
         if let (Some(rack), Some(foot)) = (body.place.below, body.place.foot) {
-            // Racks that lean together, or a rack that rocks on the posts of another, do not slide.
+            // Measured in this frame, racks that lean together or rock on the posts of another do not slide.
             let foot = Vec2::new(R::zero(), R::splat(-foot));
             let from = here + scratch.rotations[i].apply(foot) - state.poses[rack].position;
             let rest = body.rest + foot - self.bodies[rack].rest;
@@ -417,16 +418,16 @@ impl<R: Real> Fates<R> {
     }
 }
 
-/// Raises a peak to a larger value.
+/// Raises a peak to a value if the value is larger.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(peak: &mut R, value: R) {
     *peak = R::select(peak.lt(value), value, *peak);
 }
 
-/// Returns a value in masked lanes, and zero in others.
+/// Returns a value in the lanes of a mask, and zero in others.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn masked<R: Real>(standing: R::Mask, value: R) -> R {
     R::select(standing, value, R::zero())
 }

@@ -1,4 +1,4 @@
-//! Forces between bodies of a stack: at rest, at their largest until the first loss of seat, and over the whole run.
+//! Forces between bodies of a stack: at rest, and their peaks until the first loss of seat and over the whole run.
 
 use barrelstack_dynamics::lanes::Lanewise;
 use barrelstack_dynamics::real::{Mask, Real};
@@ -10,11 +10,11 @@ use crate::demand::Span;
 /// Two bodies of a stack in contact, and the force between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint<R: Real = f64> {
-    /// The upper body; of two that do not support each other by design, the one named first.
+    /// The upper body; without support by design, the one that is named first.
     pub upper: BodyId,
-    /// The lower body, or the other one.
+    /// The lower body; without support by design, the one that is named second.
     pub lower: BodyId,
-    /// `true` if one supports the other by design; `false` if they met during the shaking.
+    /// `true` if one body supports the other by design; `false` if they touched during the shaking.
     pub by_design: bool,
     /// Force (N) on the upper body in the current step.
     pub force: Vec2<R>,
@@ -22,28 +22,28 @@ pub struct Joint<R: Real = f64> {
     pub at_rest: R,
     /// Largest forces until the first loss of seat.
     pub until_loss: PeakForces<R>,
-    /// Largest forces over the whole run, falls included.
+    /// Largest forces over the whole run, including falls.
     pub whole_run: PeakForces<R>,
 }
 
 /// Largest forces between two bodies in any step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PeakForces<R: Real = f64> {
-    /// Vertical force (N) on the upper body of the largest magnitude, with its sign, and its time (s).
+    /// Vertical force (N) of the largest magnitude on the upper body, with its sign, and its time (s).
     pub vertical: (R, R),
-    /// Horizontal force (N), likewise.
+    /// Horizontal force (N) of the largest magnitude on the upper body, with its sign, and its time (s).
     pub horizontal: (R, R),
 }
 
-/// Follows the forces between bodies of a run, or of one run per lane; needs every accepted step.
+/// Observer of the forces between bodies, of one run or of one run per lane; it must observe every accepted step.
 #[derive(Clone, Debug)]
 pub struct Joints<R: Real = f64> {
-    /// Every barrel on its rack, every rack on its supports; then pairs of bodies in the order of their first
-    /// contact.
+    /// Every barrel on its rack and every rack on its supports, followed by other pairs of bodies in the order of their
+    /// first contact.
     pub joints: Vec<Joint<R>>,
-    /// For every body, the others that it touches, each with the index of their joint.
+    /// For every body, the lower bodies of its joints, each with the index of the joint.
     of_upper: Vec<Vec<(BodyId, usize)>>,
-    /// `true` to also follow bodies that meet without support by design.
+    /// `true` to also observe bodies that touch without support by design.
     follows_all: bool,
 }
 
@@ -84,12 +84,12 @@ impl<R: Real> Lanewise for Joints<R> {
 }
 
 impl Joint {
-    /// Returns the name, such as "R1 on ground", or "R1.1 against R1.2" without support by design.
+    /// Returns the name of the joint, such as "R1 on ground", or "R1.1 against R1.2" without support by design.
     pub fn name(&self, assembly: &Assembly) -> String {
         self.named(|body| &assembly.parts[body].name)
     }
 
-    /// Returns the name from those of the bodies.
+    /// Returns the name of the joint, from the names of the bodies.
     pub fn named<'a>(&self, name: impl Fn(BodyId) -> &'a str) -> String {
         let between = if self.by_design { "on" } else { "against" };
         format!("{} {between} {}", name(self.upper), name(self.lower))
@@ -103,14 +103,14 @@ impl Joint {
         }
     }
 
-    /// Returns `true` if its bodies have ever touched.
+    /// Returns `true` if the two bodies have touched.
     pub fn has_met(&self) -> bool {
         let PeakForces { vertical, horizontal } = self.whole_run;
         vertical.0 != 0.0 || horizontal.0 != 0.0
     }
 }
 
-/// Returns the bodies that support one of a kind by design: the ground, where nothing carries it.
+/// Returns the bodies that support a body by design, from its kind, carrier and supports.
 pub fn leans_on(kind: PartKind, carrier: Option<BodyId>, supports: &[BodyId]) -> Vec<BodyId> {
     match kind {
         PartKind::Rack if supports.is_empty() => vec![carrier.unwrap_or(Assembly::GROUND)],
@@ -129,8 +129,9 @@ impl Joints {
         Self::between(assembly.parts.iter().map(below), assembly.levels > 0)
     }
 
-    /// Creates the joints of every body with each of its supports, without forces; `follows_all` to also follow other
-    /// bodies that meet.
+    /// Creates the joints of every body with each of its supports, without forces.
+    ///
+    /// `follows_all` is `true` to also observe other bodies that touch.
     pub fn between(below: impl Iterator<Item = Vec<BodyId>>, follows_all: bool) -> Self {
         let mut joints = Vec::new();
         let mut of_upper = Vec::new();
@@ -141,7 +142,7 @@ impl Joints {
         Self { joints, of_upper, follows_all }
     }
 
-    /// Records the state at rest.
+    /// Records the forces in the state at rest.
     pub(crate) fn start(&mut self, time: f64, scratch: &Scratch<Planar>) {
         self.observe(time, true, scratch);
         for joint in &mut self.joints {
@@ -149,7 +150,8 @@ impl Joints {
         }
     }
 
-    /// Returns the joints by design, and those of other bodies that have met, in the order of the bodies.
+    /// Returns the joints by design, followed by those of other bodies that have touched, each in the order of the
+    /// bodies.
     pub fn listed(&self) -> Vec<&Joint> {
         let mut listed: Vec<&Joint> =
             self.joints.iter().filter(|joint| joint.by_design || joint.has_met()).collect();
@@ -159,8 +161,8 @@ impl Joints {
 }
 
 impl Joints {
-    /// Returns the largest vertical force (N) in a span of the run between a barrel and any rack; `None` if the two
-    /// never met.
+    /// Returns the largest vertical force (N) between a barrel and any rack in a span of the run; `None` without such a
+    /// joint.
     pub fn stave_load(
         &self,
         barrel: BodyId,
@@ -190,10 +192,10 @@ impl<R: Real> Joint<R> {
         }
     }
 
-    /// Raises the peaks to the current force, at a time (s); those until the first loss of seat in `standing` lanes
-    /// only.
+    /// Raises the peaks to the current force, at a time (s); the peaks until the first loss of seat are raised in
+    /// `standing` lanes only.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn raise(&mut self, time: R, standing: R::Mask) {
         let Vec2 { x, z } = self.force;
         let Self { until_loss, whole_run, .. } = self;
@@ -202,16 +204,16 @@ impl<R: Real> Joint<R> {
     }
 }
 
-/// Raises two peaks to a force (N) at a time (s), the first in standing lanes only.
+/// Raises two peaks to a force (N) at a time (s) if it is larger; the first peak in standing lanes only.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+#[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
 fn raise<R: Real>(
     until_loss: &mut (R, R),
     whole_run: &mut (R, R),
     (force, time): (R, R),
     standing: R::Mask,
 ) {
-    // The two peaks of standing lanes are equal.
+    // In standing lanes, the two peaks are equal.
     let more = whole_run.0.abs().lt(force.abs());
     if more.any() {
         for (peak, raised) in [(whole_run, more), (until_loss, more & standing)] {
@@ -221,9 +223,9 @@ fn raise<R: Real>(
 }
 
 impl<R: Real> Joints<R> {
-    /// Returns the index of the joint of two bodies, and `true` if the first of them is the upper one.
+    /// Returns the index of the joint of two bodies, and `true` if the first body is the upper one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn number(&self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let joint = |upper: BodyId, lower: BodyId| {
             self.of_upper[upper].iter().find(|(below, _)| *below == lower).map(|(_, at)| *at)
@@ -232,10 +234,11 @@ impl<R: Real> Joints<R> {
         upper.or_else(|| joint(other, one).map(|at| (at, false)))
     }
 
-    /// Returns the index of the joint of two bodies that meet, and `true` if the first of them is the upper one;
-    /// `None` if such joints are not followed.
+    /// Returns the index of the joint of two bodies that touch, and `true` if the first body is the upper one.
+    ///
+    /// A missing joint is added; `None` if joints without support by design are not observed.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn meet(&mut self, one: BodyId, other: BodyId) -> Option<(usize, bool)> {
         let known = self.number(one, other);
         if known.is_some() || !self.follows_all {
@@ -259,7 +262,7 @@ impl<R: Real> Joints<R> {
     /// Records the forces of an accepted step at a time (s); `standing` are the lanes in which no seat had been lost
     /// before it.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn observe(&mut self, time: R, standing: R::Mask, scratch: &Scratch<Planar<R>>) {
         for joint in &mut self.joints {
             joint.force = Vec2::default();

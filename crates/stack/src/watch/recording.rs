@@ -1,4 +1,4 @@
-//! Frames of the motion, and histories of displacements, forces and energies, thinned to given rates.
+//! Recording of frames of the motion, and of histories of displacements, forces and energies, at given rates.
 
 use barrelstack_dynamics::forces::{contact_force, tributary_length};
 use barrelstack_dynamics::{EnergyLedger, Model, Planar, Pose, Scratch, State, Vec2};
@@ -9,12 +9,12 @@ use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::watch::joints::{Joint, Joints};
 
-/// A quantity over the sample times of a recording.
+/// History of a quantity at the sample times of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Name, such as "`B1.1_displacement_x`".
     pub name: String,
-    /// Its unit.
+    /// Unit of the values.
     pub unit: &'static str,
     /// One value for every sample.
     pub values: Vec<f64>,
@@ -27,15 +27,15 @@ pub struct Frames {
     pub times: Vec<f64>,
     /// For every frame and body: `x` (m), `z` (m), angle (rad), in the inertial frame.
     pub poses: Vec<Vec<[f64; 3]>>,
-    /// For every frame, contact forces as `x` (m), `z` (m), and the force (N) on the contactor.
+    /// For every frame, contact forces: `x` (m) and `z` (m) of the point, and both components of the force (N) on the
+    /// contactor.
     pub forces: Vec<Vec<[f64; 4]>>,
-    /// For every frame and body, the largest normal stress (N/m) of a contact with another body; zero where it has
-    /// none.
+    /// For every frame and body, the largest normal stress (N/m) of its contacts; zero without contacts.
     pub stresses: Vec<Vec<f64>>,
 }
 
 impl Frames {
-    /// Returns the poses of all bodies, frame by frame.
+    /// Returns the poses of all bodies for each frame.
     pub fn all_poses(&self) -> impl Iterator<Item = Vec<Pose<Planar>>> {
         let pose = |[x, z, orientation]: &[f64; 3]| Pose {
             position: Vec2::new(*x, *z),
@@ -45,13 +45,12 @@ impl Frames {
     }
 }
 
-/// Two bodies of a stack with support by design, or that have met before the first loss of seat, and the force
-/// between them.
+/// History of the force between two bodies of a stack that support or have touched each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointForces {
-    /// The bodies, the force at rest and the largest forces in any step.
+    /// The bodies, with the force at rest and the largest forces in any step.
     pub joint: Joint,
-    /// Name, such as "R1 on ground".
+    /// Name of the joint, such as "R1 on ground".
     pub name: String,
     /// Vertical force (N) on the upper body at the sample times.
     pub vertical: Vec<f64>,
@@ -59,7 +58,7 @@ pub struct JointForces {
     pub horizontal: Vec<f64>,
 }
 
-/// Number of histories of the ground: acceleration, velocity and displacement, sideways and up.
+/// Number of histories of the ground: acceleration, velocity and displacement, horizontal and vertical.
 const GROUND: usize = 6;
 
 /// Number of histories of a body: two displacements and a rotation.
@@ -68,29 +67,29 @@ const BODY: usize = 3;
 /// Recorded data of a run.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// The motion.
+    /// Frames of the motion.
     pub frames: Frames,
     /// Times (s) of the samples of all channels.
     pub times: Vec<f64>,
-    /// Ground, displacements and energies.
+    /// Histories of the ground motion, the displacements and the energies.
     pub channels: Vec<Channel>,
-    /// Forces between bodies: first those by design.
+    /// Forces between bodies, beginning with those of support by design.
     pub joints: Vec<JointForces>,
     frame_rate: f64,
     history_rate: f64,
     rest: Vec<Vec2>,
-    /// The forces behind `joints`.
+    /// Observer of the forces that `joints` records.
     forces: Joints,
     started: bool,
 }
 
 impl Recording {
-    /// Returns the forces between all bodies that have touched, at rest and at their largest.
+    /// Returns the forces between all bodies that have touched, at rest and at their maximum.
     pub fn forces(&self) -> &Joints {
         &self.forces
     }
 
-    /// Starts with the state at rest; `rates` are those of frames and histories (Hz).
+    /// Creates a recording from the state at rest; the rates (Hz) are those of frames and of histories.
     pub(super) fn new(
         assembly: &Assembly,
         state: &State<Planar>,
@@ -135,7 +134,7 @@ impl Recording {
         }
     }
 
-    /// Returns the number of values of a sample.
+    /// Returns the number of values of a sample, including its time.
     pub(crate) fn histories(assembly: &Assembly) -> usize {
         1 + GROUND
             + BODY * assembly.parts.len()
@@ -143,13 +142,13 @@ impl Recording {
             + 2 * Joints::new(assembly).joints.len()
     }
 
-    /// Returns the channel of a name, which may have blanks for `_`: `B4.1 displacement x`.
+    /// Returns the channel with a name, in which blanks may replace underscores: `B4.1 displacement x`.
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         let name = column_name(name);
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// Returns the displacement (m) of a body along `x`, relative to the ground and to its place at rest.
+    /// Returns the displacement (m) of a body along `x`, relative to the ground and to its position at rest.
     pub fn displacement(&self, body: &str) -> Option<&Channel> {
         self.channel(&format!("{body} displacement x"))
     }
@@ -168,11 +167,11 @@ impl Recording {
         } else {
             self.forces.start(state.time, scratch);
         }
-        // Bodies that have met in this step, with zeros for the samples before.
+        // Pairs of bodies that first touched in this step get zeros for earlier samples.
         let met = self.forces.joints.iter().skip(self.joints.len());
         self.joints.extend(met.map(|joint| JointForces::new(assembly, joint, self.times.len())));
         self.started = true;
-        // Tolerance of rounding in the time of a step.
+        // The tolerance covers rounding errors of the time.
         let due = |taken: usize, rate: f64| state.time * rate >= taken as f64 - 1e-6;
         if due(self.frames.times.len(), self.frame_rate) {
             self.take_frame(&assembly.model, state, scratch);
@@ -192,7 +191,7 @@ impl Recording {
         self.frames.poses.push(
             state.poses.iter().map(|p| [p.position.x, p.position.z, p.orientation]).collect(),
         );
-        // One arrow for every pair: the sum of its contacts at their center of pressure.
+        // Every pair has one arrow: the sum of its contact forces, at their center of pressure.
         let mut forces: Vec<[f64; 4]> = Vec::new();
         let mut weight = 0.0;
         let mut last = usize::MAX;
@@ -269,7 +268,7 @@ impl Recording {
         }
     }
 
-    /// Stores the largest forces at the end of the run, and sorts the joints by their bodies.
+    /// Stores the largest forces at the end of the run, and sorts the joints by support and bodies.
     pub(crate) fn finish(&mut self) {
         for (history, joint) in self.joints.iter_mut().zip(&self.forces.joints) {
             history.joint = joint.clone();
@@ -280,7 +279,7 @@ impl Recording {
 }
 
 impl JointForces {
-    /// Creates the forces of a joint that were zero in all samples so far.
+    /// Creates the history of a joint, with zero forces in all samples so far.
     fn new(assembly: &Assembly, joint: &Joint, samples: usize) -> Self {
         let none = vec![0.0; samples];
         let name = joint.name(assembly);

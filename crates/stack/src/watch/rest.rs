@@ -1,4 +1,4 @@
-//! Rest criterion: the ground is still, or calm after a collapse, and no motion is fast enough to change the outcome.
+//! Rest criterion: the ground is still, or calm after a collapse, and no body is fast enough to change the outcome.
 
 use barrelstack_dynamics::real::{Mask, Real};
 use barrelstack_dynamics::{
@@ -9,49 +9,50 @@ use crate::assemble::{Assembly, PartKind};
 use crate::ground::Ground;
 use crate::scenario::{Scenario, Until};
 
-/// Height (m) to which the kinetic energy of a body at rest could lift it, at full size.
+/// Largest height (m), at full scale, by which the kinetic energy of a body at rest could lift the body.
 ///
-/// A tenth of what lifts a barrel out of the shallowest cradle of the catalog: 0.31 m/s. Stacks sway on their round
-/// barrels for minutes with less, since seats do not resist rolling.
+/// It corresponds to 0.31 m/s, and is a tenth of the height that lifts a barrel out of the shallowest cradle of the
+/// catalog. With less energy, stacks sway on their round barrels for minutes, since seats do not resist rolling.
 pub const CLIMB: f64 = 0.005;
 
-/// Duration (s) for which every body must stay so, at full size: longer than half a period of the tallest stack, so
-/// that no turning point passes for rest.
+/// Duration (s), at full scale, for which every body must be at rest.
+///
+/// It is longer than half a period of the tallest stack, so that a turning point is not mistaken for rest.
 pub const HOLD: f64 = 3.0;
 
-/// Acceleration of calm ground over gravity.
+/// Largest acceleration of calm ground, as a fraction of gravity.
 ///
-/// It neither slides nor tips bodies, and the last third of many records is weaker. A standing stack is followed to the
-/// end nevertheless, since its displacements are results, unless only the verdict is wanted.
+/// It neither slides nor tips bodies, and the last third of many records is weaker. A standing stack is nevertheless
+/// simulated to the end of the motion, since its displacements are results, unless only the verdict is requested.
 const CALM: f64 = 0.02;
-/// Acceleration of calm ground over gravity, relative to the smallest coefficient of friction.
+/// Largest acceleration of calm ground as a fraction of gravity, divided by the smallest friction coefficient.
 const CALM_OF_FRICTION: f64 = 0.1;
 
-/// Height of the center over the radius up to which a barrel is on the floor.
+/// Ratio of the height of the center of a barrel to its radius up to which the barrel counts as on the floor.
 pub const ON_FLOOR: f64 = 1.05;
 
 /// Reason for the end of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The ground was still, or calm after a collapse or where only the verdict is wanted, and all bodies had come to
-    /// rest.
+    /// All bodies had come to rest, on ground that was still, or calm after a collapse or if only the verdict is
+    /// requested.
     Rest,
     /// The time that the scenario allows after a collapse was over.
     AfterCollapse,
     /// The duration that the scenario sets was reached.
     Duration,
-    /// The longest time after the motion was over, and something still moved.
+    /// The longest time after the motion was over, while bodies still moved.
     Patience,
-    /// The caller stopped it.
+    /// The caller stopped the run.
     Interrupted,
-    /// The numbers broke down.
+    /// The computation broke down numerically.
     Broken,
     /// The stack fell under its own weight, so it was not shaken.
     NotShaken,
 }
 
 impl Ending {
-    /// Returns the word used in files and reports.
+    /// Returns the name of the reason in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -64,7 +65,7 @@ impl Ending {
         }
     }
 
-    /// Returns the reason for an end by time.
+    /// Returns the reason for the end of a run that reached its end time.
     pub fn of_time(scenario: &Scenario) -> Self {
         match scenario.run.until {
             Until::Rest | Until::Verdict if scenario.run.duration.is_none() => Self::Patience,
@@ -73,32 +74,32 @@ impl Ending {
     }
 }
 
-/// Detects rest of all bodies, in a run or in one run per lane.
+/// Detects the rest of all bodies, in one run or in one run per lane.
 ///
-/// A body rests when its kinetic energy could not lift it by half a centimeter. So does a barrel that rolls away on
-/// the floor, from everything or behind faster bodies: it slows by some 0.2 m/s² and reaches nothing any more.
+/// A body rests when its kinetic energy could not lift it by half a centimeter. A barrel that rolls away on the floor
+/// counts as at rest, too, if it approaches no other body: it slows by some 0.2 m/s² and can reach none.
 #[derive(Clone, Debug)]
 pub struct Rest<R: Real = f64> {
     /// Time (s) from which the ground is still; infinite if the run does not end by rest.
     still_from: R,
-    /// Time (s) from which it is calm; infinite if the run does not end by rest.
+    /// Time (s) from which the ground is calm; infinite if the run does not end by rest.
     calm_from: R,
-    /// Largest kinetic energy of a body at rest over its mass (m²/s²).
+    /// Largest kinetic energy of a body at rest divided by its mass (m²/s²).
     slow: R,
-    /// Duration (s) for which all must be slow.
+    /// Duration (s) for which all bodies must be slow.
     hold: R,
     bodies: Vec<Mover<R>>,
     /// Time (s) of the last motion.
     moved: R,
 }
 
-/// A free body.
+/// A free body whose motion is observed.
 #[derive(Clone, Debug)]
 struct Mover<R: Real> {
     body: BodyId,
-    /// Moment of inertia over mass (m²).
+    /// Moment of inertia divided by the mass (m²).
     inertia: R,
-    /// Height (m) of its center over the ground below which it is a barrel on the floor.
+    /// Height (m) of its center above the ground up to which it is a barrel on the floor.
     floor: R,
 }
 
@@ -106,7 +107,7 @@ lanewise!(struct Mover<R> { body, inertia, floor });
 lanewise!(struct Rest<R> { still_from, calm_from, slow, hold, bodies, moved });
 
 impl Rest {
-    /// Creates the criterion of a scenario on its ground; nothing rests before it has been observed.
+    /// Creates the criterion of a scenario under its ground motion; no body is at rest before it has been observed.
     pub(crate) fn new(scenario: &Scenario, assembly: &Assembly, ground: &Ground) -> Self {
         let scale = scenario.run.similitude;
         let mover = |(body, part): (BodyId, &crate::assemble::Part)| {
@@ -137,8 +138,10 @@ impl Rest {
     }
 }
 
-/// Returns the times (s) from which a standing and a collapsed stack may be at rest, of the end of the motion (s) and the
-/// time (s) from which the ground is calm; infinite if the run does not end by rest.
+/// Returns the times (s) from which a standing stack and a collapsed stack may be at rest.
+///
+/// `end` is the end of the motion (s), and `calm` returns the time (s) from which the ground is calm. Both times are
+/// infinite if the run does not end by rest.
 pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f64) {
     match until {
         Until::Rest => (end, calm()),
@@ -150,25 +153,25 @@ pub fn quiet_from(until: Until, end: f64, calm: impl FnOnce() -> f64) -> (f64, f
     }
 }
 
-/// Returns the acceleration of calm ground over gravity, for a stack with given contact laws.
+/// Returns the largest acceleration of calm ground, as a fraction of gravity, for a stack with given contact laws.
 pub fn calm<S: Space<Real = f64>>(laws: &[Interface<S>]) -> f64 {
     let holding = laws.iter().map(|interface| match interface.friction {
         FrictionLaw::Coulomb { kinetic_coefficient, .. } => CALM_OF_FRICTION * kinetic_coefficient,
-        // Held by the shape of its seats alone, or creeping.
+        // Such contacts hold by the shape of their seats only, or creep.
         FrictionLaw::Frictionless | FrictionLaw::Regularized { .. } => 0.0,
     });
     holding.fold(CALM, f64::min)
 }
 
 impl<R: Real> Rest<R> {
-    /// Records an accepted state, and the lanes that have collapsed; returns the lanes at rest.
+    /// Observes an accepted state, given the lanes that have collapsed, and returns the lanes at rest.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub fn observe(&mut self, state: &State<Planar<R>>, collapsed: R::Mask) -> R::Mask {
         let mut moves = state.time.lt(R::select(collapsed, self.calm_from, self.still_from));
         let ground = state.twists[Assembly::GROUND].linear;
         for at in 0..self.bodies.len() {
-            // Once every lane moves, the other bodies need no test.
+            // Once a body moves in every lane, the other bodies need no test.
             if moves.all() {
                 break;
             }
@@ -185,9 +188,9 @@ impl<R: Real> Rest<R> {
         (self.moved + self.hold).le(state.time)
     }
 
-    /// Returns the lanes in which a body is a barrel on the floor that reaches nothing any more.
+    /// Returns the lanes in which a body is a barrel on the floor that approaches no other body.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn rolls_away(&self, state: &State<Planar<R>>, at: usize) -> R::Mask {
         let ground = state.poses[Assembly::GROUND].position;
         let own = &self.bodies[at];

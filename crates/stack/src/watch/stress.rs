@@ -1,17 +1,18 @@
 //! Normal contact stress along the boundary of every barrel and rack: at rest, and its largest values until the first
 //! loss of seat and over the whole run.
 //!
-//! In a planar model stress is force per length of boundary (N/m). Every contact loads both of its bodies, each over
-//! the tributary length of its contact element: of a node, half of the distance to each neighbor; of a contact
-//! without nodes, 1 cm, the spacing of the nodes of the paper's racks, so that both kinds of contact compare.
+//! In a planar model, stress is force per length of boundary (N/m). Every contact loads both of its bodies over the
+//! tributary length of its contact element. For a node, this is half the distance to each neighbor. For a contact
+//! without nodes, it is 1 cm, the spacing of the nodes of the paper's racks, so that both kinds of contact are
+//! comparable.
 //! (Hertz's half-width between an oak stave and a steel bar is about 1 mm, less than a stave deforms in bending, and
-//! would change with the force; a bearing of stated length keeps stress proportional to force, as EN 1995-1-1, 6.1.5,
+//! would change with the force; a bearing of fixed length keeps stress proportional to force, as EN 1995-1-1, 6.1.5,
 //! does for timber under compression across the grain.)
-//! On a rack a value belongs to each node and to each place of a contact without nodes; the boundary of a barrel is
-//! divided into cells, and a contact loads all the cells of its own length.
+//! On a rack, each node and each place of a contact without nodes has a value. The boundary of a barrel is divided into
+//! cells, and a contact loads all cells within its tributary length.
 //!
-//! At rest the stress of every point times its [length](StressEnvelope::lengths) is the contact force on it, so the sum
-//! over the boundary is the sum of the contact forces on the body.
+//! At rest, the stress of every point times its [length](StressEnvelope::lengths) is the contact force on it, so the
+//! sum over the boundary is the sum of the contact forces on the body.
 
 mod follow;
 mod places;
@@ -20,7 +21,7 @@ use barrelstack_dynamics::{BodyId, Vec2};
 
 pub(crate) use follow::StressWatch;
 
-/// Number of cells around a barrel in transverse section: half a degree each.
+/// Number of cells around a barrel in transverse section, each half a degree wide.
 const CELLS: usize = 720;
 
 /// A point on a boundary.
@@ -30,27 +31,29 @@ pub struct BoundaryPoint {
     pub position: Vec2,
     /// Unit normal out of the body.
     pub normal: Vec2,
-    /// Coordinate along the boundary: angle (rad) from `x` on a circle, `x` (m) elsewhere.
+    /// Coordinate along the boundary: the angle (rad) from the `x` axis on a circle, `x` (m) elsewhere.
     pub coordinate: f64,
 }
 
-/// Stress along one boundary.
+/// Normal contact stress along the boundary of one body.
 #[derive(Clone, Debug)]
 pub struct StressEnvelope {
     /// The body.
     pub body: BodyId,
-    /// Points of the values.
+    /// Points to which the values belong.
     pub points: Vec<BoundaryPoint>,
-    /// Length of boundary (m) of each value: under load at rest, the loaded length, so that stress at rest times
-    /// length is the contact force there.
+    /// Length of boundary (m) of each value.
+    ///
+    /// Where the boundary is loaded at rest, it is the loaded length, so that stress at rest times length is the
+    /// contact force.
     pub lengths: Vec<f64>,
-    /// `true` if the last point is next to the first.
+    /// `true` if the boundary is closed, so that the last point is next to the first.
     pub closed: bool,
-    /// At rest (N/m).
+    /// Stress at rest (N/m).
     pub at_rest: Vec<f64>,
-    /// Largest until the first loss of seat (N/m).
+    /// Largest stress until the first loss of seat (N/m).
     pub peak: Vec<f64>,
-    /// Largest over the whole run, falls included (N/m).
+    /// Largest stress over the whole run, including falls (N/m).
     pub peak_whole_run: Vec<f64>,
     /// Sum of all normal contact forces on the body.
     pub total: TotalForce,
@@ -61,38 +64,39 @@ pub struct StressEnvelope {
 /// Sum of the normal forces of all contacts of a body at one instant: the integral of the stress along its boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TotalForce {
-    /// At rest (N).
+    /// Sum at rest (N).
     pub at_rest: f64,
-    /// Largest until the first loss of seat (N).
+    /// Largest sum until the first loss of seat (N).
     pub peak: f64,
-    /// Largest over the whole run (N).
+    /// Largest sum over the whole run (N).
     pub peak_whole_run: f64,
 }
 
+/// Division of a boundary into points with a stress.
 #[derive(Clone, Copy, Debug)]
 enum Cells {
-    /// By angle around a circle of this radius (m).
+    /// Cells by angle around a circle with this radius (m).
     Around(f64),
-    /// By `x` along the upper and then the lower half of a profile of this half length (m).
+    /// Cells by `x` along the upper and then the lower half of a profile with this half length (m).
     Along(f64),
-    /// One for every node, and every place of a contact without nodes.
+    /// One point for every node, and for every place of a contact without nodes.
     Nodes,
 }
 
 impl StressEnvelope {
-    /// Returns `true` if the values belong to nodes of the body, not to cells along its whole boundary.
+    /// Returns `true` if the values belong to nodes and contact places of the body, not to cells along its boundary.
     pub fn is_on_nodes(&self) -> bool {
         matches!(self.cells, Cells::Nodes)
     }
 
-    /// Returns the sum of stress at rest times length over the boundary (N): the normal contact forces on the body at
-    /// rest.
+    /// Returns the sum of stress at rest times length over the boundary (N), which is the sum of the normal contact
+    /// forces on the body at rest.
     pub fn force_at_rest(&self) -> f64 {
         self.at_rest.iter().zip(&self.lengths).map(|(stress, length)| stress * length).sum()
     }
 
-    /// Returns the largest stress until the first loss of seat over the largest at rest, each anywhere on the
-    /// boundary; `None` without load at rest.
+    /// Returns the largest stress until the first loss of seat divided by the largest at rest, wherever on the boundary
+    /// each occurs; `None` without load at rest.
     pub fn amplification(&self) -> Option<f64> {
         self.largest_over_rest(&self.peak)
     }
@@ -108,8 +112,8 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| most(peak) / at_rest)
     }
 
-    /// Returns the largest stresses until the first loss of seat, averaged over the boundary that is loaded at rest,
-    /// over the average at rest; `None` without load at rest.
+    /// Returns the average of the largest stresses until the first loss of seat, over the part of the boundary that is
+    /// loaded at rest, divided by the average at rest; `None` without load at rest.
     pub fn mean_amplification(&self) -> Option<f64> {
         self.mean_over_rest(&self.peak)
     }
@@ -125,16 +129,17 @@ impl StressEnvelope {
         (at_rest > 0.0).then(|| loaded.sum::<f64>() / at_rest)
     }
 
-    /// Returns the average, over the boundary that is loaded at rest, of the ratio of the largest stress until the
-    /// first loss of seat to that at rest; `None` without load at rest.
+    /// Returns the average ratio of the largest stress until the first loss of seat to the stress at rest, over the
+    /// part of the boundary that is loaded at rest; `None` without load at rest.
     pub fn mean_ratio(&self) -> Option<f64> {
         let length: f64 = self.loaded().map(|at| self.lengths[at]).sum();
         let ratio = |at: usize| self.peak[at] / self.at_rest[at] * self.lengths[at];
         (length > 0.0).then(|| self.loaded().map(ratio).sum::<f64>() / length)
     }
 
-    /// Returns the mean of the envelope until the first loss of seat over the boundary that it covers, divided by the
-    /// mean at rest over the boundary that is loaded then; `None` without load at rest.
+    /// Returns the average of the largest stresses until the first loss of seat, over the boundary that has been loaded
+    /// up to then, divided by the average at rest over the boundary that is loaded at rest; `None` without load at
+    /// rest.
     pub fn mean_of_envelope(&self) -> Option<f64> {
         let mean = |stress: &[f64]| {
             let covered = || stress.iter().zip(&self.lengths).filter(|(stress, _)| **stress > 0.0);
@@ -144,29 +149,29 @@ impl StressEnvelope {
         Some(mean(&self.peak)? / mean(&self.at_rest)?)
     }
 
-    /// Returns the largest sum of all normal contact forces until the first loss of seat over that at rest; `None`
-    /// without load at rest.
+    /// Returns the largest sum of all normal contact forces until the first loss of seat, divided by the sum at rest;
+    /// `None` without load at rest.
     pub fn total_amplification(&self) -> Option<f64> {
         (self.total.at_rest > 0.0).then(|| self.total.peak / self.total.at_rest)
     }
 
-    /// Returns the points that are loaded at rest.
+    /// Returns the indices of the points that are loaded at rest.
     fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.points.len()).filter(|at| self.at_rest[*at] > 0.0)
     }
 }
 
-/// Stress along all boundaries.
+/// Normal contact stress along the boundaries of all barrels and racks.
 #[derive(Clone, Debug, Default)]
 pub struct Stresses {
     /// One envelope for every barrel and rack, in the order of the bodies.
     pub envelopes: Vec<StressEnvelope>,
-    /// Index of a body's envelope.
+    /// Index of the envelope of every body, if it has one.
     of_body: Vec<Option<usize>>,
 }
 
 impl Stresses {
-    /// Returns the envelope of a body.
+    /// Returns the envelope of a body; `None` if it is neither a barrel nor a rack.
     pub fn of(&self, body: BodyId) -> Option<&StressEnvelope> {
         self.of_body.get(body).copied().flatten().map(|at| &self.envelopes[at])
     }

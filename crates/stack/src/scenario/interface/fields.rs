@@ -43,15 +43,15 @@ const BASIS: Field = Field::new(
     "basis",
     Kind::Choice(names::<Basis>),
     Default::Value("\"node\""),
-    "Whether stiffness and damping belong to one contact node or to one meter of boundary.",
+    "Unit for which stiffness and damping are stated: one contact node, or one meter of boundary.",
 );
 
 const SEAT_BASIS: Field = Field::new(
     "basis",
     Kind::Choice(names::<Basis>),
     Default::Value("\"seat\""),
-    "Whether stiffness and damping belong to one seat (one rail across the crown of a barrel, one support of a cradle, one \
-     end of a rail or one foot on the ground, one post), to one contact node or to one meter of boundary.",
+    "Unit for which stiffness and damping are stated: one seat (one rail on the crown of a barrel, one support of a cradle, \
+     one end of a rail or one foot on the ground, or one post), one contact node, or one meter of boundary.",
 );
 
 const STIFFNESS: Field = Field::new(
@@ -66,9 +66,9 @@ const STIFFNESS: Field = Field::new(
         Range::POSITIVE,
     ),
     Default::Derived(
-        "in a stack that of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for one per node, and \
-         for a rebound per node 1.2e9 N/m^1.5, 5e8 N/m^1.5 between racks and from a fallen rack to the ground; must be \
-         given otherwise",
+        "in a stack, that of the rack's seats in the catalog for a linear law per seat, 9.8 kN/cm for a linear law per \
+         node, and for a rebound law per node 1.2e9 N/m^1.5, or 5e8 N/m^1.5 between racks and from a fallen rack to \
+         the ground; must be given otherwise",
     ),
     "Stiffness k: N/m per seat or node or N/m^2 per length for a linear law, N/m^1.5 or N/m^2.5 with the exponent 1.5.",
 );
@@ -79,16 +79,16 @@ const FRICTION_FIELD: Field = Field::new(
     Default::Derived(
         "Coulomb friction with the coefficient of the pair in a stack; must be given otherwise",
     ),
-    "Tangential force.",
+    "Friction law, which gives the tangential force.",
 );
 
 const RESTITUTION: Field = Field::new(
     "restitution",
     Kind::Number(Range::up_to(1.0)),
     Default::Derived(
-        "in a stack that of the rack's seats in the catalog per seat, without `damping`",
+        "in a stack, that of the rack's seats in the catalog for constants per seat without `damping`",
     ),
-    "Ratio of normal speeds after and before an impact, in place of the damping.",
+    "Ratio of normal speeds after and before an impact, stated instead of the damping.",
 );
 
 const LINEAR: &[Field] = &[
@@ -96,8 +96,8 @@ const LINEAR: &[Field] = &[
         "damping",
         Kind::Quantity(&[Dimension::DAMPING, Dimension::DAMPING_PER_LENGTH], Range::NOT_NEGATIVE),
         Default::Derived(
-            "in a stack the restitution of the rack's seats in the catalog per seat, and 22 N s/cm per node when the \
-             stiffness is not given either",
+            "in a stack, from the restitution of the rack's seats in the catalog for constants per seat, and 22 N s/cm per \
+             node if the stiffness is not given either",
         ),
         "Damping c: N s/m per seat or node or N s/m^2 per length.",
     ),
@@ -106,7 +106,7 @@ const LINEAR: &[Field] = &[
         "reference_mass",
         Kind::Quantity(&[Dimension::MASS, Dimension::MASS_PER_LENGTH], Range::POSITIVE),
         Default::Derived(
-            "that of the rack's seats in the catalog per seat; must be given with `restitution` otherwise",
+            "that of the rack's seats in the catalog for constants per seat; must be given with `restitution` otherwise",
         ),
         "Mass for which the restitution holds: kg on one seat or node, or kg/m of boundary.",
     ),
@@ -122,7 +122,7 @@ const LAWS: Variants = Variants {
         },
         Variant {
             name: "kelvin-voigt",
-            help: "Linear spring and damper, never pulling.",
+            help: "Linear spring and damper that never pull.",
             fields: LINEAR,
         },
         Variant {
@@ -133,7 +133,7 @@ const LAWS: Variants = Variants {
                     "exponent",
                     Kind::Number(Range::between(1.0, 1.5)),
                     Default::Value("1.5"),
-                    "Power of the penetration: 1 or 1.5.",
+                    "Exponent of the penetration: 1 or 1.5.",
                 ),
                 Field::new(
                     "damping",
@@ -146,18 +146,18 @@ const LAWS: Variants = Variants {
                     "reference_speed",
                     Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE),
                     Default::Derived("must be given with `restitution`"),
-                    "Speed of the impact for which the restitution holds.",
+                    "Impact speed for which the restitution holds.",
                 ),
             ],
         },
         Variant {
             name: "rebound",
-            help: "Spring with the power 1.5 of the penetration that gives back a stated share of the speed, \
-                   whatever mass meets.",
+            help: "Spring with the power 1.5 of the penetration that returns a stated fraction of the impact \
+                   speed, whatever the mass.",
             fields: &fields! {
                 /// Ratio of normal speeds after and before an impact.
                 restitution = Kind::Number(Range::up_to(1.0)), Default::Value("0.3");
-                /// Speed below which the contact damps as well, so that what it bears comes to rest.
+                /// Speed below which the contact damps as well, so that bodies on it come to rest.
                 speed = Kind::Quantity(&[Dimension::VELOCITY], Range::POSITIVE), Default::Value("\"0.1 m/s\"");
             },
         },
@@ -169,23 +169,23 @@ const LAWS: Variants = Variants {
     ],
 };
 
-/// Damping is given directly or by a restitution.
+/// Fields that exclude each other: damping is stated directly or by a restitution.
 const EXCLUSIVE: &[&[&str]] =
     &[&["damping", "restitution"], &["damping", "reference_mass"], &["damping", "reference_speed"]];
 
 /// The contact law of one pair in a stack.
 pub static INTERFACE: Section = Section {
     name: "interface",
-    help: "The law of contact of one pair of bodies.",
+    help: "The contact law of one pair of bodies.",
     fields: &[LAW, SEAT_BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
     exclusive: EXCLUSIVE,
 };
 
-/// The contact law of one pair that meets in impacts: fallen bodies, or neighbors.
+/// The contact law of one pair of bodies that touch in impacts only: fallen bodies, or neighbors.
 pub static IMPACT: Section = Section {
     name: "impact",
-    help: "The law of contact of one pair of bodies that meets in impacts.",
+    help: "The contact law of one pair of bodies that touch in impacts only.",
     fields: &[IMPACT_LAW, BASIS, STIFFNESS, FRICTION_FIELD],
     variants: Some(LAWS),
     exclusive: EXCLUSIVE,
@@ -194,19 +194,19 @@ pub static IMPACT: Section = Section {
 /// The contact law between two kinds of a free scene.
 pub static FREE_INTERFACE: Section = Section {
     name: "free-interface",
-    help: "The law of contact between two kinds of body.",
+    help: "The contact law between two kinds of bodies.",
     fields: &[
         Field::new(
             "between",
             Kind::Pair,
             Default::Required,
-            "The two kinds: the first carries the contact nodes, the second the surface; in space either comes first.",
+            "The two kinds: the first has the contact nodes, the second the surface; in space, the order does not matter.",
         ),
         Field::new(
             "within_groups",
             Kind::Flag,
             Default::Value("true"),
-            "Whether bodies of one `group` meet by it, as those of different groups and of none do.",
+            "True if the interface also acts between bodies of the same `group`.",
         ),
         LAW,
         BASIS,
@@ -217,7 +217,7 @@ pub static FREE_INTERFACE: Section = Section {
     exclusive: EXCLUSIVE,
 };
 
-/// Maximum plausible coefficient of friction.
+/// Range of plausible friction coefficients.
 const COEFFICIENT: Range = Range::between(0.0, 5.0);
 
 const COEFFICIENT_FIELD: Field = Field::new(
@@ -237,11 +237,11 @@ table! {
         "coulomb" with [COEFFICIENT_FIELD] {
             /// Static coefficient of friction, not below the kinetic one.
             static_coefficient = Kind::Number(COEFFICIENT), Default::Derived("`coefficient`");
-            /// Tangential stiffness of the stick over the normal stiffness; a stiffer one turns friction round sooner,
-            /// at a smaller step.
+            /// Ratio of the tangential stiffness of the stick to the normal stiffness; a stiffer stick reverses
+            /// friction sooner, but needs a smaller time step.
             tangential_stiffness_ratio = Kind::Number(Range::up_to(100.0)),
-                Default::Derived("that of the rack's seats in the catalog per seat: 2 on barrels, since staves give way across themselves rather than along, and on posts, and 4 on the ground, where tubes bend that lie hollow; 1 otherwise");
-            /// Tangential damping of the stick over the normal damping.
+                Default::Derived("that of the rack's seats in the catalog for constants per seat: 2 on barrels, whose staves are softer across than along their surface, and on posts, and 4 on the ground, where tubes bend that do not lie flat; 1 otherwise");
+            /// Ratio of the tangential damping of the stick to the normal damping.
             tangential_damping_ratio = Kind::Number(Range::between(0.0, 100.0)), Default::Value("1.0");
         }
         /// Sliding friction smoothed around zero slip rate; it creeps and never sticks.

@@ -10,30 +10,31 @@ use barrelstack_dynamics::contact::restitution;
 use barrelstack_input::named;
 
 named! {
-    /// To what a contact constant belongs.
+    /// Unit for which contact constants are stated.
     pub enum Basis {
         /// Constants hold for one contact node, whatever the spacing of the nodes.
         Node = "node",
         /// Constants hold for one meter of boundary and are multiplied by the tributary length of the
         /// node.
         Length = "length",
-        /// Constants hold for one seat, however many nodes it is divided into: one rail across the crown of a barrel,
+        /// Constants hold for one seat, however many nodes it is divided into: one rail on the crown of a barrel,
         /// one support of a cradle, one end of a rail or one foot on the ground, one post.
         Seat = "seat",
     }
 }
 
-/// Dissipation of a law whose restitution depends on the mass or speed of the impact.
+/// Dissipation of a normal law whose restitution depends on the mass or speed of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
-    /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary); `d` (s/m) of Hunt and Crossley's.
+    /// `c` of a linear law (N·s/m per node or seat, N·s/m² per length of boundary), or `d` (s/m) of a Hunt-Crossley
+    /// law.
     Coefficient(f64),
-    /// Damping that gives this restitution for a reference.
+    /// Damping that gives a restitution for a reference mass or speed.
     Restitution {
-        /// Ratio of normal speeds after and before, in `(0, 1]`.
+        /// Ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
-        /// Under a linear law the mass that strikes one node or seat (kg), or one meter of boundary (kg/m); under
-        /// Hunt and Crossley's the speed (m/s).
+        /// For a linear law, the mass that strikes one node or seat (kg), or one meter of boundary (kg/m); for a
+        /// Hunt-Crossley law, the impact speed (m/s).
         reference: f64,
     },
 }
@@ -64,13 +65,13 @@ pub enum NormalLaw {
         /// Dissipation.
         damping: Damping,
     },
-    /// `k δ^1.5` on approach and `e²` of it on separation, joined over some `v` of speed.
+    /// `k δ^1.5` on approach and `e²` times that on separation, with a gradual transition over speeds of about `v`.
     Rebound {
         /// `k` (N/m^1.5 per node or seat, or N/m^2.5 on the basis of length).
         stiffness: f64,
         /// `e`, ratio of normal speeds after and before an impact, in `(0, 1]`.
         restitution: f64,
-        /// `v` (m/s): slower impacts come to rest.
+        /// `v` (m/s); bodies with slower impacts come to rest.
         speed: f64,
     },
     /// `k δ^1.5`, without dissipation.
@@ -91,12 +92,12 @@ pub enum Friction {
         coefficient: f64,
         /// Static coefficient, not below the kinetic one.
         static_coefficient: f64,
-        /// Tangential stiffness over normal stiffness.
+        /// Ratio of the tangential to the normal stiffness.
         tangential_stiffness_ratio: f64,
-        /// Tangential damping over normal damping.
+        /// Ratio of the tangential to the normal damping.
         tangential_damping_ratio: f64,
     },
-    /// Coulomb friction smoothed near zero slip rate: it never sticks, it creeps.
+    /// Coulomb friction smoothed near zero slip rate: it creeps and never sticks.
     Regularized {
         /// Kinetic coefficient.
         coefficient: f64,
@@ -116,14 +117,14 @@ pub struct Interface {
     pub friction: Friction,
 }
 
-/// Returns the damping ratio of a law for a restitution; `None` where no damping gives it.
+/// Function from the restitution of a law to its damping ratio; `None` if no damping gives that restitution.
 type DampingRatio = fn(f64) -> Option<f64>;
 
-/// Returns the restitution of a law for a damping ratio.
+/// Function from the damping ratio of a law to its restitution.
 type Restitution = fn(f64) -> f64;
 
 impl Interface {
-    /// Returns `true` if its damping is stated by a restitution.
+    /// Returns `true` if the damping is stated by a restitution.
     pub fn states_restitution(&self) -> bool {
         match self.normal {
             NormalLaw::SpeedGap { damping, .. }
@@ -135,7 +136,7 @@ impl Interface {
         }
     }
 
-    /// Multiplies the stiffness.
+    /// Multiplies the stiffness by a factor.
     pub fn stiffen(&mut self, factor: f64) {
         match &mut self.normal {
             NormalLaw::SpeedGap { stiffness, .. }
@@ -146,7 +147,8 @@ impl Interface {
         }
     }
 
-    /// Multiplies the damping of a linear law: the coefficient, or the damping ratio that gives the restitution.
+    /// Multiplies the damping of a linear law by a factor: the coefficient, or the damping ratio that gives the
+    /// restitution.
     pub fn damp(&mut self, factor: f64) {
         let (damping, to_ratio, from_ratio): (_, DampingRatio, Restitution) = match &mut self.normal
         {
@@ -169,7 +171,7 @@ impl Interface {
         }
     }
 
-    /// Multiplies the coefficients of friction, kinetic and static.
+    /// Multiplies the kinetic and static friction coefficients by a factor.
     pub fn roughen(&mut self, factor: f64) {
         match &mut self.friction {
             Friction::Coulomb { coefficient, static_coefficient, .. } => {

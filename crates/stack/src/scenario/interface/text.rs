@@ -17,16 +17,16 @@ use super::{Basis, Damping, Friction, Interface, NormalLaw};
 /// (2008).
 const NODE: (f64, f64) = (980_000.0, 2200.0);
 
-/// Defaults of a stack for constants that its scenario leaves out.
+/// Default constants of a pair of a stack, for those that the scenario leaves out.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::scenario) struct PairDefaults {
-    /// Constants of the seat, if the pair is one.
+    /// Constants of the seat, if the pair is a seat of a rack.
     pub(in crate::scenario) seat: Option<Seat>,
     pub(in crate::scenario) rebound_stiffness: f64,
     pub(in crate::scenario) coefficient: f64,
 }
 
-/// Reads a contact law and finishes its table.
+/// Reads a contact law from its table.
 pub(in crate::scenario) fn read(
     reader: Reader<'_>,
     defaults: Option<PairDefaults>,
@@ -36,7 +36,7 @@ pub(in crate::scenario) fn read(
     let seat = defaults.and_then(|defaults| defaults.seat);
     if basis == Basis::Seat && seat.is_none() {
         let message = format!(
-            "`{}` is \"seat\", and this pair is no seat of a rack; state its constants per node with \"node\", or per \
+            "`{}` is \"seat\", but this pair is not a seat of a rack; state its constants per node with \"node\", or per \
              meter of boundary with \"length\"",
             reader.path_of("basis")
         );
@@ -56,7 +56,7 @@ pub(in crate::scenario) fn read(
         }
         Law::Hertz | Law::Rebound => 1.5,
     };
-    // The paper's constants belong together, and to its laws only.
+    // The constants of the paper belong together, and apply to its laws only.
     let is_linear = matches!(law, Law::SpeedGap | Law::KelvinVoigt);
     let node = (is_linear && basis == Basis::Node && defaults.is_some()).then_some(NODE);
     let known = match law {
@@ -109,7 +109,7 @@ pub(in crate::scenario) fn read(
     Ok(Interface { basis, normal, friction })
 }
 
-/// Dimension of the damping of a law, and field and dimension of the reference of its restitution.
+/// Dimension of the damping of a law, then field name and dimension of the reference of its restitution.
 type DampingUnits = (Dimension, &'static str, Dimension);
 
 const HUNT_CROSSLEY: DampingUnits =
@@ -254,7 +254,7 @@ fn missing_problem(reader: &Reader<'_>, name: &str, dimension: Dimension) -> Pro
     Problem::Missing { field: name.to_owned(), section: reader.label(), example }
 }
 
-/// Writes the contact law of a stack in its section.
+/// Writes the contact law of a pair of a stack as a table.
 pub(in crate::scenario) fn write(section: &'static Section, interface: &Interface) -> Table {
     let mut writer = Writer::variant(section, law_of(&interface.normal));
     write_fields(&mut writer, interface);

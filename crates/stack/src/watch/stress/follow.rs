@@ -1,4 +1,4 @@
-//! Follows the contact stress of a run, or of one run per lane, through every step.
+//! Observer of contact stresses in every step, of one run or of one run per lane.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,25 +14,25 @@ use super::places::{on_nodes, on_surface};
 use super::{BoundaryPoint, Cells, StressEnvelope, Stresses};
 use crate::assemble::{Assembly, PartKind};
 
-/// Largest force of a contact element on one of its bodies at its current place.
+/// Bounds of the current place of a contact element on one of its bodies, with its largest force there.
 ///
-/// As long as the contact stays between the same bounds it loads the same cells, and only its largest force there
-/// counts: most contacts of most steps need only a few comparisons.
+/// As long as the contact stays between the same bounds, it loads the same cells, and only its largest force matters.
+/// Most contacts in most steps therefore need only a few comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds<R: Real = f64> {
-    /// The first point or direction, and that past the last one.
+    /// The first point or direction of the range, and the first one past it.
     pub(super) from: Vec2<R>,
     pub(super) to: Vec2<R>,
-    /// `true` if the place is above the axis; on a rack, if it has been found.
+    /// `true` if the place is above the axis of a barrel; on a rack, `true` if the place is known.
     pub(super) above: R::Mask,
-    /// The largest force (N) there.
+    /// The largest force (N) at the place.
     most: R,
 }
 
-/// Range of points over which a contact loads the same cells.
+/// Kind of the range of points over which a contact loads the same cells.
 #[derive(Clone, Copy, Debug)]
 enum Place {
-    /// All points: the place of a contact element on a rack is that of its first contact.
+    /// All points, on a rack: the place of a contact element is that of its first contact.
     Everywhere,
     /// Points between two directions, counterclockwise.
     Wedge,
@@ -40,12 +40,12 @@ enum Place {
     Strip,
 }
 
-/// A body of a pair that has an envelope.
+/// A body of a contact pair that has an envelope.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     body: BodyId,
     place: Place,
-    /// `true` if it is the target of the pair, in the frame of whose surface contacts are stated.
+    /// `true` if the body is the target of the pair; contact points are stated in the frame of the target's surface.
     is_target: bool,
 }
 
@@ -53,7 +53,7 @@ lanewise!(same Side);
 lanewise!(struct Bounds<R> { from, to, most } masks { above });
 lanewise!(struct Pair<R> { bodies, sides, count, offset, rotation });
 
-/// Data shared by all contact elements of a pair.
+/// Data that all contact elements of a pair share.
 #[derive(Clone, Debug)]
 struct Pair<R: Real> {
     /// The contactor and the target.
@@ -70,7 +70,7 @@ struct Pair<R: Real> {
 impl<R: Real> Pair<R> {
     /// Transforms a contact point (m) from the frame of the target's surface to that of the body of a side.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn in_body(
         &self,
         side: Side,
@@ -90,7 +90,7 @@ impl<R: Real> Pair<R> {
 }
 
 impl Bounds {
-    /// Returns the bounds of an element without contact so far, which contain no point.
+    /// Returns empty bounds, for an element without contact so far.
     pub(super) fn none() -> Self {
         Self { from: Vec2::default(), to: Vec2::default(), above: false, most: 0.0 }
     }
@@ -98,7 +98,7 @@ impl Bounds {
 
 impl<R: Real> Bounds<R> {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     fn hold(&self, place: Place, point: Vec2<R>) -> R::Mask {
         let Self { from, to, above, .. } = *self;
         match place {
@@ -118,46 +118,46 @@ impl<R: Real> Bounds<R> {
 /// Place of a contact element on one of its bodies.
 #[derive(Clone, Debug, Default)]
 struct Pressed {
-    /// Index of the envelope.
+    /// Index of the envelope of the body.
     on: usize,
     /// Tributary length (m) of the element.
     length: f64,
-    /// The points of the envelope; past the last one they continue with the first.
+    /// The loaded points of the envelope; indices past the last point continue with the first.
     points: Range<usize>,
 }
 
-/// One of the followed runs.
+/// Stresses of the run in one lane.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     stresses: Stresses,
     /// The place of every element, in the order of [`StressWatch::bounds`].
     pressed: Vec<Pressed>,
-    /// The point of a contact on a rack, by pair, contact element and body.
+    /// Index of the point of a contact on a rack, by pair, contact element and body.
     on_racks: BTreeMap<(usize, u32, BodyId), usize>,
 }
 
-/// Marks a pair that has not touched yet.
+/// Mark of a pair that has not touched yet.
 const NEVER: usize = usize::MAX;
 
-/// Follows the stresses of a run, or of one run per lane; needs every accepted step.
+/// Observer of the stresses of one run or of one run per lane; it must observe every accepted step.
 #[derive(Clone, Debug)]
 pub(crate) struct StressWatch<R: Real = f64> {
     lanes: Vec<Lane>,
     /// The lanes that have a run.
     watched: R::Mask,
-    /// The lanes among them in which the first seat has been lost.
+    /// The lanes with a run in which a seat has been lost.
     lost: R::Mask,
     pairs: Vec<Pair<R>>,
-    /// The first entry of every pair in `bounds`.
+    /// Index of the first entry of every pair in `bounds`.
     first: Vec<usize>,
-    /// One for every contact element and body of every pair that has touched.
+    /// One entry for every contact element and body of every pair that has touched.
     bounds: Vec<Bounds<R>>,
-    /// Sum of the normal contact forces (N) on every body in the current step, and its maximum.
+    /// Sum of the normal contact forces (N) on every body, in the current step and its maximum so far.
     totals: Vec<[R; 2]>,
 }
 
 impl StressWatch {
-    /// Starts with the stresses of a state at rest and its `scratch`.
+    /// Creates the observer of a run, with the stresses at rest from a state and its `scratch`.
     pub(crate) fn new(
         assembly: &Assembly,
         state: &State<Planar>,
@@ -165,7 +165,7 @@ impl StressWatch {
     ) -> Self {
         let stresses = empty(assembly);
         let mut pairs = Vec::new();
-        // For example in a free scene, which may have too many pairs to list.
+        // A free scene has no envelopes, and may have too many pairs to list.
         let watched = !stresses.envelopes.is_empty();
         for pair in assembly.model.pairs().take_while(|_| watched) {
             let side = |(body, is_target): (BodyId, bool)| {
@@ -253,7 +253,7 @@ fn empty(assembly: &Assembly) -> Stresses {
         let body = &assembly.model.bodies()[i];
         let made = match part.kind {
             PartKind::Barrel => body.surfaces.first().and_then(|placed| {
-                // Most barrels are equal, and so are their cells.
+                // Most barrels are equal, so their cells can be copied.
                 let alike = |known: &&StressEnvelope| {
                     let other = assembly.model.bodies()[known.body].surfaces.first();
                     !known.is_on_nodes()
@@ -276,7 +276,7 @@ fn empty(assembly: &Assembly) -> Stresses {
 }
 
 impl<R: Real> StressWatch<R> {
-    /// Creates an observer that follows no run.
+    /// Creates an observer without runs.
     pub(crate) fn nothing() -> Self {
         Self {
             lanes: vec![Lane::default(); R::LANES],
@@ -289,7 +289,7 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Starts a run in a lane; all runs followed together have one topology.
+    /// Starts to observe a run in a lane; all runs that are observed together have one topology.
     pub(crate) fn begin(&mut self, lane: usize, mut single: StressWatch) {
         if self.pairs.is_empty() {
             self.pairs = Lanewise::in_all(&single.pairs);
@@ -302,7 +302,7 @@ impl<R: Real> StressWatch<R> {
         if single.watched {
             single.raise(0);
         }
-        // The places of its contacts, including those on racks, are found again.
+        // The places of all contacts in this lane, including those on racks, are to be determined anew.
         for bounds in &mut self.bounds {
             bounds.put(lane, &Bounds::none());
         }
@@ -313,7 +313,7 @@ impl<R: Real> StressWatch<R> {
         self.lanes[lane] = alone;
     }
 
-    /// Ends the run of a lane, and returns its stresses.
+    /// Ends the run in a lane and returns its stresses.
     pub(crate) fn finish(&mut self, lane: usize) -> Stresses {
         if self.watched.lane(lane) {
             self.raise(lane);
@@ -328,7 +328,7 @@ impl<R: Real> StressWatch<R> {
         std::mem::take(&mut self.lanes[lane]).stresses
     }
 
-    /// Raises the envelopes of a lane to the largest forces at the current places.
+    /// Raises the envelopes of a lane to the largest forces of the contacts at their current places.
     fn raise(&mut self, lane: usize) {
         let Lane { stresses, pressed, .. } = &mut self.lanes[lane];
         for (bounds, pressed) in self.bounds.iter().zip(pressed.iter()) {
@@ -344,10 +344,12 @@ impl<R: Real> StressWatch<R> {
         }
     }
 
-    /// Records the contacts of an accepted state; `standing` are the lanes in which no seat had been lost before it,
-    /// and `model` returns the model of a lane.
+    /// Records the contacts of an accepted state.
+    ///
+    /// `standing` are the lanes in which no seat had been lost before this state, and `model` returns the model of a
+    /// lane.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "bundles of lanes are fast only in their scope")]
+    #[expect(clippy::inline_always, reason = "without inlining, lanes lose the vector unit")]
     pub(crate) fn observe<'a>(
         &mut self,
         standing: R::Mask,
@@ -417,8 +419,9 @@ impl<R: Real> StressWatch<R> {
 }
 
 impl Lane {
-    /// Finds the place of an element, given by pair, number and body, at a point (m) of that body; `touch` (m) is the
-    /// same point in the frame of the target's surface.
+    /// Determines the place of a contact element at a point (m) of a body, and sets its bounds.
+    ///
+    /// The element is given by pair, node and body; `touch` (m) is the point in the frame of the target's surface.
     fn find(
         &mut self,
         model: &Model<Planar>,
@@ -440,13 +443,13 @@ impl Lane {
             let sets = &model.bodies()[pair.contactor].nodes;
             let fixed = |set: &Nodes<Planar>| matches!(set, Nodes::Fixed(_));
             if body == pair.contactor && fixed(&sets[pair.nodes]) {
-                // The points of a rack begin with those of its fixed nodes, set by set.
+                // The points of a rack begin with those of its fixed nodes, one set after the other.
                 let before = sets[..pair.nodes].iter().filter(|set| fixed(set)).map(Nodes::count);
                 return before.sum::<usize>() + node as usize;
             }
             let placed = &model.bodies()[pair.target].surfaces[pair.surface];
             let normal = placed.rotation.apply(placed.surface.gap(touch).normal);
-            // Racks turn by only a few degrees while they stand.
+            // The first normal is kept, because racks turn by only a few degrees while they stand.
             let normal = if body == pair.target { normal } else { -normal };
             envelope.push(BoundaryPoint { position: point, normal, coordinate: point.x }, length);
             envelope.points.len() - 1
@@ -472,7 +475,7 @@ impl Stresses {
 }
 
 impl StressEnvelope {
-    /// Adds a point of a tributary length (m), without load.
+    /// Adds an unloaded point with a tributary length (m).
     fn push(&mut self, point: BoundaryPoint, length: f64) {
         self.points.push(point);
         self.lengths.push(length);

@@ -1,4 +1,4 @@
-//! Points of a boundary for stresses, and the cells that a contact loads.
+//! Points of a boundary at which stresses are recorded, and the cells that a contact loads.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -28,7 +28,7 @@ fn empty(body: BodyId, points: Vec<BoundaryPoint>, closed: bool, cells: Cells) -
     }
 }
 
-/// Returns the cells along the surface of a barrel.
+/// Returns an unloaded envelope with cells along the surface of a barrel.
 pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> {
     match shape {
         Shape::Circle(circle) => {
@@ -69,7 +69,7 @@ pub(super) fn on_surface(body: BodyId, shape: &Shape) -> Option<StressEnvelope> 
     }
 }
 
-/// Returns one point for every node of a rack.
+/// Returns an unloaded envelope with one point for every fixed node of a rack.
 pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
     let nodes = || {
         sets.iter().filter_map(|set| match set {
@@ -90,8 +90,8 @@ pub(super) fn on_nodes(body: BodyId, sets: &[Nodes<Planar>]) -> StressEnvelope {
 }
 
 impl StressEnvelope {
-    /// Returns the cells that a contact of a length (m) loads around a point (m) of the body; sets `bounds` to the
-    /// range of points for which they stay the same.
+    /// Returns the cells that a contact with a tributary length (m) loads around a point (m) of the body, and sets
+    /// `bounds` to the range of points for which these cells stay the same.
     pub(super) fn place(&self, point: Vec2, length: f64, bounds: &mut Bounds) -> Range<usize> {
         match self.cells {
             Cells::Around(radius) => {
@@ -125,8 +125,10 @@ impl StressEnvelope {
     }
 }
 
-/// Returns the first and the last cell of a width whose middle is within a length about a coordinate (at least one),
-/// and the range of coordinates for which that stays so.
+/// Returns the first and last cell whose middle lies within `length` around a coordinate, and the range of coordinates
+/// for which these cells stay the same.
+///
+/// Cells have the given width; at least one cell is returned.
 fn span(coordinate: f64, length: f64, width: f64) -> (f64, f64, f64, f64) {
     let half = 0.5 * length;
     let first = ((coordinate - half) / width + 0.5).floor();
