@@ -298,7 +298,7 @@ fn check(at: usize, observed: &Observed, scenario: &Scenario) -> Result<(), Cali
     }
     if observed.until > 120.0 {
         return Err(CalibrateError::Run(RunFailure::Duration(format!(
-            "test {}: the observation lasts {} s, too long to simulate many times: end it at 120 s",
+            "test {}: the observation lasts {} s, too long to simulate many times: shorten it to 120 s at most",
             at + 1,
             observed.until
         ))));

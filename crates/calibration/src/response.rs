@@ -70,7 +70,7 @@ pub fn response(
     if values <= parameters.len() + 1 {
         return Err(table
             .unsuited(format!(
-                "{values} recorded values are too few to determine {} parameters and the scatter",
+                "{values} recorded values are too few to determine {} parameters and the scatter: lengthen the window",
                 parameters.len()
             ))
             .into());

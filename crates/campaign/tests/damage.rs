@@ -229,9 +229,9 @@ fn what_is_not_the_folder_of_a_study_is_named_as_what_it_is() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path().join("study");
     let said = |folder: &Path| Collected::read(folder).unwrap_err().to_string();
-    assert!(said(&folder).contains("is not there; name a folder"));
+    assert!(said(&folder).contains("does not exist; name the folder"));
     fs::create_dir(&folder).unwrap();
-    assert!(said(&folder).contains("it has no study.json; name a folder"));
+    assert!(said(&folder).contains("it has no study.json; name the folder"));
     symlink("/dev/zero", folder.join("study.json")).unwrap();
     assert!(said(&folder).contains("its study.json is not a file"));
     assert!(said(&folder.join("study.json")).contains("is not a folder"));

@@ -156,7 +156,7 @@ fn a_hazard_curve_that_does_not_serve_is_refused_with_the_place() {
         SiteHazard::parse("site.csv", "pga (g),rate (1/year)\n0.1,0.1\n0.2,0.01\n").unwrap();
     let request = Request { hazard: Some(hazard), years: None };
     let error = decide(&ordinary(), &request).unwrap_err();
-    assert!(error.to_string().contains("are over pgv; give"), "{error}");
+    assert!(error.to_string().contains("is for pgv; give"), "{error}");
 }
 
 #[test]
@@ -237,7 +237,7 @@ fn shares_of_one_change_at_a_time_are_reported_at_each_level_with_intervals_that
         let alone = barrelstack_fragility::wilson(group.collapsed, 96, 0.95);
         assert!(group.interval.low < alone.low && group.interval.high > alone.high);
     }
-    assert!(html(&found.document).contains("Intervals count motions"));
+    assert!(html(&found.document).contains("Intervals are clustered by motion"));
 }
 
 #[test]
@@ -290,5 +290,5 @@ fn hunted_levels_count_by_first_collapse_and_not_by_where_the_hunt_went() {
     let last = found.curves[0].stripes.last().unwrap();
     let failed = (0..12).filter(|record| capacity(*record) <= 0.9).count();
     assert_eq!((last.intensity, last.cases, last.failures as usize), (0.9, 12, failed));
-    assert!(found.warnings.iter().any(|w| w.starts_with("Levels were chosen by hunting")));
+    assert!(found.warnings.iter().any(|w| w.starts_with("The levels are those of hunts")));
 }

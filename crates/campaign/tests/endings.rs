@@ -94,7 +94,7 @@ fn whole_motions_have_the_verdicts_of_two_minutes_and_a_cut_is_reported_everywhe
     let page = decide(&cut, &Request::default()).unwrap();
     assert!(page.losses.is_err(), "what falls after the cut is not known");
     assert!(page.warnings[0].contains("cut short"), "{:?}", page.warnings);
-    assert!(!page.warnings.iter().any(|said| said.contains("nature of rocking")));
+    assert!(!page.warnings.iter().any(|said| said.contains("typical of rocking")));
     let first = &page.document.verdict.sentences[0];
     assert!(first.contains("cut short while the ground still moved"), "{first}");
     assert!(html(&page.document).contains("No losses are given"));

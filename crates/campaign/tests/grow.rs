@@ -95,7 +95,7 @@ fn what_every_case_depends_on_may_not_change_and_the_refusal_names_it() {
     let study = Study::parse("test.toml", &first.replace("count = 40", "count = 60")).unwrap();
     let reason =
         study.run_chunk(folder.path(), 2, Width::widest(), &|| false).unwrap_err().to_string();
-    assert!(reason.contains("run it as a whole once"), "{reason}");
+    assert!(reason.contains("run the whole study once"), "{reason}");
     // A damaged shard heals, chunk by chunk too.
     let study = Study::parse("test.toml", &first).unwrap();
     let shard = std::fs::read_dir(folder.path().join("shards")).unwrap().next().unwrap().unwrap();
@@ -154,7 +154,10 @@ fn a_process_whose_study_grew_meanwhile_ends_and_says_so() {
     };
     let options = RunOptions { threads: std::num::NonZero::new(1), ..RunOptions::default() };
     let error = study.run(&out, &options, &report).unwrap_err().to_string();
-    assert!(error.contains("has been given to a study that grew since this run began"), "{error}");
+    assert!(
+        error.contains("has been taken over by a larger form of the study since this run began"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -86,5 +86,5 @@ fn a_scene_without_racks_has_no_score() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Scenario::builtin("sliding-block", &[]).unwrap();
     let refused = scored(&scene, &Protocol::rockscore(), folder.path()).unwrap_err();
-    assert!(refused.to_string().contains("take the scenario of a stack"), "{refused}");
+    assert!(refused.to_string().contains("use the scenario of a stack"), "{refused}");
 }

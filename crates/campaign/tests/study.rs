@@ -367,7 +367,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     std::fs::write(folder.path().join("study.json"), earlier).unwrap();
     let error = Collected::read(folder.path()).unwrap_err().to_string();
     assert!(
-        error.contains("in layout 2 of such folders, and this version reads layout 3"),
+        error.contains("in layout 2 of study folders, but this version reads layout 3"),
         "{error}"
     );
 
@@ -391,7 +391,7 @@ fn a_folder_of_another_study_is_refused_and_left_as_it_is() {
     let error = Collected::read(foreign.path()).unwrap_err();
     assert!(error.to_string().contains("is not a study folder: it has no study.json"), "{error}");
     let error = Collected::read(&foreign.path().join("nowhere")).unwrap_err();
-    assert!(error.to_string().contains("is not there"), "{error}");
+    assert!(error.to_string().contains("does not exist"), "{error}");
     let error = other.run(&foreign.path().join("thesis.docx"), &RunOptions::default(), &|_| {
         ControlFlow::Continue(())
     });

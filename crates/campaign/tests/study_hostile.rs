@@ -200,7 +200,7 @@ const MISTAKES: &[(usize, &str, &[&str])] = &[
     (
         3,
         "[intensity]\ndistribution = { kind = \"normal\", mean = \"0.3 m/s\", deviation = \"0.1 m/s\" } # HERE\n",
-        &["a level has to be above zero", "cut it with `least`"],
+        &["levels must be above zero", "truncate it with `least`"],
     ),
     (3, "[intensity]\nmeasure = \"pgv\"\n", &["[intensity] has no levels"]),
     (4, "", &["`design` is missing"]),
@@ -313,7 +313,7 @@ fn too_many_cases_are_refused_and_not_counted() {
     for [intensity, design] in [[INTENSITY, DESIGN], [hunted, hunt]] {
         let text = whole([HEAD, SCENE, &many, intensity, design]);
         let error = Study::parse("case.toml", &text).unwrap_err().to_string();
-        assert!(error.contains("more than 10000000 cases: take fewer values"), "{error}");
+        assert!(error.contains("more than 10000000 cases: use fewer values"), "{error}");
     }
 }
 

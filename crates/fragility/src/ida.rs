@@ -62,8 +62,9 @@ impl Ida {
 
     /// Returns the demand below which a fraction `share` of the records stays at an intensity.
     ///
-    /// The demand is infinite if too many records have collapsed, and `None` if the demand of any record is unknown, so that no record is silently excluded. A record that collapses
-    /// at a lower intensity but stands at this one counts as standing.
+    /// The demand is infinite if too many records have collapsed, and `None` if the demand of any record is unknown, so
+    /// that no record is silently excluded. A record that collapses at a lower intensity but stands at this one counts
+    /// as standing.
     pub fn fractile(all: &[Self], intensity: f64, share: f64) -> Option<f64> {
         let mut demands =
             all.iter().map(|ida| ida.demand(intensity)).collect::<Option<Vec<_>>>()?;

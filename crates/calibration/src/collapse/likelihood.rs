@@ -30,8 +30,8 @@ impl Default for Errors {
 impl Errors {
     /// Returns the log-likelihood of an observation.
     ///
-    /// With ε = `other`, a mode or barrel has the probability 1 − ε if it agrees with the simulated one, else ε. An observed
-    /// time t has, given the simulated time s, the density
+    /// With ε = `other`, a mode or barrel has the probability 1 − ε if it agrees with the simulated one, else ε. An
+    /// observed time t has, given the simulated time s, the density
     /// (1 − ε) N(t; s, σ²) + ε/T, with σ = reading + growth · (time since the loss of seat) and T the
     /// duration of observation.
     pub(super) fn log_likelihood(&self, observed: &Observed, course: &Course) -> f64 {

@@ -1,4 +1,4 @@
-//! Sentences of the page of heights for given counts.
+//! Tests of the sentences of the report page of heights.
 
 use barrelstack_fragility::{FitError, Monotony, Stripe};
 use barrelstack_report::{Document, markdown};
@@ -100,8 +100,8 @@ fn static_margins_stand_beside_each_height() {
     let last = page.verdict.sentences.last().unwrap();
     assert_eq!(
         last,
-        "6 levels have the smallest static margin, along the barrels: they come apart under a steady push of 0.10 g, as \
-         on a floor tilted by 6 degrees."
+        "Stacks of 6 levels have the smallest static margin, along the barrels: they collapse under a steady push of \
+         0.10 g, as on a floor tilted by 6 degrees."
     );
     let text = markdown(&page, "figures").text.replace('\u{a0}', " ");
     for row in [
