@@ -95,9 +95,9 @@ pub struct Ranked {
     pub protection: Protection,
     /// Probability of collapse, averaged over the levels of shaking; for a site, the number of collapses per year.
     pub collapse: Estimate,
-    /// Number of barrels that fall, averaged likewise; for a site, per year.
+    /// Number of barrels that fall, averaged over the levels of shaking; for a site, per year.
     pub fallen: Estimate,
-    /// Number of barrels that burst under the central assumption, averaged likewise; for a site, per year.
+    /// Number of barrels that burst under the central assumption, averaged over the levels of shaking; for a site, per year.
     pub burst: Estimate,
     /// Reduction of fallen barrels compared with the stack as it is, under the same motions; `None` for the stack as it is.
     pub saved: Option<Estimate>,

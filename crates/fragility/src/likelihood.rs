@@ -22,11 +22,11 @@ impl<const N: usize> Score<N> {
 /// An observation of a standard normal variable `Z`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Known<const N: usize> {
-    /// `Z = z`, with the logarithm of `∂z/∂x` in the density: `ln slope − ln x`.
+    /// `Z = z`; the second value is `ln ∂z/∂x` in the density, without the slope if that is a parameter.
     At(Score<N>, f64),
-    /// `Z ≤ z`.
+    /// `Z` is at most `z`.
     Below(Score<N>),
-    /// `Z > z`.
+    /// `Z` is above `z`.
     Above(Score<N>),
     /// `Z` lies between the two values of `z`.
     Between(Score<N>, Score<N>),

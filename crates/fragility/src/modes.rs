@@ -68,7 +68,7 @@ impl Shares {
 mod tests {
     use super::*;
 
-    /// Returns failures at quantiles of a known division into three modes.
+    /// Returns failures that follow a known division into three modes.
     fn divided(truth: &Shares) -> Vec<(f64, usize)> {
         let mut failures = vec![];
         for i in 0..40 {

@@ -74,9 +74,9 @@ mod tests {
 
     #[test]
     fn one_sided_bounds_have_their_textbook_values() {
-        // None of n: 1 − 0.05^(1/n), the rule of three.
+        // For no failures in n cases the bound is 1 − 0.05^(1/n) (rule of three).
         assert!((at_most(0, 24, 0.95) - (1.0 - 0.05_f64.powf(1.0 / 24.0))).abs() < 1e-12);
-        // With a probability at the bound, one or none of 34 fails in 5 of 100 samples.
+        // If the probability equals the bound, at most one of 34 cases fails in 5 of 100 samples.
         let p = at_most(1, 34, 0.95);
         let tail = (1.0 - p).powi(34) + 34.0 * p * (1.0 - p).powi(33);
         assert!((tail - 0.05).abs() < 1e-9, "{p}: {tail}");

@@ -142,7 +142,7 @@ mod tests {
             .flat_map(|a| (0..a).map(move |b| (a, b)))
             .map(|(a, b)| product(&points[a], &points[b]).abs())
             .fold(0.0, f64::max);
-        // Measured 0.58; for as many pairs of 64 random numbers the largest is some 0.45, for equal numbers 1.
+        // Measured 0.58. For as many pairs of 64 random numbers the largest is about 0.45; for equal numbers it is 1.
         assert!(worst < 0.7, "{worst}");
         assert_ne!(padded(3, 5, 7), padded(3, 5, 8));
     }

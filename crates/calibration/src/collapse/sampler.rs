@@ -90,7 +90,7 @@ pub(super) fn sample(
     Some(Posterior { draws, weights, power })
 }
 
-/// Adds a seed to each point, different for every position in the list.
+/// Gives each point a seed, which depends on its index; the first point has the index `from`.
 fn numbered(points: Vec<Vec<f64>>, from: usize, seed: u64) -> Vec<Draw> {
     let seeded = |(at, point)| Draw {
         point,

@@ -9,7 +9,7 @@ use crate::decision::{Breakage, Case, Cases};
 /// Confidence level of all intervals.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// Results of one run, as shares of the barrels.
+/// Results of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outcome {
     pub(super) collapsed: f64,
@@ -63,7 +63,7 @@ impl Runs {
         self.count += cases.all.len() + cases.left_out;
         for case in &cases.all {
             let Some(velocity) = case.intensity(cases.main) else { continue };
-            // Levels are rounded when written as text, and motions were scaled to these.
+            // Motions were scaled to levels that were rounded when written as text, so the comparison has a tolerance.
             let off = |level: &f64| (velocity / level - 1.0).abs();
             let nearest =
                 (0..levels.len()).min_by(|a, b| off(&levels[*a]).total_cmp(&off(&levels[*b])));
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_difference_under_the_same_motions_is_surer_than_the_means_are() {
-        // Motions differ by far more than the two stacks.
+        // The scatter between motions is much larger than the difference of the two stacks.
         let (mild, hard): (Vec<f64>, Vec<f64>) = ((0..6).map(f64::from).collect(), vec![]);
         assert!(hard.is_empty());
         let names = ["a", "b", "c", "d", "e", "f"];
@@ -218,7 +218,7 @@ mod tests {
         let less = one.less_than(&other, FALLEN, (&[1.0], 8.0), 1).unwrap();
         assert!((less.mean - 1.25).abs() < 1e-12, "{less:?}");
         let [a, b] = [&one, &other].map(|runs| runs.estimate(FALLEN, &[1.0], 8.0));
-        // Six motions are too few to exclude that a seventh would do the opposite.
+        // Six motions are too few to exclude that a seventh has the opposite effect.
         assert!(less.low < 0.0 && less.high - less.low < a.high - a.low + b.high - b.low);
         assert!(a.high > b.low, "{a:?} {b:?}");
     }
@@ -235,10 +235,10 @@ mod tests {
         let less = |own: &[f64], other: &[f64], tries: usize| {
             of(own).less_than(&of(other), FALLEN, (&[1.0], 8.0), tries).unwrap()
         };
-        // Two records once gave 2.00 (2.00 to 2.00) as significant.
+        // Two equal differences must not count as significant.
         let two = less(&[2.0, 2.0], &[4.0, 4.0], 1);
         assert!(two.mean == 2.0 && two.low < 0.0 && two.high > 4.0, "{two:?}");
-        // Two that differ by rounding alone do not differ, and zero has no sign.
+        // A difference due to rounding counts as zero, and zero has no sign.
         let same = less(&[0.1 + 0.2, 0.3], &[0.3, 0.3], 1);
         assert!(same.mean == 0.0 && same.mean.is_sign_positive(), "{same:?}");
         let falls = [0.0, 1.0, 2.0, 0.0, 3.0, 1.0, 0.0, 2.0, 4.0, 0.0, 1.0, 2.0];
@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn weights_of_a_site_are_the_rate_at_which_something_happens_that_always_does() {
-        // An intensity of x is exceeded once in x² × 10⁴ years.
+        // An intensity x is exceeded once in x² × 10⁴ years.
         let rows: Vec<(f64, f64)> =
             (0..60).map(|i| 0.01 * 1.1_f64.powi(i)).map(|x| (x, 1e-4 / (x * x))).collect();
         let hazard = Hazard::new(&rows).unwrap();

@@ -72,7 +72,7 @@ fn headline(sheet: &Sheet) -> String {
             "RockScore {score} at least: under the strongest shaking of the protocol nine in ten {stacks} stand."
         ),
         Capacity::Below(lowest) => format!(
-            "RockScore 0: of {stacks} more than one in ten collapses when shaken {direction} to {} cm/s, the weakest \
+            "RockScore 0: more than one in ten {stacks} collapse when shaken {direction} to {} cm/s, the weakest \
              shaking of the protocol.",
             shown(lowest)
         ),

@@ -113,8 +113,7 @@ mod tests {
 
     use super::*;
 
-    /// Between the renaming of a draft and the end of its writer, another writer may begin a draft of the same
-    /// name.
+    /// Another writer may begin a draft of the same file after a draft is renamed and before its writer ends.
     #[test]
     fn writers_of_one_file_leave_the_drafts_of_the_others_alone() {
         let folder = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@
 /// All levels are in SI units of the intensity measure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hunt {
-    /// Lowest level.
+    /// Lowest level, at which the hunt starts.
     pub first: f64,
     /// First step of the level.
     pub step: f64,
@@ -66,7 +66,7 @@ mod tests {
         Hunt { first: 0.1, step: 0.1, growth: 0.05, resolution: 0.1, runs: 14 }
     }
 
-    /// Returns all levels of a hunt of a stack that collapses where `falls` is true.
+    /// Returns all levels of a hunt, for a stack that collapses at levels for which `falls` returns `true`.
     fn levels(hunt: &Hunt, falls: impl Fn(f64) -> bool) -> Vec<LevelResult> {
         let mut results = Vec::new();
         while let Some(level) = hunt.next(&results) {

@@ -317,6 +317,6 @@ mod tests {
         let spec = ColumnSpec::new("fall_heights", "m", Role::Outcome, ValueKind::Text);
         let column = Column { spec, values: Values::Text(vec![Some("1;two".into())]) };
         let error = to_bytes(&StudyTable::new(vec![column]).unwrap(), &[]).unwrap_err();
-        assert!(error.to_string().contains("\"two\" stands in a list of numbers"), "{error}");
+        assert!(error.to_string().contains("a list of numbers contains \"two\""), "{error}");
     }
 }
