@@ -223,7 +223,7 @@ pub fn collapse(
     }
     Ok(Calibration {
         title: format!(
-            "collapse {}: simulated with stacks built anew each time",
+            "collapse {}: simulated with random placements of racks and barrels",
             observations.file
         ),
         scenario: lead.tunable.scenario_lines(&medians),

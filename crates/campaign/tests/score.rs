@@ -38,7 +38,7 @@ fn the_score_is_the_least_of_all_states_and_directions_and_a_stop_loses_no_bit()
     assert!(worn > 0);
     assert_eq!(sheet.rows.len(), 2 * (2 + worn));
     assert!(sheet.rows.iter().all(|row| (row.runs, row.left_out) == (9, 0)));
-    // At the strongest shaking six stacks collapse in one direction; at the weakest all stand.
+    // At the strongest shaking at least six runs collapse; at the weakest none does.
     let at = |velocity| sheet.rows.iter().map(move |row| row.at(velocity).unwrap().failures);
     assert_eq!(at(0.3).sum::<u32>(), 0);
     assert!(at(2.4).sum::<u32>() >= 6);

@@ -84,8 +84,8 @@ pub fn sobol_indices(blocks: &[Vec<f64>], level: f64) -> Option<Vec<Index>> {
         }
         let unchanged = blocks.iter().filter(|block| block[0] == block[2 + input]).count();
         if 2 * unchanged >= count {
-            // Largest change of the index by one block: the square of the range for the total; half of it for the
-            // first, whose other factor is a distance from the mean.
+            // Largest change of an index by one block: for the total, the square of the range; for the first, half of
+            // that, since its other factor is a distance from the mean.
             let most = range * range / (2.0 * variance);
             let (below, above) = if which == TOTAL { (0.0, most) } else { (-most, most) };
             low = low.min((1.0 - missed) * here + missed * below);

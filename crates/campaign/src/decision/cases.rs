@@ -210,8 +210,9 @@ pub(super) struct Reading {
     records: Numbering,
     modes: Numbering,
     curves: Numbering,
-    /// Rows read so far, and those of them that are samples of their own.
+    /// Number of rows read so far.
     rows: usize,
+    /// Number of rows read so far that are independent samples, and therefore curves of their own.
     own: usize,
     /// Number of quantities that a sensitivity design exchanges; 0 for other designs.
     varied: usize,

@@ -9,7 +9,7 @@ use super::cases::{Case, Cases};
 pub enum LimitState {
     /// A barrel or rack loses its seat: collapse.
     SeatLost,
-    /// At least so many barrels fall.
+    /// At least this number of barrels falls.
     Fallen(u32),
 }
 

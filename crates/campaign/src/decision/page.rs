@@ -78,7 +78,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     }
     // Effects are not shown for hunts, since their shares of collapse depend on the levels that were tried.
     if !decision.sensitivities.is_empty() {
-        blocks.push(heading("What matters"));
+        blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Table(tables::indices(&decision.sensitivities)));
         blocks.push(text(
             "The first index is the share of the variance that would vanish if the quantity were known; the total index is the \
@@ -89,7 +89,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
     } else if !decision.effects.is_empty() && !cases.hunted {
         let collapsed = cases.all.iter().filter(|case| case.collapsed).count() as f64;
         let overall = collapsed / cases.all.len() as f64;
-        blocks.push(heading("What matters"));
+        blocks.push(heading("Influence of the varied quantities"));
         blocks.push(Block::Figure(figures::tornado(&decision.effects, overall)));
         blocks.push(Block::Table(tables::effects(decision)));
     }
@@ -101,7 +101,7 @@ fn blocks(decision: &Decision, made: &Provenance) -> Vec<Block> {
          shaking by this measure (0.5 is no better than chance). A small p in the last columns says that the other measure \
          still adds information: this one is then not sufficient.",
     ));
-    blocks.push(heading("What was run"));
+    blocks.push(heading("Motions"));
     blocks.push(Block::Table(motions(decision, made)));
     blocks
 }

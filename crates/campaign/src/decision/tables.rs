@@ -103,7 +103,7 @@ pub(super) fn measures(decision: &Decision) -> Table {
             ("ln likelihood", "", &|row| collapse(row, 4, |of| Some(of.fit.ln_likelihood))),
             ("drift: dispersion", "", &|row| drift(row, |of| Some(of.dispersion))),
             ("drift: dispersion/slope", "", &|row| drift(row, proficient)),
-            ("beside", "", &|row| Cell::maybe(row.beside.map(|at| &all[at].label))),
+            ("tested against", "", &|row| Cell::maybe(row.beside.map(|at| &all[at].label))),
             ("p (collapse)", "", &|row| collapse(row, 2, |of| of.sufficiency)),
             ("p (drift)", "", &|row| drift(row, |of| of.sufficiency)),
         ],

@@ -26,7 +26,7 @@ pub(super) fn document(sheet: &Sheet) -> Document {
             Block::Figure(chart(sheet)),
             heading("The protocol"),
             Block::List(rules(sheet)),
-            heading("What was scored"),
+            heading("Scored stack"),
             Block::Table(inputs(sheet)),
         ],
         provenance: vec![
